@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+
+#include "gaussians.hpp"
+
+namespace gs {
+
+/// Writes the layout of the reference implementation, which viewers read: binary little endian, properties
+/// x y z nx ny nz f_dc_0..2 f_rest_* (channel-major) opacity scale_0..2 rot_0..3, all float.
+/// Written aside and renamed. Throws `error` naming the file.
+void write_ply(const std::filesystem::path& file, const gaussians& model);
+
+/// Reads what `write_ply` and other trainers write: properties in any order, further scalar properties of any
+/// PLY type skipped, normals optional, SH degree 0 to 3 by the number of f_rest properties.
+/// Throws `error` naming the file and the field: no PLY, ascii or big endian, a missing field, a count that the
+/// file's size contradicts, a value that is not finite.
+gaussians read_ply(const std::filesystem::path& file);
+
+}  // namespace gs

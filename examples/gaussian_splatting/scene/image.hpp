@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace gs {
+
+/// 8-bit RGBA, rows from the top, colour premultiplied by alpha: what lies over a background b is
+/// `colour + (1 - alpha) * b`, and an area average of premultiplied pixels is the average of what one sees.
+struct image {
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint8_t> rgba;  ///< 4 * width * height
+    bool has_alpha = false;          ///< some pixel is not opaque
+};
+
+/// Reads a PNG or JPEG, told apart by its first bytes; grey, palette, 16-bit and CMYK-free JPEGs included.
+/// Throws `error` naming the file where it is missing, unreadable, truncated, or has no pixels.
+image read_image(const std::filesystem::path& file);
+
+/// Width and height from the header alone, without decoding. Errors as `read_image`.
+void read_image_size(const std::filesystem::path& file, int& width, int& height);
+
+/// Writes an opaque 8-bit RGB PNG from planar floats in [0, 1] (three planes of width*height), clamped and
+/// rounded to nearest. Written aside and renamed: an existing file is never half replaced.
+void write_png(const std::filesystem::path& file, int width, int height, const std::vector<float>& planes);
+
+/// The area average: each output pixel is the mean of the input it covers, fractions of pixels included.
+/// Precondition: 1 <= width <= source.width, and likewise the height.
+image shrink(const image& source, int width, int height);
+
+/// The image over a constant background, as planar floats in [0, 1].
+std::vector<float> over_background(const image& source, const float background[3]);
+
+}  // namespace gs

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "image.hpp"
+
+namespace gs {
+
+/// A pinhole camera. A world point p is at `rotation * p + translation` in camera space (x right, y down,
+/// z forward) and at (fx x/z + cx, fy y/z + cy) in pixels, where the centre of the top left pixel is (0.5, 0.5).
+struct camera {
+    int width = 0;
+    int height = 0;
+    double fx = 0, fy = 0, cx = 0, cy = 0;
+    glm::dmat3 rotation{1};
+    glm::dvec3 translation{0};
+
+    glm::dvec3 centre() const { return -glm::transpose(rotation) * translation; }
+};
+
+/// One photo with its camera; both are at the resolution that was asked for.
+struct view {
+    std::string name;  ///< the file's name below the images folder, with its ending
+    gs::camera camera;
+    image pixels;
+};
+
+struct coloured_point {
+    glm::dvec3 position{0};
+    glm::u8vec3 colour{0};
+};
+
+struct scene {
+    std::vector<view> train;
+    std::vector<view> test;
+    std::vector<coloured_point> points;  ///< from structure from motion; empty if the source has none
+    bool has_alpha = false;              ///< some photo is not opaque
+    std::string source;                  ///< "Blender", "COLMAP" or "synthetic", for messages
+
+    /// 1.1 times the largest distance of a training camera from their mean: the unit of the learning rate of
+    /// positions and of densification (Kerbl et al. 2023, reference implementation).
+    double extent() const;
+};
+
+struct load_options {
+    std::string data;               ///< a folder, or "synthetic:NAME"
+    std::string images = "images";  ///< COLMAP: the folder of photos, relative to `data`
+    int resolution = 1;             ///< 1, 2, 4, 8 divide the size; any other number is the longer side in pixels
+    bool eval = false;              ///< hold out test views
+    int test_every = 8;             ///< COLMAP: every n-th view, sorted by name, from the first
+    std::uint64_t seed = 0;         ///< synthetic: its point cloud
+};
+
+using log_function = std::function<void(const std::string&)>;
+
+/// Reads a scene: `transforms_train.json` marks Blender, `sparse/0` (or `sparse`) COLMAP.
+/// What was resized, undistorted or left out is said through `log`. Throws `error`.
+scene load_scene(const load_options& options, const log_function& log);
+
+/// The names that follow "synthetic:".
+std::vector<std::string> synthetic_scene_names();
+
+}  // namespace gs
