@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "atomic_memory.hpp"
+#include "warp.hpp"
+
+namespace warpagg::emulator {
+
+/// A warp of one lane: the oracle. What a kernel computes on it has no lanes to get wrong.
+struct serial {
+    static constexpr unsigned size = 1;
+    template <class T>
+    using value = T;
+
+    unsigned lane() const { return 0; }
+    std::uint32_t ballot(bool p) const { return p ? 1u : 0u; }
+    bool any(bool p) const { return p; }
+
+    template <class T>
+    T shfl(T v, unsigned) const {
+        return v;
+    }
+    template <class T>
+    T shfl_down(T v, unsigned) const {
+        return v;
+    }
+    template <class T>
+    T shfl_xor(T v, unsigned) const {
+        return v;
+    }
+
+    template <class T>
+    T load(const T* from, unsigned index, bool active) const {
+        return active ? from[index] : T{};
+    }
+    template <class T>
+    void store(T* to, unsigned index, T v, bool active) const {
+        if (active) to[index] = v;
+    }
+    template <class Dst, class T>
+    void atomic_add(Dst dst, unsigned index, T v, bool active) const {
+        if (active) detail::atomic_add(dst(index), v);
+    }
+};
+
+static_assert(warpagg::warp<serial>);
+
+}  // namespace warpagg::emulator
