@@ -9,18 +9,20 @@
 
 namespace gs {
 
-/// The degree 0 SH coefficient of a colour in [0, 1], and back: colour = 0.5 + C0 * coefficient.
+/// The degree 0 SH coefficient of a colour in [0, 1]: what solves colour = 0.5 + C0 * coefficient.
 float sh_from_colour(float colour);
 
 /// One Gaussian a point: isotropic, as wide as the root mean square distance to the 3 nearest other points,
 /// opacity 0.1, colour of the point, higher SH zero. Precondition: at least one point.
-/// At most `most` points, drawn without replacement by `seed` where there are more.
+/// Where there are fewer than 3 other points, those there are count; a width is at least sqrt(1e-7), also
+/// that of points that coincide and of a lone one. At most `most` points, drawn without replacement by `seed`
+/// where there are more.
 gaussians from_points(const std::vector<coloured_point>& points, int sh_degree, std::size_t most,
                       std::uint64_t seed);
 
 /// `count` points, uniform in the box that the cameras look at: half side 1.3 about the origin for a Blender
-/// scene (its convention), else centred on the mean of the cameras with the scene's extent as half side.
-/// Colours are random. What `from_points` starts from where a scene has no points.
+/// or synthetic scene (their convention), else centred on the mean of the cameras with the scene's extent as
+/// half side. Colours are random. What `from_points` starts from where a scene has no points.
 std::vector<coloured_point> random_points(const scene& scene, std::size_t count, std::uint64_t seed);
 
 }  // namespace gs

@@ -14,9 +14,10 @@ namespace gs {
 void write_ply(const std::filesystem::path& file, const gaussians& model);
 
 /// Reads what `write_ply` and other trainers write: properties in any order, further scalar properties of any
-/// PLY type skipped, normals optional, SH degree 0 to 3 by the number of f_rest properties.
-/// Throws `error` naming the file and the field: no PLY, ascii or big endian, a missing field, a count that the
-/// file's size contradicts, a value that is not finite.
+/// PLY type skipped, normals optional, SH degree 0 to 3 by the number of f_rest properties, elements other
+/// than `vertex` only where they are empty. Throws `error` naming the file and the field: no PLY, ascii or
+/// big endian, a missing field, a count that the file's size contradicts, a value that is not finite. What it
+/// allocates is bounded by the file's size, whatever the header says.
 gaussians read_ply(const std::filesystem::path& file);
 
 }  // namespace gs

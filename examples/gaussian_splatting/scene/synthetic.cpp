@@ -131,7 +131,8 @@ vec colour_at(const albedo& paint, const vec& p) {
     return glm::mix(paint.first, paint.second, 0.5 + 0.5 * rounded_square_wave(wave));
 }
 
-/// The distance along the ray to where it enters the ball. `direction` has unit length, and rays start outside.
+/// The distance along the ray to where it enters the ball. `direction` has unit length, and rays start
+/// outside.
 double distance_to(const ball& b, const vec& origin, const vec& direction) {
     const vec to_origin = origin - b.centre;
     const double along = glm::dot(to_origin, direction);
@@ -178,7 +179,8 @@ double sun_past(const ball& b, const vec& position, const vec& sun) {
     return glm::smoothstep(b.radius - sun_softness * along, b.radius + sun_softness * along, miss);
 }
 
-/// How much of the sky one ball leaves visible to a surface: one less its solid angle, weighted by the cosine.
+/// How much of the sky one ball leaves visible to a surface: one less its solid angle, weighted by the
+/// cosine.
 double sky_past(const ball& b, const surface_point& s) {
     const vec to_centre = b.centre - s.position;
     const double distance = glm::length(to_centre);
@@ -281,7 +283,8 @@ std::vector<view> render_views(const world& w, int size) {
         for (int row = 0; row < size; ++row) {
             view& v = views[static_cast<std::size_t>(i)];
             const std::size_t bytes_per_row = 4 * static_cast<std::size_t>(size);
-            render_row(w, v.camera, row, v.pixels.rgba.data() + bytes_per_row * static_cast<std::size_t>(row));
+            render_row(w, v.camera, row,
+                       v.pixels.rgba.data() + bytes_per_row * static_cast<std::size_t>(row));
         }
     }
     return views;
@@ -290,8 +293,8 @@ std::vector<view> render_views(const world& w, int size) {
 /// Spelt out because the standard leaves the results of its distributions to the implementation.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-/// Where rays through random places of random views meet a surface: seen by a camera by construction, and denser
-/// where more cameras look, as a cloud from structure from motion is.
+/// Where rays through random places of random views meet a surface: seen by a camera by construction, and
+/// denser where more cameras look, as a cloud from structure from motion is.
 std::vector<coloured_point> seen_points(const world& w, const std::vector<view>& views, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::vector<coloured_point> points;

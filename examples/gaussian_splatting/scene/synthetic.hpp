@@ -8,15 +8,16 @@
 
 namespace gs {
 
-/// A ray-traced scene that needs no download, with exact cameras on a hemisphere around it (z is up). Everything
-/// lies within 1.3 of the origin along each axis, and shading does not depend on the direction one looks from.
+/// A ray-traced scene that needs no download, with exact cameras on a hemisphere around it (z is up).
+/// Everything lies within 1.3 of the origin along each axis, and shading does not depend on the direction one
+/// looks from.
 ///
 ///     spheres   patterned spheres in a pool of light on a dark ground; opaque, black where nothing is
 ///     alpha     spheres that float before a transparent background
 ///
-/// 40 views train and 8 test, all 48 train without `options.eval`; 128 pixels square before `options.resolution`.
-/// `points` are about 3000 surface points, each seen by a training camera, drawn by `options.seed`.
-/// The result does not depend on the number of threads. Throws `error` for an unknown name.
+/// 40 views train and 8 test, all 48 train without `options.eval`; 128 pixels square before
+/// `options.resolution`. `points` are about 3000 surface points, each seen by a training camera, drawn by
+/// `options.seed`. The result does not depend on the number of threads. Throws `error` for an unknown name.
 scene make_synthetic_scene(const std::string& name, const load_options& options, const log_function& log);
 
 }  // namespace gs

@@ -26,25 +26,29 @@ WARPAGG_HD value_t<W, unsigned> scattered_index(const W& w, int k) {
 
 namespace detail {
 
-/// One step: of the M values that it holds, a lane keeps those at even places and sends the others to its
-/// partner if its bit of `Distance` is clear, and the other way round if it is set. A last value without a
-/// neighbour is summed by both.
+/// One step over the slots from K on: of the M values that it holds, a lane keeps those at even places and
+/// sends the others to its partner if its bit of `Distance` is clear, and the other way round if it is set. A
+/// last value without a neighbour is summed by both. A recursion, not a loop: nvcc would split a loop on
+/// `upper` and so put the shuffles into divergent branches.
+WARPAGG_EXEC_CHECK_DISABLE
+template <unsigned Distance, int M, int K, warp W, class V>
+WARPAGG_HD void exchange(const W& w, V* v, const mask_t<W>& upper) {
+    if constexpr (2 * K + 1 < M) {
+        const V keep = select(upper, v[2 * K + 1], v[2 * K]);
+        const V send = select(upper, v[2 * K], v[2 * K + 1]);
+        v[K] = keep + w.shfl_xor(send, Distance);
+        exchange<Distance, M, K + 1>(w, v, upper);
+    } else if constexpr (2 * K < M) {
+        v[K] = v[2 * K] + w.shfl_xor(v[2 * K], Distance);
+    }
+}
+
 WARPAGG_EXEC_CHECK_DISABLE
 template <unsigned Distance, int M, warp W, class V>
 WARPAGG_HD void scatter_from(const W& w, V* v) {
     if constexpr (Distance > 0) {
-        constexpr int half = (M + 1) / 2;
-        const mask_t<W> upper = (w.lane() & Distance) != 0u;
-        for (int k = 0; k < half; ++k) {
-            if (2 * k + 1 < M) {
-                const V keep = select(upper, v[2 * k + 1], v[2 * k]);
-                const V send = select(upper, v[2 * k], v[2 * k + 1]);
-                v[k] = keep + w.shfl_xor(send, Distance);
-            } else {
-                v[k] = v[2 * k] + w.shfl_xor(v[2 * k], Distance);
-            }
-        }
-        scatter_from<Distance / 2, half>(w, v);
+        exchange<Distance, M, 0>(w, v, (w.lane() & Distance) != 0u);
+        scatter_from<Distance / 2, (M + 1) / 2>(w, v);
     }
 }
 
