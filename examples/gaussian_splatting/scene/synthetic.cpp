@@ -26,7 +26,7 @@ constexpr int views_per_test_view = 6;
 constexpr int samples_per_side = 4;
 constexpr int point_count = 3000;
 constexpr double field_of_view = 45 * std::numbers::pi / 180;
-constexpr double camera_distance = 3.4;
+constexpr double camera_distance = 3.3;
 constexpr double nearest_hit = 1e-6;
 
 using vec = glm::dvec3;
@@ -67,7 +67,7 @@ struct surface_point {
 
 // Positions are chosen by eye. The ground's checks are wide enough to span several pixels at the native size.
 world spheres_world() {
-    const double floor = -0.42;
+    const double floor = -0.32;
     const auto standing = [floor](double x, double y, double radius, albedo paint) {
         return ball{{x, y, floor + radius}, radius, paint};
     };
@@ -82,13 +82,13 @@ world spheres_world() {
         standing(-0.93, -0.16, 0.13, {{0.84, 0.10, 0.30}, {0.95, 0.45, 0.55}, pattern::checks, {20, 20, 20}}),
         standing(0.78, -0.36, 0.12, {{0.95, 0.93, 0.88}, {0.95, 0.80, 0.60}, pattern::bands, {0, 0, 24}}),
     };
-    w.ground = {floor, 1.3, {{0.16, 0.20, 0.30}, {0.56, 0.58, 0.60}, pattern::checks, {9.5, 9.5, 0}}};
+    w.ground = {floor, 1.3, {{0.10, 0.15, 0.27}, {0.66, 0.62, 0.56}, pattern::checks, {9.5, 9.5, 0}}};
     return w;
 }
 
 world alpha_world() {
     world w;
-    w.balls = {{{0, 0, 0}, 0.55, {{0.10, 0.30, 0.62}, {0.88, 0.90, 0.92}, pattern::bands, {4, -3, 13}}}};
+    w.balls = {{{0, 0, 0}, 0.55, {{0.06, 0.26, 0.50}, {0.92, 0.70, 0.38}, pattern::bands, {4, -3, 14}}}};
     const vec colours[] = {{0.90, 0.26, 0.14}, {0.95, 0.65, 0.10}, {0.30, 0.66, 0.22},
                            {0.08, 0.55, 0.60}, {0.45, 0.22, 0.72}, {0.88, 0.25, 0.50}};
     for (int i = 0; i < 6; ++i) {
@@ -197,8 +197,8 @@ double pool_of_light(const world& w, const vec& p) {
 /// The colour of a matte surface under a warm sun and a cool sky, as displayed, in [0, 1].
 vec shade(const world& w, const surface_point& s) {
     static const vec sun_direction = glm::normalize(vec{0.50, -0.42, 0.80});
-    const vec sun_colour{1.02, 0.94, 0.80};
-    const vec sky_colour{0.30, 0.36, 0.46};
+    const vec sun_colour{0.90, 0.83, 0.71};
+    const vec sky_colour{0.25, 0.31, 0.40};
     const vec bounce_colour{0.13, 0.11, 0.10};
 
     double sun = std::max(glm::dot(s.normal, sun_direction), 0.0);

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <numeric>
+
+#include "../examples/gaussian_splatting/model/initialise.hpp"
+
+namespace {
+
+constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+const float floor_log_scale = static_cast<float>(0.5 * std::log(1e-7));
+
+std::vector<gs::coloured_point> regular_grid(int side, double spacing) {
+    std::vector<gs::coloured_point> points;
+    for (int x = 0; x < side; ++x) {
+        for (int y = 0; y < side; ++y) {
+            for (int z = 0; z < side; ++z) {
+                points.push_back({spacing * glm::dvec3(x, y, z), {x, y, z}});
+            }
+        }
+    }
+    return points;
+}
+
+std::vector<gs::coloured_point> line(std::initializer_list<double> places) {
+    std::vector<gs::coloured_point> points;
+    for (const double x : places) points.push_back({{x, 0, 0}, {0, 0, 0}});
+    return points;
+}
+
+gs::scene scene_seen_from(const std::string& source, std::initializer_list<glm::dvec3> centres) {
+    gs::scene s;
+    s.source = source;
+    for (const glm::dvec3& centre : centres) {
+        gs::view v;
+        v.camera.translation = -centre;
+        s.train.push_back(v);
+    }
+    return s;
+}
+
+}  // namespace
+
+TEST_CASE("from_points: on a regular grid every Gaussian is as wide as the spacing") {
+    const gs::gaussians model = gs::from_points(regular_grid(6, 0.25), 2, all, 0);
+    REQUIRE(model.count() == 216);
+    REQUIRE(model.log_scale.size() == 3 * 216);
+    for (const float s : model.log_scale) CHECK(s == doctest::Approx(std::log(0.25)));
+}
+
+TEST_CASE("from_points: the root of the mean of the 3 squared distances, not the mean distance") {
+    const gs::gaussians model = gs::from_points(line({0, 1, 3, 10}), 0, all, 0);
+    CHECK(model.log_scale[0] == doctest::Approx(0.5 * std::log((1.0 + 9.0 + 100.0) / 3)));
+    CHECK(model.log_scale[3] == doctest::Approx(0.5 * std::log((1.0 + 4.0 + 81.0) / 3)));
+}
+
+TEST_CASE("from_points: all parameters of a Gaussian") {
+    const std::vector<gs::coloured_point> points = {{{1, 2, 3}, {0, 128, 255}},
+                                                    {{4, 5, 6}, {10, 20, 30}},
+                                                    {{7, 8, 9}, {1, 2, 3}},
+                                                    {{0, 0, 0}, {4, 5, 6}}};
+    for (int degree = 0; degree <= 3; ++degree) {
+        const gs::gaussians model = gs::from_points(points, degree, all, 0);
+        CHECK(model.sh_degree == degree);
+        REQUIRE(model.count() == 4);
+        CHECK(std::vector<float>(model.mean.begin(), model.mean.begin() + 6) ==
+              std::vector<float>{1, 2, 3, 4, 5, 6});
+        CHECK(std::vector<float>(model.quaternion.begin(), model.quaternion.begin() + 8) ==
+              std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0});
+        CHECK(model.quaternion.size() == 16);
+        for (const float o : model.opacity) CHECK(1 / (1 + std::exp(-o)) == doctest::Approx(0.1));
+        const float c0 = 0.28209479F;
+        CHECK(0.5F + c0 * model.sh_constant[0] == doctest::Approx(0));
+        CHECK(0.5F + c0 * model.sh_constant[1] == doctest::Approx(128 / 255.0));
+        CHECK(0.5F + c0 * model.sh_constant[2] == doctest::Approx(1));
+        CHECK(model.sh_constant.size() == 12);
+        CHECK(model.sh_rest == std::vector<float>(4 * static_cast<std::size_t>(model.rest_width()), 0.0F));
+    }
+}
+
+TEST_CASE("from_points: points that coincide, and too few of them, still get a size") {
+    SUBCASE("a lone point") {
+        const gs::gaussians model = gs::from_points(line({5}), 3, all, 0);
+        REQUIRE(model.count() == 1);
+        CHECK(model.log_scale[0] == doctest::Approx(floor_log_scale));
+    }
+    SUBCASE("two points") {
+        for (const float s : gs::from_points(line({0, 2}), 0, all, 0).log_scale) {
+            CHECK(s == doctest::Approx(std::log(2.0)));
+        }
+    }
+    SUBCASE("three points") {
+        const gs::gaussians model = gs::from_points(line({0, 1, 3}), 0, all, 0);
+        CHECK(model.log_scale[0] == doctest::Approx(0.5 * std::log((1.0 + 9.0) / 2)));
+    }
+    SUBCASE("hundreds at one place") {
+        for (const float s : gs::from_points(std::vector<gs::coloured_point>(300), 0, all, 0).log_scale) {
+            CHECK(s == doctest::Approx(floor_log_scale));
+        }
+    }
+    SUBCASE("a pair of twins and two others") {
+        const gs::gaussians model = gs::from_points(line({0, 0, 1, 2}), 0, all, 0);
+        CHECK(model.log_scale[0] == doctest::Approx(0.5 * std::log((0.0 + 1.0 + 4.0) / 3)));
+        CHECK(model.log_scale[3] == doctest::Approx(model.log_scale[0]));
+    }
+}
+
+TEST_CASE("from_points: `most` draws without replacement, by seed, and sizes what it drew") {
+    const std::vector<gs::coloured_point> points = regular_grid(10, 1);
+    const gs::gaussians model = gs::from_points(points, 0, 100, 7);
+    REQUIRE(model.count() == 100);
+
+    std::vector<glm::vec3> means;
+    for (std::size_t i = 0; i < 100; ++i) {
+        means.emplace_back(model.mean[3 * i], model.mean[3 * i + 1], model.mean[3 * i + 2]);
+    }
+    for (std::size_t i = 0; i < means.size(); ++i) {
+        CHECK(std::count(means.begin(), means.end(), means[i]) == 1);
+    }
+    const double mean_log_scale =
+        std::accumulate(model.log_scale.begin(), model.log_scale.end(), 0.0) / (3 * 100.0);
+    CHECK(mean_log_scale > std::log(1.3));
+
+    CHECK(gs::from_points(points, 0, 100, 7).mean == model.mean);
+    CHECK(gs::from_points(points, 0, 100, 8).mean != model.mean);
+    CHECK(gs::from_points(points, 0, 1000, 7).mean == gs::from_points(points, 0, all, 8).mean);
+}
+
+TEST_CASE("random_points: the box of a Blender scene") {
+    const gs::scene blender = scene_seen_from("Blender", {{4, 0, 0}});
+    const std::vector<gs::coloured_point> points = gs::random_points(blender, 5000, 3);
+    REQUIRE(points.size() == 5000);
+    glm::dvec3 least{0}, greatest{0}, sum{0};
+    for (const gs::coloured_point& p : points) {
+        least = glm::min(least, p.position);
+        greatest = glm::max(greatest, p.position);
+        sum += p.position;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        CHECK(least[axis] >= -1.3);
+        CHECK(least[axis] < -1.25);
+        CHECK(greatest[axis] <= 1.3);
+        CHECK(greatest[axis] > 1.25);
+        CHECK(std::abs(sum[axis] / 5000) < 0.05);
+    }
+    const auto [dark, bright] = std::minmax_element(
+        points.begin(), points.end(), [](const auto& a, const auto& b) { return a.colour.r < b.colour.r; });
+    CHECK(dark->colour.r == 0);
+    CHECK(bright->colour.r == 255);
+}
+
+TEST_CASE("random_points: the box around the cameras of another scene, by seed") {
+    const gs::scene colmap = scene_seen_from("COLMAP", {{10, 0, 0}, {12, 0, 0}, {10, 2, 0}, {12, 2, 0}});
+    const glm::dvec3 centre{11, 1, 0};
+    const std::vector<gs::coloured_point> points = gs::random_points(colmap, 1000, 3);
+    double farthest = 0;
+    for (const gs::coloured_point& p : points) {
+        for (int axis = 0; axis < 3; ++axis) {
+            farthest = std::max(farthest, std::abs(p.position[axis] - centre[axis]));
+        }
+    }
+    CHECK(farthest <= colmap.extent());
+    CHECK(farthest > 0.95 * colmap.extent());
+    CHECK(gs::random_points(colmap, 10, 3)[9].position == points[9].position);
+    CHECK(gs::random_points(colmap, 10, 4)[9].position != points[9].position);
+}
