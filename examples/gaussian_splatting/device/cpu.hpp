@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <immintrin.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
+#include <warpagg/simt/lanes.hpp>
+
+#include "stages.hpp"
+
+namespace gs::device {
+
+/// The CPU as a device: an index range or a range of warps is spread over OpenMP threads, and memory is the host's.
+/// `Warp` is the model that warp kernels run on. The interface is that of `cuda`.
+template <class Warp>
+class basic_cpu {
+  public:
+    using warp = Warp;
+
+    /// Memory of the device. Growing it loses the contents.
+    template <class T>
+    class buffer {
+      public:
+        void resize(std::size_t n) {
+            if (n > capacity_) {
+                memory_ = std::make_unique_for_overwrite<T[]>(n);
+                capacity_ = n;
+            }
+            size_ = n;
+        }
+        T* data() const { return memory_.get(); }
+        std::size_t size() const { return size_; }
+        std::size_t bytes() const { return capacity_ * sizeof(T); }
+
+      private:
+        std::unique_ptr<T[]> memory_;
+        std::size_t size_ = 0, capacity_ = 0;
+    };
+
+    basic_cpu() {
+        // Denormal moments of Adam would cost x86 a hundred cycles each.
+#pragma omp parallel
+        _mm_setcsr(_mm_getcsr() | 0x8040u);
+    }
+
+    std::string name() const { return "cpu, " + std::to_string(omp_get_max_threads()) + " threads"; }
+
+    /// f(i) for each i in [0, n).
+    template <class F>
+    void for_each_index(std::size_t n, const F& f) {
+#pragma omp parallel for schedule(static)
+        for (std::size_t i = 0; i < n; ++i) f(i);
+    }
+    /// The same for plain arithmetic on arrays, where neighbouring elements may share a SIMD instruction.
+    template <class F>
+    void for_each_element(std::size_t n, const F& f) {
+#pragma omp parallel for simd schedule(static)
+        for (std::size_t i = 0; i < n; ++i) f(i);
+    }
+    /// f(warp, i) for each i in [0, n), each on a warp of its own.
+    template <class F>
+    void for_each_warp(std::size_t n, const F& f) {
+#pragma omp parallel for schedule(dynamic, 8)
+        for (std::size_t i = 0; i < n; ++i) f(Warp{}, static_cast<unsigned>(i));
+    }
+
+    template <class T>
+    void zero(T* p, std::size_t n) {
+        if (n > 0) std::memset(static_cast<void*>(p), 0, n * sizeof(T));
+    }
+    template <class T>
+    void upload(T* to, const T* from, std::size_t n) {
+        std::copy_n(from, n, to);
+    }
+    template <class T>
+    void copy(T* to, const T* from, std::size_t n) {
+        std::copy_n(from, n, to);
+    }
+    /// Waits for the device, as does whoever reads a result of it.
+    template <class T>
+    void download(T* to, const T* from, std::size_t n) {
+        std::copy_n(from, n, to);
+    }
+
+    /// out[i] = in[0] + ... + in[i - 1] for i in [0, n]; out has n + 1 elements.
+    void prefix_sum(const buffer<std::uint32_t>& in, buffer<std::uint64_t>& out, std::size_t n) {
+        std::uint64_t sum = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            out.data()[i] = sum;
+            sum += in.data()[i];
+        }
+        out.data()[n] = sum;
+    }
+
+    /// Sorts the first n pairs by the low `bits` of their keys; pairs of equal keys keep their order.
+    void sort_pairs(buffer<std::uint32_t>& keys, buffer<std::uint32_t>& values, std::size_t n, int bits) {
+        constexpr int digit_bits = 11;
+        other_keys_.resize(keys.size());
+        other_values_.resize(values.size());
+        for (int shift = 0; shift < bits; shift += digit_bits) {
+            sort_by_digit(keys.data(), values.data(), n, shift, std::min(digit_bits, bits - shift));
+            std::swap(keys, other_keys_);
+            std::swap(values, other_values_);
+        }
+    }
+
+    void begin(stage s) {
+        const auto now = clock::now();
+        if (running_ != stage::count)
+            times_.milliseconds[static_cast<std::size_t>(running_)] +=
+                std::chrono::duration<double, std::milli>(now - since_).count();
+        running_ = s;
+        since_ = now;
+    }
+    void end_iteration() {
+        begin(stage::count);
+        ++times_.sampled;
+    }
+    const stage_times& times() { return times_; }
+
+    std::size_t peak_bytes() const { return 0; }  // the process's own peak says it all
+    void wait() {}
+
+  private:
+    using clock = std::chrono::steady_clock;
+
+    /// One pass of a stable radix sort: each thread counts and then moves its own slice.
+    void sort_by_digit(const std::uint32_t* keys, const std::uint32_t* values, std::size_t n, int shift, int bits) {
+        const std::size_t digits = std::size_t{1} << bits;
+        const auto digit = [&](std::uint32_t key) { return key >> shift & (digits - 1); };
+        std::uint32_t* to_keys = other_keys_.data();
+        std::uint32_t* to_values = other_values_.data();
+        histograms_.assign(digits * static_cast<std::size_t>(omp_get_max_threads()), 0);
+#pragma omp parallel
+        {
+            const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+            const auto threads = static_cast<std::size_t>(omp_get_num_threads());
+            const std::size_t from = n * thread / threads, to = n * (thread + 1) / threads;
+            std::size_t* mine = histograms_.data() + thread * digits;
+            for (std::size_t i = from; i < to; ++i) ++mine[digit(keys[i])];
+#pragma omp barrier
+#pragma omp single
+            for (std::size_t d = 0, sum = 0; d < digits; ++d)
+                for (std::size_t t = 0; t < threads; ++t) {
+                    const std::size_t count = histograms_[t * digits + d];
+                    histograms_[t * digits + d] = sum;
+                    sum += count;
+                }
+            for (std::size_t i = from; i < to; ++i) {
+                const std::size_t at = mine[digit(keys[i])]++;
+                to_keys[at] = keys[i];
+                to_values[at] = values[i];
+            }
+        }
+    }
+
+    buffer<std::uint32_t> other_keys_, other_values_;
+    std::vector<std::size_t> histograms_;
+    stage_times times_;
+    stage running_ = stage::count;
+    clock::time_point since_;
+};
+
+using cpu = basic_cpu<warpagg::emulator::lanes>;
+
+}  // namespace gs::device

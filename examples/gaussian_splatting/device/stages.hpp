@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+
+namespace gs::device {
+
+/// The stages of an iteration, for the split of its time.
+enum class stage { project, bin, blend_forward, loss, blend_backward, project_backward, adam, count };
+
+inline constexpr std::array stage_names{"project",        "bin",  "blend_forward", "loss", "blend_backward",
+                                        "project_backward", "adam"};
+
+/// Milliseconds per stage, summed over the `sampled` iterations that were timed.
+struct stage_times {
+    std::array<double, static_cast<std::size_t>(stage::count)> milliseconds{};
+    int sampled = 0;
+};
+
+}  // namespace gs::device

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace gs {
+
+/// The parameters of a Gaussian as the device holds them, each an array of its own. Every SH band is one, so that
+/// a band that is not in use is neither stored, read nor updated.
+enum class parameter { mean, log_scale, quaternion, opacity, sh0, sh1, sh2, sh3, count };
+inline constexpr std::size_t parameter_count = static_cast<std::size_t>(parameter::count);
+
+/// Values per Gaussian.
+inline constexpr std::array<int, parameter_count> parameter_width{3, 3, 4, 1, 3, 9, 15, 21};
+
+/// Whether a model of this SH degree has the parameter.
+constexpr bool has_parameter(std::size_t p, int sh_degree) {
+    return static_cast<int>(p) - static_cast<int>(parameter::sh0) <= sh_degree;
+}
+
+/// Where the arrays lie: `count * width` values each, Gaussian-major. Values, gradients and moments have this form.
+template <class Real>
+struct parameter_arrays {
+    Real* mean = nullptr;
+    Real* log_scale = nullptr;
+    Real* quaternion = nullptr;  ///< w x y z
+    Real* opacity = nullptr;     ///< logit
+    Real* sh[4] = {};            ///< bands 0 to 3, coefficient-major, RGB within
+};
+
+}  // namespace gs

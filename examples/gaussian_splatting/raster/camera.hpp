@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "../scene/scene.hpp"
+
+namespace gs::raster {
+
+/// A camera as the kernels read it.
+template <class Real>
+struct device_camera {
+    int width, height;
+    Real fx, fy, cx, cy;
+    glm::mat<3, 3, Real> rotation;
+    glm::vec<3, Real> translation;
+    glm::vec<3, Real> centre;
+    /// Bounds of x/z and y/z in the Jacobian of the projection: the picture and 15 % of its width (height) on every
+    /// side, so that the affine approximation of far-off Gaussians stays bounded (Zwicker et al. 2001).
+    Real least_x, most_x, least_y, most_y;
+};
+
+template <class Real>
+device_camera<Real> for_device(const camera& c) {
+    const double margin_x = 0.15 * c.width, margin_y = 0.15 * c.height;
+    device_camera<Real> d;
+    d.width = c.width;
+    d.height = c.height;
+    d.fx = static_cast<Real>(c.fx);
+    d.fy = static_cast<Real>(c.fy);
+    d.cx = static_cast<Real>(c.cx);
+    d.cy = static_cast<Real>(c.cy);
+    d.rotation = glm::mat<3, 3, Real>(c.rotation);
+    d.translation = glm::vec<3, Real>(c.translation);
+    d.centre = glm::vec<3, Real>(c.centre());
+    d.least_x = static_cast<Real>((-margin_x - c.cx) / c.fx);
+    d.most_x = static_cast<Real>((c.width + margin_x - c.cx) / c.fx);
+    d.least_y = static_cast<Real>((-margin_y - c.cy) / c.fy);
+    d.most_y = static_cast<Real>((c.height + margin_y - c.cy) / c.fy);
+    return d;
+}
+
+}  // namespace gs::raster

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace gs {
+
+/// How the backward blending adds up its gradients: compiled variants of one kernel.
+enum class gradient_policy {
+    per_lane,     ///< the original: every pixel its own atomics
+    reduce,       ///< the paper, Figure 7: shuffles and lane 0, idle warps included
+    reduce_skip,  ///< the paper, Figure 8: the same, idle warps skipped
+    scatter       ///< ours: reduce-scatter and one contiguous atomic instruction
+};
+
+inline constexpr std::array<std::string_view, 4> gradient_policy_names{"per-lane", "reduce", "reduce-skip", "scatter"};
+
+}  // namespace gs

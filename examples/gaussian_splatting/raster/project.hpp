@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "../model/spherical_harmonics.hpp"
+#include "geometry.hpp"
+#include "splat.hpp"
+
+namespace gs::raster {
+
+/// The tiles that a splat's bounding box meets: [x0, x1) × [y0, y1).
+struct tile_box {
+    std::uint16_t x0, y0, x1, y1;
+};
+
+/// Calls `f(tile)` for each tile of the box whose pixels the splat's ellipse reaches.
+template <class Real, class F>
+WARPAGG_HD void for_each_tile(const splat<Real>& s, const tile_box& box, unsigned tiles_across, const F& f) {
+    for (unsigned ty = box.y0; ty < box.y1; ++ty)
+        for (unsigned tx = box.x0; tx < box.x1; ++tx) {
+            const Real x0 = Real(tx * tile_size) + Real(0.5) - s.x, y0 = Real(ty * tile_size) + Real(0.5) - s.y;
+            const Real side = tile_size - 1;
+            if (least_exponent<Real>(s.a, s.b, s.c, x0, x0 + side, y0, y0 + side) <= s.reach)
+                f(ty * tiles_across + tx);
+        }
+}
+
+/// Gaussians to splats: one index a Gaussian.
+template <class Real>
+struct project {
+    parameter_arrays<const Real> gaussians;
+    device_camera<Real> camera;
+    int sh_degree;
+    unsigned tiles_across, tiles_down;
+
+    splat<Real>* splats;
+    tile_box* boxes;
+    std::uint32_t* depths;      ///< the depth as a sort key: a positive float's bits are in its order
+    std::uint32_t* identities;  ///< i: the value that is sorted along
+    std::uint32_t* tiles;       ///< how many tiles the splat meets; zero if it is not drawn
+
+    WARPAGG_HD void operator()(std::size_t index) const {
+        const auto i = static_cast<unsigned>(index);
+        identities[i] = i;
+        depths[i] = 0xffffffffu;
+        tiles[i] = 0;
+        boxes[i] = {0, 0, 0, 0};
+        splats[i] = {};
+
+        const footprint<Real> f = see(gaussians, i, camera);
+        if (!f.drawable) return;
+        splat<Real> s{};
+        s.opacity = sigmoid(gaussians.opacity[i]);
+        s.reach = glm::log2(s.opacity * Real(1 / least_alpha));
+        if (!(s.reach > 0)) return;
+        s.x = camera.fx * f.at.x / f.at.z + camera.cx;
+        s.y = camera.fy * f.at.y / f.at.z + camera.cy;
+
+        constexpr Real ln2 = Real(0.6931471805599453);
+        const Real k = 1 / (2 * ln2 * f.determinant);
+        s.a = f.yy * k;
+        s.b = -2 * f.xy * k;
+        s.c = f.xx * k;
+        const tile_box box = bounds(s, warpagg::sqrt(2 * ln2 * s.reach * f.xx), warpagg::sqrt(2 * ln2 * s.reach * f.yy));
+        unsigned met = 0;
+        for_each_tile(s, box, tiles_across, [&](unsigned) { ++met; });
+        if (met == 0) return;
+
+        const vec3<Real> rgb = colour(i);
+        s.red = rgb.x;
+        s.green = rgb.y;
+        s.blue = rgb.z;
+        splats[i] = s;
+        boxes[i] = box;
+        tiles[i] = met;
+        const auto z = static_cast<float>(f.at.z);
+        depths[i] = bits_of(z);
+    }
+
+  private:
+    static WARPAGG_HD std::uint32_t bits_of(float z) {
+#if defined(__CUDA_ARCH__)
+        return __float_as_uint(z);
+#else
+        return __builtin_bit_cast(std::uint32_t, z);
+#endif
+    }
+
+    /// The tiles that hold a pixel centre within these half extents.
+    WARPAGG_HD tile_box bounds(const splat<Real>& s, Real half_x, Real half_y) const {
+        const auto tile = [](Real pixel, unsigned end) {
+            const Real t = glm::floor(pixel / tile_size);
+            return static_cast<std::uint16_t>(warpagg::min(warpagg::max(t, Real(0)), Real(end)));
+        };
+        const Real half(0.5);
+        return {tile(s.x - half_x - half, tiles_across), tile(s.y - half_y - half, tiles_down),
+                tile(s.x + half_x - half + tile_size, tiles_across), tile(s.y + half_y - half + tile_size, tiles_down)};
+    }
+
+    WARPAGG_HD vec3<Real> colour(unsigned i) const {
+        const vec3<Real> direction = glm::normalize(load3(gaussians.mean, i) - camera.centre);
+        Real basis[16];
+        sh_basis(sh_degree, direction, basis);
+        vec3<Real> sum(0.5);
+        for (int band = 0, k = 0; band <= sh_degree; ++band) {
+            const unsigned size = static_cast<unsigned>(2 * band + 1);
+            for (unsigned m = 0; m < size; ++m, ++k) sum += basis[k] * load3(gaussians.sh[band], i * size + m);
+        }
+        return glm::max(sum, vec3<Real>(0));
+    }
+};
+
+}  // namespace gs::raster

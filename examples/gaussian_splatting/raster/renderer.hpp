@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <bit>
+#include <string>
+
+#include "../device/stages.hpp"
+#include "../error.hpp"
+#include "bin.hpp"
+#include "blend_backward.hpp"
+#include "blend_forward.hpp"
+#include "gradient_policy.hpp"
+#include "project.hpp"
+#include "project_backward.hpp"
+
+namespace gs::raster {
+
+/// Gaussians to a picture and, from dL/dpicture, to the gradients of their parameters. Holds what lies in between.
+template <class Device, class Real>
+class renderer {
+  public:
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+    using model = parameter_arrays<const Real>;
+
+    explicit renderer(Device& device) : device_(device) { device_.zero(reserve(pairs_, 1).data(), 1); }
+
+    /// How many instances (Gaussian, tile) a view has. Waits for the device.
+    std::uint64_t count_instances(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
+        project_all(gaussians, count, view, sh_degree);
+        device_.prefix_sum(tiles_, first_, count);
+        std::uint64_t total = 0;
+        device_.download(&total, first_.data() + count, 1);
+        return total;
+    }
+
+    /// Makes room for that many instances a view. `forward` cuts what does not fit: see `instances`.
+    void reserve_instances(std::uint64_t most) {
+        if (most >= std::uint64_t{1} << 31)
+            throw error("a view has " + std::to_string(most) +
+                        " pairs of Gaussian and tile, more than 2^31: lower --max-cap or --resolution");
+        capacity_ = most;
+        tile_of_.resize(most);
+        gaussian_of_.resize(most);
+    }
+    std::uint64_t reserved_instances() const { return capacity_; }
+
+    /// Draws the view: `picture()`, three planes, is valid afterwards.
+    void forward(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
+                 const std::array<float, 3>& background) {
+        using device::stage;
+        device_.begin(stage::project);
+        project_all(gaussians, count, view, sh_degree);
+        device_.begin(stage::bin);
+        bin(count);
+        device_.begin(stage::blend_forward);
+        const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+        picture_.resize(3 * pixels);
+        transmittance_.resize(pixels);
+        last_.resize(pixels);
+        blend_forward<Real> blend{splats_.data(), gaussian_of_.data(), ranges_.data(), tiles_across_, view.width,
+                                  view.height,    colour(background),  picture_.data(), transmittance_.data(),
+                                  last_.data(),   pairs_.data()};
+        device_.for_each_warp(warps(), blend);
+        count_ = count;
+        gaussians_ = gaussians;
+        camera_ = for_device<Real>(view);
+        sh_degree_ = sh_degree;
+        background_ = background;
+    }
+
+    /// The gradients of the last `forward`'s parameters from those of its picture. `seen` may be null.
+    void backward(const Real* picture_gradient, gradient_policy policy, const parameter_arrays<Real>& gradients,
+                  visibility* seen) {
+        using device::stage;
+        device_.begin(stage::blend_backward);
+        reserve(sums_, count_ * record_stride);
+        device_.zero(sums_.data(), sums_.size());
+        using namespace warpagg;
+        switch (policy) {
+            case gradient_policy::per_lane:
+                blend_back<false, warpagg::policy<reduce::per_lane>>(picture_gradient);
+                break;
+            case gradient_policy::reduce:
+                blend_back<false, warpagg::policy<reduce::shfl_down, idle::add_zeros>>(picture_gradient);
+                break;
+            case gradient_policy::reduce_skip:
+                blend_back<true, warpagg::policy<reduce::shfl_down, idle::assume_busy>>(picture_gradient);
+                break;
+            case gradient_policy::scatter:
+                blend_back<true, warpagg::policy<reduce::scatter, idle::assume_busy>>(picture_gradient);
+                break;
+        }
+        device_.begin(stage::project_backward);
+        device_.for_each_index(count_, project_backward<Real>{gaussians_, camera_, sh_degree_, splats_.data(),
+                                                              tiles_.data(), sums_.data(), gradients, seen});
+    }
+
+    const Real* picture() const { return picture_.data(); }
+    /// On the device: instances that the last view has, whether they fit or not.
+    const std::uint64_t* instances() const { return first_.data() + count_; }
+    /// On the device: pixel-Gaussian pairs evaluated by all `forward`s so far.
+    const unsigned long long* pairs() const { return pairs_.data(); }
+
+  private:
+    template <class T>
+    static buffer<T>& reserve(buffer<T>& b, std::size_t n) {
+        b.resize(n);
+        return b;
+    }
+
+    std::size_t tiles() const { return std::size_t{tiles_across_} * tiles_down_; }
+    std::size_t warps() const { return tiles() * patch<typename Device::warp, Real>::per_tile; }
+
+    void project_all(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
+        tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
+        tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
+        first_.resize(count + 1);
+        device_.for_each_index(
+            count, project<Real>{gaussians, for_device<Real>(view), sh_degree, tiles_across_, tiles_down_,
+                                 reserve(splats_, count).data(), reserve(boxes_, count).data(),
+                                 reserve(depths_, count).data(), reserve(order_, count).data(),
+                                 reserve(tiles_, count).data()});
+    }
+
+    /// Lists of Gaussians per tile, front to back: sorted by depth first and then, stably, by tile, so that
+    /// neither key needs more than 32 bits and equal depths keep the order of the Gaussians.
+    void bin(std::size_t count) {
+        device_.sort_pairs(depths_, order_, count, 32);
+        device_.for_each_index(count, gather_tiles{order_.data(), tiles_.data(), reserve(sorted_tiles_, count).data()});
+        device_.prefix_sum(sorted_tiles_, first_, count);
+
+        const auto no_tile = static_cast<std::uint32_t>(tiles());
+        device_.for_each_index(capacity_, clear_instances{tile_of_.data(), gaussian_of_.data(), no_tile});
+        device_.for_each_index(count, emit_instances<Real>{order_.data(), first_.data(), splats_.data(), boxes_.data(),
+                                                           tiles_across_, capacity_, tile_of_.data(),
+                                                           gaussian_of_.data()});
+        device_.sort_pairs(tile_of_, gaussian_of_, capacity_, static_cast<int>(std::bit_width(no_tile)));
+        device_.zero(reserve(ranges_, tiles()).data(), tiles());
+        device_.for_each_index(capacity_, find_ranges{tile_of_.data(), capacity_, no_tile, ranges_.data()});
+    }
+
+    template <bool AskFirst, class Policy>
+    void blend_back(const Real* picture_gradient) {
+        const auto b = colour(background_);
+        device_.for_each_warp(
+            warps(), blend_backward<Real, Policy, AskFirst>{splats_.data(), gaussian_of_.data(), ranges_.data(),
+                                                            tiles_across_, camera_.width, camera_.height, b,
+                                                            transmittance_.data(), last_.data(), picture_gradient,
+                                                            sums_.data()});
+    }
+
+    static vec3<Real> colour(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
+
+    Device& device_;
+    buffer<splat<Real>> splats_;
+    buffer<tile_box> boxes_;
+    buffer<std::uint32_t> depths_, order_, tiles_, sorted_tiles_;
+    buffer<std::uint64_t> first_;
+    buffer<std::uint32_t> tile_of_, gaussian_of_;
+    buffer<tile_range> ranges_;
+    buffer<Real> picture_, transmittance_, sums_;
+    buffer<std::uint32_t> last_;
+    buffer<unsigned long long> pairs_;
+    std::uint64_t capacity_ = 0;
+
+    unsigned tiles_across_ = 0, tiles_down_ = 0;
+
+    // What `backward` belongs to.
+    model gaussians_;
+    std::size_t count_ = 0;
+    device_camera<Real> camera_{};
+    int sh_degree_ = 0;
+    std::array<float, 3> background_{};
+};
+
+}  // namespace gs::raster
