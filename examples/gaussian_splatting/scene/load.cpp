@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <string_view>
+
+#include "../error.hpp"
+#include "blender.hpp"
+#include "colmap.hpp"
+#include "scene.hpp"
+#include "synthetic.hpp"
+
+namespace gs {
+namespace {
+
+constexpr std::string_view synthetic_prefix = "synthetic:";
+
+scene load_folder(const load_options& options, const log_function& log) {
+    const std::filesystem::path data = options.data;
+    if (!std::filesystem::exists(data)) throw error("there is no folder " + data.string());
+    if (!std::filesystem::is_directory(data)) throw error(data.string() + " is not a folder");
+    if (std::filesystem::exists(data / "transforms_train.json")) return load_blender_scene(options, log);
+    if (std::filesystem::is_directory(data / "sparse")) return load_colmap_scene(options, log);
+    throw error(
+        "the folder " + data.string() +
+        " is no scene: it has neither transforms_train.json (Blender) nor sparse/0 or sparse (COLMAP)");
+}
+
+scene load_folder_or_explain(const load_options& options, const log_function& log) {
+    try {
+        return load_folder(options, log);
+    } catch (const std::filesystem::filesystem_error& problem) {  // no permission, a name too long
+        throw error("cannot read " + problem.path1().string() + ": " + problem.code().message());
+    }
+}
+
+/// A view of each kind that was asked for, or it makes no sense to go on.
+void require_views(const scene& loaded, const load_options& options) {
+    const std::string split = " (" + std::to_string(loaded.train.size()) + " for training, " +
+                              std::to_string(loaded.test.size()) + " held out)";
+    if (loaded.train.empty()) throw error(options.data + " has no training views" + split);
+    if (options.eval && loaded.test.empty()) throw error(options.data + " has no test views" + split);
+}
+
+bool any_has_alpha(const std::vector<view>& views) {
+    return std::ranges::any_of(views, [](const view& one) { return one.pixels.has_alpha; });
+}
+
+}  // namespace
+
+double scene::extent() const {
+    if (train.empty()) return 0;
+    glm::dvec3 mean(0);
+    for (const view& one : train) mean += one.camera.centre() / static_cast<double>(train.size());
+    double farthest = 0;
+    for (const view& one : train) farthest = std::max(farthest, glm::distance(mean, one.camera.centre()));
+    return 1.1 * farthest;
+}
+
+scene load_scene(const load_options& options, const log_function& log) {
+    if (options.resolution < 1)
+        throw error("the resolution must be positive, not " + std::to_string(options.resolution));
+    const log_function say = log ? log : [](const std::string&) {};
+    if (options.data.starts_with(synthetic_prefix)) {
+        scene made = make_synthetic_scene(options.data.substr(synthetic_prefix.size()), options, say);
+        require_views(made, options);
+        return made;
+    }
+    scene loaded = load_folder_or_explain(options, say);
+    require_views(loaded, options);
+    loaded.has_alpha = any_has_alpha(loaded.train) || any_has_alpha(loaded.test);
+    return loaded;
+}
+
+}  // namespace gs

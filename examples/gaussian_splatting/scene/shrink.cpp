@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstddef>
+
+#include "image.hpp"
+
+namespace gs {
+namespace {
+
+/// The part of the input that one output pixel covers. Lengths are in units of 1/output of an input pixel, so
+/// that every one of them is a whole number, and those of one output pixel add up to `input`.
+struct coverage {
+    std::size_t first;
+    std::vector<std::uint32_t> lengths;
+};
+
+std::vector<coverage> coverages(std::size_t input, std::size_t output) {
+    std::vector<coverage> all(output);
+    for (std::size_t o = 0; o < output; ++o) {
+        const std::size_t begin = o * input, end = begin + input;
+        all[o].first = begin / output;
+        for (std::size_t i = all[o].first; i * output < end; ++i) {
+            const std::size_t length = std::min(end, (i + 1) * output) - std::max(begin, i * output);
+            all[o].lengths.push_back(static_cast<std::uint32_t>(length));
+        }
+    }
+    return all;
+}
+
+void average_row(const std::uint8_t* row, const std::vector<coverage>& columns,
+                 std::vector<std::uint32_t>& sums) {
+    std::fill(sums.begin(), sums.end(), 0U);
+    for (std::size_t x = 0; x < columns.size(); ++x)
+        for (std::size_t i = 0; i < columns[x].lengths.size(); ++i)
+            for (std::size_t channel = 0; channel < 4; ++channel)
+                sums[4 * x + channel] += columns[x].lengths[i] * row[4 * (columns[x].first + i) + channel];
+}
+
+bool has_transparent_pixel(const image& pixels) {
+    for (std::size_t i = 3; i < pixels.rgba.size(); i += 4)
+        if (pixels.rgba[i] != 255) return true;
+    return false;
+}
+
+}  // namespace
+
+image shrink(const image& source, int width, int height) {
+    if (width == source.width && height == source.height) return source;
+    const auto source_width = static_cast<std::size_t>(source.width);
+    const auto source_height = static_cast<std::size_t>(source.height);
+    const auto columns = coverages(source_width, static_cast<std::size_t>(width));
+    const auto lines = coverages(source_height, static_cast<std::size_t>(height));
+    const std::uint64_t area = std::uint64_t{source_width} * source_height;
+
+    image result;
+    result.width = width;
+    result.height = height;
+    result.rgba.reserve(4 * columns.size() * lines.size());
+    std::vector<std::uint32_t> row(4 * columns.size());
+    std::vector<std::uint64_t> sums(row.size());
+    for (const coverage& line : lines) {
+        std::fill(sums.begin(), sums.end(), 0U);
+        for (std::size_t i = 0; i < line.lengths.size(); ++i) {
+            average_row(source.rgba.data() + 4 * source_width * (line.first + i), columns, row);
+            for (std::size_t k = 0; k < row.size(); ++k) sums[k] += std::uint64_t{row[k]} * line.lengths[i];
+        }
+        for (const std::uint64_t sum : sums)
+            result.rgba.push_back(static_cast<std::uint8_t>((sum + area / 2) / area));
+    }
+    result.has_alpha = has_transparent_pixel(result);
+    return result;
+}
+
+}  // namespace gs

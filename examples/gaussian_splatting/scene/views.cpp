@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "views.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "../error.hpp"
+
+namespace gs {
+namespace {
+
+std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+std::string count_text(std::size_t count, const std::string& noun) {
+    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+camera at_size(camera pinhole, int width, int height) {
+    const double x = static_cast<double>(width) / pinhole.width;
+    const double y = static_cast<double>(height) / pinhole.height;
+    pinhole.width = width;
+    pinhole.height = height;
+    pinhole.fx *= x;
+    pinhole.cx *= x;
+    pinhole.fy *= y;
+    pinhole.cy *= y;
+    return pinhole;
+}
+
+/// Photos are often replaced by smaller copies of themselves (`images_4`): then the camera follows.
+camera fitted_to_photo(const recorded_view& recorded) {
+    int width = 0, height = 0;
+    read_image_size(recorded.file, width, height);
+    const camera& was = recorded.camera;
+    const double x = static_cast<double>(width) / was.width, y = static_cast<double>(height) / was.height;
+    if (std::abs(x / y - 1) > 0.01)
+        throw error("the image " + recorded.file.string() + " is of the wrong size: it has " +
+                    size_text(width, height) + " pixels, its camera " + size_text(was.width, was.height));
+    return at_size(was, width, height);
+}
+
+std::vector<camera> fit_to_photos(const std::vector<recorded_view>& recorded, const log_function& log) {
+    std::vector<camera> fitted;
+    fitted.reserve(recorded.size());
+    std::size_t others = 0, first = 0;
+    for (std::size_t i = 0; i < recorded.size(); ++i) {
+        fitted.push_back(fitted_to_photo(recorded[i]));
+        const camera &was = recorded[i].camera, &is = fitted.back();
+        if (was.width == is.width && was.height == is.height) continue;
+        if (others++ == 0) first = i;
+    }
+    if (others > 0)
+        log(count_text(others, "photo") +
+            " differ in size from their cameras, whose intrinsics were scaled (" + recorded[first].name +
+            ": " + size_text(recorded[first].camera.width, recorded[first].camera.height) + " to " +
+            size_text(fitted[first].width, fitted[first].height) + ")");
+    return fitted;
+}
+
+std::vector<camera> straighten(const std::vector<recorded_view>& recorded, const std::vector<camera>& fitted,
+                               const log_function& log) {
+    using key = std::tuple<int, int, double, double, double, double, double, double, double, double>;
+    std::map<key, camera> known;  // views mostly share a camera, and finding its zoom takes a while
+    std::set<std::string> models;
+    std::vector<camera> straight = fitted;
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+        const lens& bent = recorded[i].distortion;
+        if (bent.is_straight()) continue;
+        const camera& was = fitted[i];
+        const key same(was.width, was.height, was.fx, was.fy, was.cx, was.cy, bent.k1, bent.k2, bent.p1,
+                       bent.p2);
+        auto found = known.find(same);
+        if (found == known.end()) {
+            const auto pinhole = straightened(was, bent);
+            if (!pinhole)
+                throw error("the camera of " + recorded[i].file.string() +
+                            " distorts too strongly to be turned into a pinhole camera");
+            found = known.emplace(same, *pinhole).first;
+            models.insert(recorded[i].model);
+        }
+        straight[i].fx = found->second.fx;
+        straight[i].fy = found->second.fy;
+    }
+    if (!known.empty()) {
+        std::string names;
+        for (const std::string& model : models) names += (names.empty() ? "" : ", ") + model;
+        log(count_text(known.size(), "camera") + " (" + names +
+            ") with lens distortion: the photos were resampled to pinhole cameras");
+    }
+    return straight;
+}
+
+bool is_divisor(int resolution) {
+    return resolution == 1 || resolution == 2 || resolution == 4 || resolution == 8;
+}
+
+int divided(int side, int divisor) { return std::max(1, (2 * side + divisor) / (2 * divisor)); }
+
+camera at_resolution(const camera& full, int resolution) {
+    if (is_divisor(resolution))
+        return at_size(full, divided(full.width, resolution), divided(full.height, resolution));
+    const int longer = std::max(full.width, full.height);
+    if (resolution >= longer) return full;
+    const auto scaled = [&](int side) {
+        const double ratio = static_cast<double>(resolution) / longer;
+        return std::max(1, static_cast<int>(std::lround(ratio * side)));
+    };
+    return at_size(full, scaled(full.width), scaled(full.height));
+}
+
+std::vector<camera> scale_to_resolution(const std::vector<camera>& full,
+                                        const std::vector<recorded_view>& recorded, int resolution,
+                                        const log_function& log) {
+    std::vector<camera> scaled;
+    scaled.reserve(full.size());
+    std::size_t shrunk = 0, kept = 0, first = 0;
+    for (std::size_t i = 0; i < full.size(); ++i) {
+        scaled.push_back(at_resolution(full[i], resolution));
+        if (!is_divisor(resolution) && resolution > std::max(full[i].width, full[i].height)) ++kept;
+        if (scaled[i].width == full[i].width && scaled[i].height == full[i].height) continue;
+        if (shrunk++ == 0) first = i;
+    }
+    if (shrunk > 0)
+        log(count_text(shrunk, "photo") + " resized (" + recorded[first].name + ": " +
+            size_text(full[first].width, full[first].height) + " to " +
+            size_text(scaled[first].width, scaled[first].height) + ")");
+    if (kept > 0)
+        log(count_text(kept, "photo") + " left as they are: resolution " + std::to_string(resolution) +
+            " is more than their longer side");
+    return scaled;
+}
+
+/// Calls `body(i)` for every i below `count`, in parallel. Of the exceptions that are thrown the one of the
+/// lowest i comes out, whatever the number of threads.
+template <class Body>
+void for_each_in_parallel(std::size_t count, const Body& body) {
+    std::vector<std::exception_ptr> failures(count);
+    std::atomic<std::size_t> lowest_failed{count};
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic)
+#endif
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i > lowest_failed.load()) continue;
+        try {
+            body(i);
+        } catch (...) {
+            failures[i] = std::current_exception();
+            std::size_t lowest = lowest_failed.load();
+            while (i < lowest && !lowest_failed.compare_exchange_weak(lowest, i)) {
+            }
+        }
+    }
+    if (lowest_failed < count) std::rethrow_exception(failures[lowest_failed]);
+}
+
+}  // namespace
+
+bool has_sound_intrinsics(const camera& pinhole, const lens& distortion) {
+    for (const double value : {pinhole.fx, pinhole.fy, pinhole.cx, pinhole.cy, distortion.k1, distortion.k2,
+                               distortion.p1, distortion.p2})
+        if (!std::isfinite(value)) return false;
+    return pinhole.fx > 0 && pinhole.fy > 0;
+}
+
+std::vector<view> load_views(const std::vector<recorded_view>& recorded, const load_options& options,
+                             const log_function& log) {
+    const std::vector<camera> fitted = fit_to_photos(recorded, log);
+    const std::vector<camera> straight = straighten(recorded, fitted, log);
+    const std::vector<camera> scaled = scale_to_resolution(straight, recorded, options.resolution, log);
+    std::vector<view> views(recorded.size());
+    for_each_in_parallel(recorded.size(), [&](std::size_t i) {
+        image photo = read_image(recorded[i].file);
+        if (!recorded[i].distortion.is_straight())
+            photo = undistort(photo, fitted[i], recorded[i].distortion, straight[i]);
+        if (photo.width != scaled[i].width || photo.height != scaled[i].height)
+            photo = shrink(photo, scaled[i].width, scaled[i].height);
+        views[i] = {recorded[i].name, scaled[i], std::move(photo)};
+    });
+    return views;
+}
+
+}  // namespace gs
