@@ -481,6 +481,36 @@ TEST_CASE("barrel distortion lets the pinhole camera see wider, pincushion narro
     }
 }
 
+TEST_CASE("a lens's stretch is the determinant of its derivative") {
+    const gs::lens lens{0.3, -0.2, 0.04, -0.06};
+    const double step = 1e-4;
+    for (const glm::dvec2 ray : {glm::dvec2(0, 0), {0.7, 0.2}, {-0.4, 0.9}, {1.2, -0.8}, {-0.5, -0.6}}) {
+        const glm::dvec2 x(step, 0), y(0, step);
+        const glm::dvec2 by_x = (lens.distort(ray + x) - lens.distort(ray - x)) / (2 * step);
+        const glm::dvec2 by_y = (lens.distort(ray + y) - lens.distort(ray - y)) / (2 * step);
+        // Central differences are off by step^2 times third derivatives, which are below 100 here, and in the
+        // determinant each meets another first derivative, below 10.
+        CHECK(std::abs(lens.stretch(ray) - (by_x.x * by_y.y - by_x.y * by_y.x)) < 100 * 10 * step * step);
+    }
+}
+
+TEST_CASE("what a strong lens folds over stays outside of the pinhole camera's view") {
+    // r (1 - 0.3 r^2) grows up to r = 1.054 only; the photo's corners, at 1.25, still hold what lies farther
+    // out.
+    const gs::lens lens{-0.3, 0, 0, 0};
+    gs::camera camera;
+    camera.width = 400;
+    camera.height = 300;
+    camera.fx = camera.fy = 200;
+    camera.cx = 200;
+    camera.cy = 150;
+    const auto straight = gs::straightened(camera, lens);
+    REQUIRE(straight);
+    const double corner = std::hypot(199.5, 149.5) / straight->fx, fold = 1 / std::sqrt(3 * 0.3);
+    CHECK(corner < fold);
+    CHECK(corner > 0.999 * fold);  // all of the rest is seen
+}
+
 TEST_CASE("a lens whose coefficients are zero leaves the photo alone") {
     const temporary_folder folder;
     model_record model = plain_model();
@@ -629,6 +659,22 @@ TEST_CASE("the extent is 1.1 times the farthest camera's distance from their mea
     CHECK(scene.extent() == doctest::Approx(1.1 * 4).epsilon(rounding));
 }
 
+TEST_CASE("synthetic:NAME is made, not read") {
+    gs::load_options options;
+    options.data = "synthetic:spheres";
+    options.resolution = 16;
+    options.eval = true;
+    const gs::scene scene = gs::load_scene(options, ignore);
+    CHECK(scene.train.size() == 40);
+    CHECK(scene.test.size() == 8);
+    CHECK(scene.train[0].pixels.width == 16);
+    options.data = "synthetic:nothing";
+    CHECK(says(error_of_loading(options), {"nothing"}));
+    options.data = "synthetic:spheres";
+    options.resolution = -1;
+    CHECK(says(error_of_loading(options), {"resolution", "-1"}));
+}
+
 TEST_CASE("folders that are no scene") {
     const temporary_folder folder;
     CHECK(says(error_of_loading(folder / "none"), {"no folder", "none"}));
@@ -738,6 +784,30 @@ TEST_CASE("counts that lie are refused before memory is asked for") {
         CHECK(says(put_count("points3D.bin", first_track, count), {"points3D.bin", "truncated"}));
         CHECK(says(put_count("images.bin", first_tracked, count), {"images.bin", "truncated"}));
     }
+}
+
+TEST_CASE("whatever byte of a model is changed, the outcome is an error or a model") {
+    const temporary_folder folder;
+    std::size_t refused = 0;
+    for (const bool binary : {true, false}) {
+        const auto sparse = folder / (binary ? "binary" : "text");
+        (binary ? write_binary : write_text)(sparse, plain_model());
+        for (const char* stem : {"cameras", "images", "points3D"}) {
+            const auto file = sparse / (std::string(stem) + (binary ? ".bin" : ".txt"));
+            const std::string whole = gs_test::read_file(file);
+            for (std::size_t i = 0; i < whole.size(); ++i) {
+                std::string changed = whole;
+                changed[i] = static_cast<char>(~changed[i]);
+                write_file(file, changed);
+                const std::string problem = error_of([&] { gs::read_colmap_model(sparse); });
+                if (problem.empty()) continue;
+                ++refused;
+                REQUIRE(says(problem, {stem}));
+            }
+            write_file(file, whole);
+        }
+    }
+    CHECK(refused > 100);
 }
 
 TEST_CASE("malformed lines of text models are named by file and number") {
