@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <immintrin.h>
 #include <omp.h>
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
 
 #include <algorithm>
 #include <chrono>
@@ -19,8 +21,8 @@
 
 namespace gs::device {
 
-/// The CPU as a device: an index range or a range of warps is spread over OpenMP threads, and memory is the host's.
-/// `Warp` is the model that warp kernels run on. The interface is that of `cuda`.
+/// The CPU as a device: an index range or a range of warps is spread over OpenMP threads, and memory is the
+/// host's. `Warp` is the model that warp kernels run on. The interface is that of `cuda`.
 template <class Warp>
 class basic_cpu {
   public:
@@ -47,9 +49,11 @@ class basic_cpu {
     };
 
     basic_cpu() {
-        // Denormal moments of Adam would cost x86 a hundred cycles each.
+#if defined(__SSE__)
+        // Flush denormals: as moments of Adam they would cost x86 a hundred cycles each.
 #pragma omp parallel
         _mm_setcsr(_mm_getcsr() | 0x8040u);
+#endif
     }
 
     std::string name() const { return "cpu, " + std::to_string(omp_get_max_threads()) + " threads"; }
@@ -60,9 +64,11 @@ class basic_cpu {
 #pragma omp parallel for schedule(static)
         for (std::size_t i = 0; i < n; ++i) f(i);
     }
-    /// The same for plain arithmetic on arrays, where neighbouring elements may share a SIMD instruction.
+    /// The same for plain arithmetic on arrays, where neighbouring elements may share a SIMD instruction; and
+    /// not at all if f.skip().
     template <class F>
     void for_each_element(std::size_t n, const F& f) {
+        if (f.skip()) return;
 #pragma omp parallel for simd schedule(static)
         for (std::size_t i = 0; i < n; ++i) f(i);
     }
@@ -134,7 +140,8 @@ class basic_cpu {
     using clock = std::chrono::steady_clock;
 
     /// One pass of a stable radix sort: each thread counts and then moves its own slice.
-    void sort_by_digit(const std::uint32_t* keys, const std::uint32_t* values, std::size_t n, int shift, int bits) {
+    void sort_by_digit(const std::uint32_t* keys, const std::uint32_t* values, std::size_t n, int shift,
+                       int bits) {
         const std::size_t digits = std::size_t{1} << bits;
         const auto digit = [&](std::uint32_t key) { return key >> shift & (digits - 1); };
         std::uint32_t* to_keys = other_keys_.data();

@@ -21,7 +21,8 @@
 namespace gs::device {
 
 inline void check(cudaError_t status) {
-    if (status == cudaErrorMemoryAllocation) throw error("the GPU is out of memory: lower --max-cap or --resolution");
+    if (status == cudaErrorMemoryAllocation)
+        throw error("the GPU is out of memory: lower --max-cap or --resolution");
     if (status != cudaSuccess) throw std::runtime_error(std::string("CUDA: ") + cudaGetErrorString(status));
 }
 
@@ -30,10 +31,20 @@ namespace detail {
 constexpr unsigned block_size = 128;
 constexpr unsigned warps_per_block = block_size / 32;
 
+struct wide_sum {
+    __device__ std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
+};
+
 template <class F>
 __global__ void for_each_index(std::size_t n, F f) {
     const std::size_t i = std::size_t{blockIdx.x} * block_size + threadIdx.x;
     if (i < n) f(i);
+}
+
+template <class F>
+__global__ void for_each_element(std::size_t n, F f) {
+    const std::size_t i = std::size_t{blockIdx.x} * block_size + threadIdx.x;
+    if (i < n && !f.skip()) f(i);
 }
 
 template <class F>
@@ -116,10 +127,12 @@ class cuda {
         detail::for_each_index<<<blocks(n, detail::block_size), detail::block_size, 0, stream_>>>(n, f);
         check(cudaGetLastError());
     }
-    /// The same: a GPU has no other way to do plain arithmetic.
+    /// The same for plain arithmetic on arrays; and not at all if f.skip(), which the device finds out.
     template <class F>
     void for_each_element(std::size_t n, const F& f) {
-        for_each_index(n, f);
+        if (n == 0) return;
+        detail::for_each_element<<<blocks(n, detail::block_size), detail::block_size, 0, stream_>>>(n, f);
+        check(cudaGetLastError());
     }
     /// f(warp, i) for each i in [0, n), each on a warp of its own.
     template <class F>
@@ -154,7 +167,8 @@ class cuda {
         check(cudaMemsetAsync(out.data(), 0, sizeof(std::uint64_t), stream_));
         if (n == 0) return;
         const auto scan = [&](void* scratch, std::size_t& bytes) {
-            return cub::DeviceScan::InclusiveScan(scratch, bytes, in.data(), out.data() + 1, wide_sum{}, n, stream_);
+            return cub::DeviceScan::InclusiveScan(scratch, bytes, in.data(), out.data() + 1,
+                                                  detail::wide_sum{}, n, stream_);
         };
         with_scratch(scan);
     }
@@ -194,11 +208,9 @@ class cuda {
     void wait() { check(cudaStreamSynchronize(stream_)); }
 
   private:
-    struct wide_sum {
-        __device__ std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
-    };
-
-    static unsigned blocks(std::size_t n, unsigned each) { return static_cast<unsigned>((n + each - 1) / each); }
+    static unsigned blocks(std::size_t n, unsigned each) {
+        return static_cast<unsigned>((n + each - 1) / each);
+    }
 
     template <class F>
     void with_scratch(const F& f) {

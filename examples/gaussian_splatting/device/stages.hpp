@@ -9,7 +9,7 @@ namespace gs::device {
 /// The stages of an iteration, for the split of its time.
 enum class stage { project, bin, blend_forward, loss, blend_backward, project_backward, adam, count };
 
-inline constexpr std::array stage_names{"project",        "bin",  "blend_forward", "loss", "blend_backward",
+inline constexpr std::array stage_names{"project",          "bin", "blend_forward", "loss", "blend_backward",
                                         "project_backward", "adam"};
 
 /// Milliseconds per stage, summed over the `sampled` iterations that were timed.

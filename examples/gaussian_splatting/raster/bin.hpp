@@ -32,8 +32,8 @@ struct clear_instances {
     }
 };
 
-/// Writes a Gaussian's instances, one per tile that it meets: one index a rank in depth. A list that does not fit is
-/// cut, and whoever reads `total` sees it.
+/// Writes a Gaussian's instances, one per tile that it meets: one index a rank in depth. A list that does not
+/// fit is cut, and whoever reads `total` sees it.
 template <class Real>
 struct emit_instances {
     const std::uint32_t* order;
@@ -59,7 +59,8 @@ struct emit_instances {
     }
 };
 
-/// Finds where each tile begins and ends in the list sorted by tile: one index a place. `ranges` is zero before.
+/// Finds where each tile begins and ends in the list sorted by tile: one index a place. `ranges` is zero
+/// before.
 struct find_ranges {
     const std::uint32_t* tile_of;
     std::size_t places;

@@ -9,11 +9,11 @@
 
 namespace gs::raster {
 
-/// The gradient of `blend_forward`: back to front over what each pixel saw, T recovered by division, nine sums a
-/// Gaussian (see `sum`) handed to `warp_reduce_atomic` with `Policy`. With g = dL/dC and B_i the colour behind splat i
-/// per unit of transmittance, background included, dL/dalpha_i = T_i g (c_i - B_i): one scalar g B is carried instead of
-/// three channels, and nothing is divided by 1 - alpha but T.
-/// `AskFirst`: skip what no pixel of the patch sees before any of it is computed (the paper, Figure 8).
+/// The gradient of `blend_forward`: back to front over what each pixel saw, T recovered by division, nine
+/// sums a Gaussian (see `sum`) handed to `warp_reduce_atomic` with `Policy`. With g = dL/dC and B_i the
+/// colour behind splat i per unit of transmittance, background included, dL/dalpha_i = T_i g (c_i - B_i): one
+/// scalar g B is carried instead of three channels, and nothing is divided by 1 - alpha but T. `AskFirst`:
+/// skip what no pixel of the patch sees before any of it is computed (the paper, Figure 8).
 template <class Real, class Policy, bool AskFirst>
 struct blend_backward {
     const splat<Real>* splats;

@@ -8,8 +8,8 @@
 
 namespace gs::raster {
 
-/// Front to back over each tile's list: C = sum c_i alpha_i T_i + T b, T_i = prod (1 - alpha_j) (Kerbl et al. 2023,
-/// equation 3). One warp a patch. A pixel ends where a splat would bring T below `least_transmittance`.
+/// Front to back over each tile's list: C = sum c_i alpha_i T_i + T b, T_i = prod (1 - alpha_j) (Kerbl et al.
+/// 2023, equation 3). One warp a patch. A pixel ends where a splat would bring T below `least_transmittance`.
 template <class Real>
 struct blend_forward {
     const splat<Real>* splats;
@@ -19,10 +19,10 @@ struct blend_forward {
     int width, height;
     glm::vec<3, Real> background;
 
-    Real* picture;               ///< three planes
-    Real* transmittance;         ///< what is left behind the last splat
-    std::uint32_t* last;         ///< one past the place, in the tile's list, of the last splat that counted
-    unsigned long long* pairs;   ///< pixel-Gaussian pairs that were evaluated, added to
+    Real* picture;              ///< three planes
+    Real* transmittance;        ///< what is left behind the last splat
+    std::uint32_t* last;        ///< one past the place, in the tile's list, of the last splat that counted
+    unsigned long long* pairs;  ///< pixel-Gaussian pairs that were evaluated, added to
 
     template <class W>
     WARPAGG_HD void operator()(const W& w, unsigned warp_index) const {
@@ -68,7 +68,8 @@ struct blend_forward {
     WARPAGG_HD void add_pairs(const W& w, unsigned walked) const {
         unsigned long long* to = pairs;
         w.atomic_add([to](unsigned) { return to; }, value_t<W, unsigned>(0u),
-                     value_t<W, unsigned long long>(static_cast<unsigned long long>(walked) * W::size), w.lane() == 0u);
+                     value_t<W, unsigned long long>(static_cast<unsigned long long>(walked) * W::size),
+                     w.lane() == 0u);
     }
 };
 

@@ -17,8 +17,8 @@ struct device_camera {
     glm::mat<3, 3, Real> rotation;
     glm::vec<3, Real> translation;
     glm::vec<3, Real> centre;
-    /// Bounds of x/z and y/z in the Jacobian of the projection: the picture and 15 % of its width (height) on every
-    /// side, so that the affine approximation of far-off Gaussians stays bounded (Zwicker et al. 2001).
+    /// Bounds of x/z and y/z in the Jacobian of the projection: the picture and 15 % of its width (height) on
+    /// every side, so that the affine approximation of far-off Gaussians stays bounded (Zwicker et al. 2001).
     Real least_x, most_x, least_y, most_y;
 };
 

@@ -15,6 +15,7 @@ enum class gradient_policy {
     scatter       ///< ours: reduce-scatter and one contiguous atomic instruction
 };
 
-inline constexpr std::array<std::string_view, 4> gradient_policy_names{"per-lane", "reduce", "reduce-skip", "scatter"};
+inline constexpr std::array<std::string_view, 4> gradient_policy_names{"per-lane", "reduce", "reduce-skip",
+                                                                       "scatter"};
 
 }  // namespace gs

@@ -21,10 +21,10 @@ struct patch {
     static constexpr unsigned per_row = tile_size / across, per_tile = per_row * (tile_size / down);
 
     unsigned tile;
-    Real left, top;                   ///< centre of the first pixel
-    value_t<W, Real> x, y;            ///< centre of the lane's pixel
-    value_t<W, unsigned> pixel;       ///< its place in a plane of the picture
-    mask_t<W> inside;                 ///< it is in the picture
+    Real left, top;              ///< centre of the first pixel
+    value_t<W, Real> x, y;       ///< centre of the lane's pixel
+    value_t<W, unsigned> pixel;  ///< its place in a plane of the picture
+    mask_t<W> inside;            ///< it is in the picture
 
     WARPAGG_HD patch(const W& w, unsigned warp_index, unsigned tiles_across, int width, int height)
         : tile(warp_index / per_tile) {
@@ -40,10 +40,10 @@ struct patch {
         inside = column < static_cast<unsigned>(width) && row < static_cast<unsigned>(height);
     }
 
-    /// Which of W::size instances from `base` on reach the patch: bit i stands for instance base + i. Each lane asks
-    /// for one.
-    WARPAGG_HD std::uint32_t reached_by(const W& w, const splat<Real>* splats, const std::uint32_t* gaussian_of,
-                                        unsigned base, unsigned end) const {
+    /// Which of W::size instances from `base` on reach the patch: bit i stands for instance base + i. Each
+    /// lane asks for one.
+    WARPAGG_HD std::uint32_t reached_by(const W& w, const splat<Real>* splats,
+                                        const std::uint32_t* gaussian_of, unsigned base, unsigned end) const {
         using real = value_t<W, Real>;
         constexpr unsigned stride = sizeof(splat<Real>) / sizeof(Real);
         const auto place = w.lane() + base;

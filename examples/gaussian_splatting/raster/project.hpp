@@ -20,7 +20,8 @@ template <class Real, class F>
 WARPAGG_HD void for_each_tile(const splat<Real>& s, const tile_box& box, unsigned tiles_across, const F& f) {
     for (unsigned ty = box.y0; ty < box.y1; ++ty)
         for (unsigned tx = box.x0; tx < box.x1; ++tx) {
-            const Real x0 = Real(tx * tile_size) + Real(0.5) - s.x, y0 = Real(ty * tile_size) + Real(0.5) - s.y;
+            const Real x0 = Real(tx * tile_size) + Real(0.5) - s.x,
+                       y0 = Real(ty * tile_size) + Real(0.5) - s.y;
             const Real side = tile_size - 1;
             if (least_exponent<Real>(s.a, s.b, s.c, x0, x0 + side, y0, y0 + side) <= s.reach)
                 f(ty * tiles_across + tx);
@@ -63,7 +64,8 @@ struct project {
         s.a = f.yy * k;
         s.b = -2 * f.xy * k;
         s.c = f.xx * k;
-        const tile_box box = bounds(s, warpagg::sqrt(2 * ln2 * s.reach * f.xx), warpagg::sqrt(2 * ln2 * s.reach * f.yy));
+        const tile_box box =
+            bounds(s, warpagg::sqrt(2 * ln2 * s.reach * f.xx), warpagg::sqrt(2 * ln2 * s.reach * f.yy));
         unsigned met = 0;
         for_each_tile(s, box, tiles_across, [&](unsigned) { ++met; });
         if (met == 0) return;
@@ -96,7 +98,8 @@ struct project {
         };
         const Real half(0.5);
         return {tile(s.x - half_x - half, tiles_across), tile(s.y - half_y - half, tiles_down),
-                tile(s.x + half_x - half + tile_size, tiles_across), tile(s.y + half_y - half + tile_size, tiles_down)};
+                tile(s.x + half_x - half + tile_size, tiles_across),
+                tile(s.y + half_y - half + tile_size, tiles_down)};
     }
 
     WARPAGG_HD vec3<Real> colour(unsigned i) const {
@@ -106,7 +109,8 @@ struct project {
         vec3<Real> sum(0.5);
         for (int band = 0, k = 0; band <= sh_degree; ++band) {
             const unsigned size = static_cast<unsigned>(2 * band + 1);
-            for (unsigned m = 0; m < size; ++m, ++k) sum += basis[k] * load3(gaussians.sh[band], i * size + m);
+            for (unsigned m = 0; m < size; ++m, ++k)
+                sum += basis[k] * load3(gaussians.sh[band], i * size + m);
         }
         return glm::max(sum, vec3<Real>(0));
     }

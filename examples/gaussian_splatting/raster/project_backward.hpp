@@ -8,8 +8,8 @@
 
 namespace gs::raster {
 
-/// What the backward blending sums for a Gaussian over the pixels, with s = dL/dalpha alpha and d = pixel - centre.
-/// A record is 12 values apart from the next, so that one commit touches two sectors.
+/// What the backward blending sums for a Gaussian over the pixels, with s = dL/dalpha alpha and d = pixel -
+/// centre. A record is 12 values apart from the next, so that one commit touches two sectors.
 enum sum { sum_red, sum_green, sum_blue, sum_s, sum_sx, sum_sy, sum_sxx, sum_sxy, sum_syy, sum_count };
 inline constexpr unsigned record_stride = 12;
 
@@ -20,8 +20,8 @@ struct visibility {
     float radius;    ///< largest 3-sigma radius, pixels
 };
 
-/// From the sums over pixels to the gradients of the parameters: one index a Gaussian. Gradients of Gaussians that
-/// are not drawn are zero.
+/// From the sums over pixels to the gradients of the parameters: one index a Gaussian. Gradients of Gaussians
+/// that are not drawn are zero.
 template <class Real>
 struct project_backward {
     parameter_arrays<const Real> gaussians;
@@ -52,7 +52,8 @@ struct project_backward {
         // dL/dcovariance = -Q G Q with Q the inverse covariance and G = dL/dQ = -1/2 sum s d d^T.
         const Real half(0.5);
         const Real gxx = half * s[sum_sxx], gxy = half * s[sum_sxy], gyy = half * s[sum_syy];
-        const Real hxx = A * gxx + B * gxy, hxy = A * gxy + B * gyy, hyx = B * gxx + C * gxy, hyy = B * gxy + C * gyy;
+        const Real hxx = A * gxx + B * gxy, hxy = A * gxy + B * gyy, hyx = B * gxx + C * gxy,
+                   hyy = B * gxy + C * gyy;
         const Real cxx = hxx * A + hxy * B, cxy = hxx * B + hxy * C, cyy = hyx * B + hyy * C;
         // The covariance is the Gram matrix of ax, ay.
         const vec3<Real> dax = Real(2) * (cxx * f.ax + cxy * f.ay);
@@ -77,7 +78,8 @@ struct project_backward {
     }
 
     /// ax = (px R) * scale: to the scale and, through R, to the quaternion.
-    WARPAGG_HD void shape(unsigned i, const footprint<Real>& f, const vec3<Real>& dax, const vec3<Real>& day) const {
+    WARPAGG_HD void shape(unsigned i, const footprint<Real>& f, const vec3<Real>& dax,
+                          const vec3<Real>& day) const {
         store3(gradients.log_scale, i, dax * f.ax + day * f.ay);
         const vec3<Real> sax = dax * f.scale, say = day * f.scale;
         mat3<Real> rotation;
@@ -89,8 +91,8 @@ struct project_backward {
     }
 
     /// The mean moves the centre, the Jacobian and the direction that the colour is seen from.
-    WARPAGG_HD void position(unsigned i, const footprint<Real>& f, const vec2<Real>& centre, const vec3<Real>& dpx,
-                             const vec3<Real>& dpy, const Real* s) const {
+    WARPAGG_HD void position(unsigned i, const footprint<Real>& f, const vec2<Real>& centre,
+                             const vec3<Real>& dpx, const vec3<Real>& dpy, const Real* s) const {
         const Real rz = 1 / f.at.z;
         const auto row = [&](int r) {
             return vec3<Real>(camera.rotation[0][r], camera.rotation[1][r], camera.rotation[2][r]);
@@ -133,7 +135,8 @@ struct project_backward {
     }
 
     WARPAGG_HD void note(unsigned i, const footprint<Real>& f, const vec2<Real>& centre) const {
-        const vec2<Real> g = centre * vec2<Real>(Real(0.5) * Real(camera.width), Real(0.5) * Real(camera.height));
+        const vec2<Real> g =
+            centre * vec2<Real>(Real(0.5) * Real(camera.width), Real(0.5) * Real(camera.height));
         const Real mid = Real(0.5) * (f.xx + f.yy);
         const Real largest = mid + warpagg::sqrt(warpagg::max(mid * mid - f.determinant, Real(0)));
         visibility& v = seen[i];

@@ -17,7 +17,8 @@
 
 namespace gs::raster {
 
-/// Gaussians to a picture and, from dL/dpicture, to the gradients of their parameters. Holds what lies in between.
+/// Gaussians to a picture and, from dL/dpicture, to the gradients of their parameters. Holds what lies in
+/// between.
 template <class Device, class Real>
 class renderer {
   public:
@@ -28,7 +29,8 @@ class renderer {
     explicit renderer(Device& device) : device_(device) { device_.zero(reserve(pairs_, 1).data(), 1); }
 
     /// How many instances (Gaussian, tile) a view has. Waits for the device.
-    std::uint64_t count_instances(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
+    std::uint64_t count_instances(const model& gaussians, std::size_t count, const camera& view,
+                                  int sh_degree) {
         project_all(gaussians, count, view, sh_degree);
         device_.prefix_sum(tiles_, first_, count);
         std::uint64_t total = 0;
@@ -56,13 +58,15 @@ class renderer {
         device_.begin(stage::bin);
         bin(count);
         device_.begin(stage::blend_forward);
-        const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+        const std::size_t pixels =
+            static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
         picture_.resize(3 * pixels);
         transmittance_.resize(pixels);
         last_.resize(pixels);
-        blend_forward<Real> blend{splats_.data(), gaussian_of_.data(), ranges_.data(), tiles_across_, view.width,
-                                  view.height,    colour(background),  picture_.data(), transmittance_.data(),
-                                  last_.data(),   pairs_.data()};
+        blend_forward<Real> blend{splats_.data(),     gaussian_of_.data(), ranges_.data(),
+                                  tiles_across_,      view.width,          view.height,
+                                  colour(background), picture_.data(),     transmittance_.data(),
+                                  last_.data(),       pairs_.data()};
         device_.for_each_warp(warps(), blend);
         count_ = count;
         gaussians_ = gaussians;
@@ -72,8 +76,8 @@ class renderer {
     }
 
     /// The gradients of the last `forward`'s parameters from those of its picture. `seen` may be null.
-    void backward(const Real* picture_gradient, gradient_policy policy, const parameter_arrays<Real>& gradients,
-                  visibility* seen) {
+    void backward(const Real* picture_gradient, gradient_policy policy,
+                  const parameter_arrays<Real>& gradients, visibility* seen) {
         using device::stage;
         device_.begin(stage::blend_backward);
         reserve(sums_, count_ * record_stride);
@@ -129,14 +133,15 @@ class renderer {
     /// neither key needs more than 32 bits and equal depths keep the order of the Gaussians.
     void bin(std::size_t count) {
         device_.sort_pairs(depths_, order_, count, 32);
-        device_.for_each_index(count, gather_tiles{order_.data(), tiles_.data(), reserve(sorted_tiles_, count).data()});
+        device_.for_each_index(
+            count, gather_tiles{order_.data(), tiles_.data(), reserve(sorted_tiles_, count).data()});
         device_.prefix_sum(sorted_tiles_, first_, count);
 
         const auto no_tile = static_cast<std::uint32_t>(tiles());
         device_.for_each_index(capacity_, clear_instances{tile_of_.data(), gaussian_of_.data(), no_tile});
-        device_.for_each_index(count, emit_instances<Real>{order_.data(), first_.data(), splats_.data(), boxes_.data(),
-                                                           tiles_across_, capacity_, tile_of_.data(),
-                                                           gaussian_of_.data()});
+        device_.for_each_index(
+            count, emit_instances<Real>{order_.data(), first_.data(), splats_.data(), boxes_.data(),
+                                        tiles_across_, capacity_, tile_of_.data(), gaussian_of_.data()});
         device_.sort_pairs(tile_of_, gaussian_of_, capacity_, static_cast<int>(std::bit_width(no_tile)));
         device_.zero(reserve(ranges_, tiles()).data(), tiles());
         device_.for_each_index(capacity_, find_ranges{tile_of_.data(), capacity_, no_tile, ranges_.data()});
@@ -145,11 +150,10 @@ class renderer {
     template <bool AskFirst, class Policy>
     void blend_back(const Real* picture_gradient) {
         const auto b = colour(background_);
-        device_.for_each_warp(
-            warps(), blend_backward<Real, Policy, AskFirst>{splats_.data(), gaussian_of_.data(), ranges_.data(),
-                                                            tiles_across_, camera_.width, camera_.height, b,
-                                                            transmittance_.data(), last_.data(), picture_gradient,
-                                                            sums_.data()});
+        device_.for_each_warp(warps(), blend_backward<Real, Policy, AskFirst>{
+                                           splats_.data(), gaussian_of_.data(), ranges_.data(), tiles_across_,
+                                           camera_.width, camera_.height, b, transmittance_.data(),
+                                           last_.data(), picture_gradient, sums_.data()});
     }
 
     static vec3<Real> colour(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }

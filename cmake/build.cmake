@@ -1,0 +1,55 @@
+# SPDX-FileCopyrightText: 2026 The warpagg authors
+# SPDX-License-Identifier: MIT
+# How this project builds its own examples and tests; nothing here reaches who includes the library.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+if(WARPAGG_CUDA STREQUAL "AUTO" OR WARPAGG_CUDA)
+    include(CheckLanguage)
+    if(NOT CMAKE_CUDA_COMPILER)
+        find_program(WARPAGG_NVCC nvcc HINTS /usr/local/cuda/bin)
+        if(WARPAGG_NVCC)
+            set(CMAKE_CUDA_COMPILER ${WARPAGG_NVCC})
+        endif()
+    endif()
+    check_language(CUDA)
+endif()
+if(NOT WARPAGG_CUDA OR NOT CMAKE_CUDA_COMPILER)
+    if(WARPAGG_CUDA AND NOT WARPAGG_CUDA STREQUAL "AUTO")
+        message(FATAL_ERROR "WARPAGG_CUDA=ON, but no nvcc was found: put it on PATH or set CMAKE_CUDA_COMPILER")
+    endif()
+    set(warpagg_with_cuda OFF)
+else()
+    set(warpagg_with_cuda ON)
+    if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+        set(CMAKE_CUDA_ARCHITECTURES 80 90)
+    endif()
+    enable_language(CUDA)
+    find_package(CUDAToolkit REQUIRED)
+endif()
+message(STATUS "warpagg: CUDA ${warpagg_with_cuda}")
+
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(Threads REQUIRED)
+
+# Options of all that is built here.
+add_library(warpagg_build INTERFACE)
+target_link_libraries(warpagg_build INTERFACE warpagg::warpagg OpenMP::OpenMP_CXX)
+target_compile_options(warpagg_build INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror>
+    # Rounding is part of what is tested: only an explicit fma contracts.
+    $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
+    # CMake 3.25 knows no C++20 for nvcc 13. 20012 is GLM's, about its defaulted constructors.
+    $<$<COMPILE_LANGUAGE:CUDA>:-std=c++20 -diag-suppress=20012 -Xcompiler=-Wall,-Wextra>)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    target_compile_options(warpagg_build INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-march=${WARPAGG_CPU_ARCH}>)
+endif()
+if(WARPAGG_SANITIZE)
+    target_compile_options(warpagg_build INTERFACE
+        $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${WARPAGG_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer>)
+    target_link_options(warpagg_build INTERFACE -fsanitize=${WARPAGG_SANITIZE})
+endif()

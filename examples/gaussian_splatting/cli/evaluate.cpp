@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+#include <optional>
+
+#include "../error.hpp"
+#include "../model/ply.hpp"
+#include "session.hpp"
+
+namespace gs::cli {
+
+void evaluate(const settings& s) {
+    const session session(s);
+    const auto engine = session.make_engine();
+    const stopwatch loading;
+    const gaussians model = read_ply(s.ply);
+    scene scene = session.load();
+    if (scene.test.empty()) scene.test = std::move(scene.train);  // without --eval, all views are measured
+    scene.train.clear();
+    const auto background = session.background(scene.has_alpha);
+    std::optional<output_folder> output;
+    if (!s.output.empty()) output.emplace(s.output);
+    engine->set_views(scene.train, scene.test);
+    engine->set_model(model);
+    const double load_seconds = loading.seconds();
+
+    const stopwatch evaluating;
+    const auto report = evaluate::measure_test_views(
+        *engine, scene, background.colour, output ? output->path() / "test" : std::filesystem::path());
+    nlohmann::ordered_json metrics = to_json(report);
+    metrics["gaussians"] = model.count();
+    metrics["seconds"] = {{"load", load_seconds}, {"evaluate", evaluating.seconds()}};
+    metrics["device"] = engine->device_name();
+    if (output) write_json(output->path() / "metrics.json", metrics);
+    char text[100];
+    std::snprintf(text, sizeof text, "PSNR %.2f dB, SSIM %.4f over %zu views", report.psnr(), report.ssim(),
+                  report.views.size());
+    session.say(text);
+}
+
+}  // namespace gs::cli

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+
+#include "../error.hpp"
+#include "../model/ply.hpp"
+#include "session.hpp"
+
+namespace gs::cli {
+
+namespace {
+
+struct named_camera {
+    std::string name;
+    gs::camera camera;
+};
+
+/// A camera at `from` that looks at `to`.
+camera look_at(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& up, int size) {
+    const glm::dvec3 z = glm::normalize(to - from);
+    const glm::dvec3 x = glm::normalize(glm::cross(z, up));
+    const glm::dvec3 y = glm::cross(z, x);
+    camera c;
+    c.width = c.height = size;
+    c.fx = c.fy = 1.2 * size;
+    c.cx = c.cy = 0.5 * size;
+    c.rotation = glm::transpose(glm::dmat3(x, y, z));
+    c.translation = -(c.rotation * from);
+    return c;
+}
+
+/// Round the middle of the cloud, in the plane in which it is widest, from above.
+std::vector<named_camera> orbit(const gaussians& model, int views, int size) {
+    const std::size_t n = model.count();
+    std::array<glm::dvec3, 2> quartiles;  // robust against floaters
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<float> x(n);
+        for (std::size_t i = 0; i < n; ++i) x[i] = model.mean[3 * i + static_cast<std::size_t>(axis)];
+        std::ranges::sort(x);
+        quartiles[0][axis] = x[n / 4];
+        quartiles[1][axis] = x[n - 1 - n / 4];
+    }
+    const glm::dvec3 middle = 0.5 * (quartiles[0] + quartiles[1]), spread = quartiles[1] - quartiles[0];
+    const int thin = spread.x < spread.y ? (spread.x < spread.z ? 0 : 2) : (spread.y < spread.z ? 1 : 2);
+    glm::dvec3 up(0), ahead(0);
+    up[thin] = 1;
+    ahead[(thin + 1) % 3] = 1;
+    const glm::dvec3 side = glm::cross(up, ahead);
+    const double radius = std::max(2.5 * glm::length(spread), 1.0);
+    std::vector<named_camera> cameras;
+    for (int i = 0; i < views; ++i) {
+        const double a = 2 * std::acos(-1.0) * i / views;
+        const glm::dvec3 from =
+            middle + radius * (0.9 * (std::cos(a) * ahead + std::sin(a) * side) + 0.45 * up);
+        char name[32];
+        std::snprintf(name, sizeof name, "%05d.png", i);
+        cameras.push_back({name, look_at(from, middle, up, size)});
+    }
+    return cameras;
+}
+
+std::vector<named_camera> cameras_of(const scene& scene) {
+    std::vector<named_camera> cameras;
+    for (const view& v : scene.test.empty() ? scene.train : scene.test) {
+        std::string name = v.name;
+        std::ranges::replace(name, '/', '_');
+        cameras.push_back({std::filesystem::path(name).replace_extension(".png").string(), v.camera});
+    }
+    return cameras;
+}
+
+}  // namespace
+
+void render(const settings& s) {
+    const session session(s);
+    const auto engine = session.make_engine();
+    const gaussians model = read_ply(s.ply);
+    if (model.count() == 0) throw error(s.ply + " holds no Gaussians: there is nothing to draw");
+    const bool orbits = s.scene.data.empty();
+    bool alpha = false;
+    std::vector<named_camera> cameras;
+    if (orbits) {
+        cameras = orbit(model, s.orbit_views,
+                        s.scene.resolution > 8 ? s.scene.resolution : 800 / s.scene.resolution);
+    } else {
+        const scene scene = session.load();
+        alpha = scene.has_alpha;
+        cameras = cameras_of(scene);
+    }
+    const auto background = session.background(alpha);
+    const output_folder output(s.output);
+    engine->set_model(model);
+    for (const named_camera& c : cameras)
+        write_png(output.path() / c.name, c.camera.width, c.camera.height,
+                  engine->render(c.camera, background.colour));
+    session.say(std::to_string(cameras.size()) + " pictures in " + s.output);
+}
+
+}  // namespace gs::cli

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "session.hpp"
+
+#include <cstdio>
+#include <fstream>
+
+#include "../error.hpp"
+#include "../write_aside.hpp"
+
+namespace gs::cli {
+
+namespace fs = std::filesystem;
+
+void session::say(const std::string& line) const {
+    if (!settings_.quiet) std::printf("%s\n", line.c_str());
+    std::fflush(stdout);
+}
+
+scene session::load() const {
+    return load_scene(settings_.scene, [this](const std::string& line) { say(line); });
+}
+
+std::unique_ptr<train::engine> session::make_engine() const {
+    std::string reason;
+    const bool there = settings_.device != "cpu" && train::cuda_is_available(reason);
+    if (settings_.device == "cuda" && !there) throw error("--device cuda: no GPU can be used: " + reason);
+    return there ? train::make_cuda_engine() : train::make_cpu_engine();
+}
+
+train::background_choice session::background(bool alpha) const {
+    const bool white = settings_.background == "white" || (settings_.background != "black" && alpha);
+    const float level = white ? 1.0f : 0.0f;
+    return {{level, level, level}, settings_.background == "random"};
+}
+
+output_folder::output_folder(const fs::path& path) : path_(path) {
+    if (fs::exists(path) && !fs::is_directory(path))
+        throw error("cannot write to " + path.string() + ": it is not a folder");
+    fs::path top = fs::absolute(path).lexically_normal();
+    if (!top.has_filename()) top = top.parent_path();
+    for (; !fs::exists(top); top = top.parent_path()) made_ = top;
+    std::error_code failed;
+    fs::create_directories(path, failed);
+    if (failed) throw error("cannot make the folder " + path.string() + ": " + failed.message());
+    const fs::path probe = path / ".writable";
+    const bool writable = std::ofstream(probe).put('\n').good();
+    fs::remove(probe, failed);
+    if (!writable) throw error("cannot write to the folder " + path.string());
+}
+
+output_folder::~output_folder() {
+    std::error_code ignored;
+    for (fs::path p = fs::absolute(path_).lexically_normal(); !made_.empty(); p = p.parent_path()) {
+        if (!p.has_filename()) continue;
+        if (!fs::is_empty(p, ignored) || !fs::remove(p, ignored) || p == made_) return;
+    }
+}
+
+nlohmann::ordered_json to_json(const evaluate::test_report& report) {
+    nlohmann::ordered_json json;
+    json["psnr"] = nullptr;
+    json["ssim"] = nullptr;
+    json["views"] = nlohmann::ordered_json::array();
+    if (report.views.empty()) return json;
+    json["psnr"] = report.psnr();
+    json["ssim"] = report.ssim();
+    for (const auto& v : report.views)
+        json["views"].push_back({{"name", v.name}, {"psnr", v.quality.psnr()}, {"ssim", v.quality.ssim}});
+    return json;
+}
+
+void write_json(const fs::path& file, const nlohmann::ordered_json& json) {
+    write_aside(file, [&](std::ostream& out) { out << json.dump(2) << '\n'; });
+}
+
+}  // namespace gs::cli

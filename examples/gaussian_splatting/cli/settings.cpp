@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "settings.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <vector>
+
+#include "../error.hpp"
+#include "../raster/gradient_policy.hpp"
+
+namespace gs::cli {
+
+namespace {
+
+/// Levenshtein's distance.
+std::size_t edits_between(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t above = row[j];
+            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            diagonal = above;
+        }
+    }
+    return row.back();
+}
+
+/// CLI11 would say that an option was not expected; we say which one was meant.
+void refuse_unknown(const CLI::App& command, const std::vector<std::string>& arguments) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+        for (const std::string& name : option->get_snames()) known.push_back("-" + name);
+    }
+    for (const std::string& argument : arguments) {
+        const bool is_long = argument.starts_with("--");
+        const bool is_short =
+            !is_long && argument.size() > 1 && argument[0] == '-' && std::isalpha(argument[1]) != 0;
+        if (argument == "--" || (!is_long && !is_short)) continue;
+        const std::string name = is_long ? argument.substr(0, argument.find('=')) : argument.substr(0, 2);
+        if (std::ranges::find(known, name) != known.end()) continue;
+        const auto nearest =
+            std::ranges::min_element(known, {}, [&](const std::string& k) { return edits_between(k, name); });
+        throw error("unknown option " + name + " of " + command.get_name() + "; the nearest known one is " +
+                    *nearest);
+    }
+}
+
+void add_scene(CLI::App& app, settings& s, bool required) {
+    auto* data = app.add_option("-d,--data,-s,--source-path", s.scene.data,
+                                "Scene: a folder (COLMAP or Blender) or synthetic:NAME");
+    if (required) data->required();
+    app.add_option("--images", s.scene.images, "Folder of the photos, below the scene's (COLMAP)")
+        ->capture_default_str();
+    app.add_option("-r,--resolution", s.scene.resolution,
+                   "1, 2, 4, 8 divide the size; else the longer side in pixels")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    auto* eval = app.add_flag("--eval", s.scene.eval, "Hold out test views");
+    app.add_option("--test-every", s.scene.test_every, "Hold out every n-th view (COLMAP)")
+        ->check(CLI::Range(2, 1000000))
+        ->needs(eval)
+        ->capture_default_str();
+}
+
+void add_common(CLI::App& app, settings& s) {
+    app.add_option("--device", s.device, "Where to compute")
+        ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+        ->capture_default_str();
+    auto* background = app.add_option("--background", s.background,
+                                      "Behind everything: auto is white for photos with alpha, else black")
+                           ->check(CLI::IsMember({"auto", "white", "black", "random"}))
+                           ->capture_default_str();
+    app.add_flag_callback(
+           "-w,--white-background", [&s] { s.background = "white"; }, "The same as --background white")
+        ->excludes(background);
+    app.add_option("--seed", s.seed, "Of everything random")->capture_default_str();
+    app.add_flag("-q,--quiet", s.quiet, "Print errors only");
+}
+
+CLI::App* add_train(CLI::App& app, settings& s) {
+    CLI::App* train = app.add_subcommand("train", "Photos to Gaussians");
+    add_scene(*train, s, true);
+    add_common(*train, s);
+    train->add_option("-o,--output,-m,--model-path", s.output, "Folder for the results")->required();
+    train->add_option("-i,--iterations", s.iterations)->check(CLI::Range(1, 10000000))->capture_default_str();
+    train->add_option("--sh-degree", s.sh_degree, "Of view-dependent colour")
+        ->check(CLI::Range(0, 3))
+        ->capture_default_str();
+    train->add_option("--sh-degree-interval", s.sh_degree_interval, "Iterations between two degrees")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    train->add_option("--max-cap", s.max_cap, "Most Gaussians; by default one for 32 pixels of the photos")
+        ->check(CLI::PositiveNumber);
+    std::set<std::string> policies(gradient_policy_names.begin(), gradient_policy_names.end());
+    train->add_option("--gradient", s.gradient, "How gradients are added up")
+        ->check(CLI::IsMember(policies))
+        ->capture_default_str();
+    train->add_option("--save-iterations", s.save_iterations, "Save the model then, too");
+    train->add_option("--test-iterations", s.test_iterations, "Measure the test views then, too")
+        ->needs(train->get_option("--eval"));
+    return train;
+}
+
+CLI::App* add_evaluate(CLI::App& app, settings& s) {
+    CLI::App* evaluate = app.add_subcommand("evaluate", "Measure a saved model on a scene's test views");
+    evaluate->add_option("ply", s.ply, "The model")->required();
+    add_scene(*evaluate, s, true);
+    add_common(*evaluate, s);
+    evaluate->add_option("-o,--output", s.output,
+                         "Folder for metrics.json and the pictures; none are kept without");
+    return evaluate;
+}
+
+CLI::App* add_render(CLI::App& app, settings& s) {
+    CLI::App* render =
+        app.add_subcommand("render", "Draw a saved model, from a scene's cameras or from an orbit");
+    render->add_option("ply", s.ply, "The model")->required();
+    add_scene(*render, s, false);
+    add_common(*render, s);
+    render->add_option("-o,--output", s.output, "Folder for the pictures")->required();
+    render->add_option("--orbit-views", s.orbit_views, "Without --data: pictures of the orbit")
+        ->check(CLI::Range(1, 10000))
+        ->excludes(render->get_option("--data"))
+        ->capture_default_str();
+    return render;
+}
+
+void refuse_late(const std::set<int>& iterations, int last, const std::string& option) {
+    for (const int i : iterations)
+        if (i < 1 || i > last)
+            throw error(option + " names iteration " + std::to_string(i) +
+                        ", but there are only iterations 1 to " + std::to_string(last));
+}
+
+}  // namespace
+
+settings parse(int argc, char** argv) {
+    settings s;
+    CLI::App app("3D Gaussian splatting: from photos to a .ply, on a CPU or a GPU.", "gaussian_splatting");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", WARPAGG_VERSION);
+    const std::vector<CLI::App*> commands{add_train(app, s), add_evaluate(app, s), add_render(app, s)};
+
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    for (std::string& a : arguments)
+        if (a.starts_with("--"))
+            std::replace(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(std::min(a.find('='), a.size())),
+                         '_', '-');
+    for (CLI::App* command : commands)
+        if (!arguments.empty() && arguments[0] == command->get_name()) refuse_unknown(*command, arguments);
+    try {
+        std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // as CLI11 wants them
+        app.parse(reversed);
+    } catch (const CLI::Success& asked) {
+        std::exit(app.exit(asked));
+    } catch (const CLI::ParseError& wrong) {
+        throw error(std::string(wrong.what()) + " (see --help)");
+    }
+    s.command = app.get_subcommands().front()->get_name();
+    s.scene.seed = s.seed;
+    refuse_late(s.save_iterations, s.iterations, "--save-iterations");
+    refuse_late(s.test_iterations, s.iterations, "--test-iterations");
+    if (s.command == "render" && s.scene.data.empty() && s.scene.eval)
+        throw error("--eval picks views of a scene: it needs --data");
+    return s;
+}
+
+}  // namespace gs::cli

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "../scene/scene.hpp"
+
+namespace gs::cli {
+
+/// What the command line says, as it says it.
+struct settings {
+    std::string command;  ///< "train", "evaluate" or "render"
+    load_options scene;
+    std::string output;
+    std::string ply;
+    std::string device = "auto";
+    std::string background = "auto";
+    std::uint64_t seed = 0;
+    bool quiet = false;
+
+    int iterations = 7000;
+    int sh_degree = 3;
+    int sh_degree_interval = 1000;
+    std::size_t max_cap = 0;  ///< 0: by the photos
+    std::string gradient = "scatter";
+    std::set<int> save_iterations;
+    std::set<int> test_iterations;
+
+    int orbit_views = 8;
+};
+
+/// Parses and checks the command line. Exits for --help; throws `error` for what is wrong with it, in one
+/// sentence.
+settings parse(int argc, char** argv);
+
+void train(const settings& settings);
+void evaluate(const settings& settings);
+void render(const settings& settings);
+
+}  // namespace gs::cli

@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+#include "../model/initialise.hpp"
+#include "../model/ply.hpp"
+#include "progress_bar.hpp"
+#include "session.hpp"
+
+namespace gs::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+gradient_policy policy_of(const std::string& name) {
+    const auto at = std::ranges::find(gradient_policy_names, name) - gradient_policy_names.begin();
+    return static_cast<gradient_policy>(at);
+}
+
+train::train_options options_of(const settings& s, const scene& scene,
+                                const train::background_choice& background) {
+    train::train_options o;
+    o.iterations = s.iterations;
+    o.sh_degree = s.sh_degree;
+    o.sh_degree_interval = s.sh_degree_interval;
+    o.max_cap = s.max_cap > 0 ? s.max_cap : train::default_cap(scene);
+    o.seed = s.seed;
+    o.gradient = policy_of(s.gradient);
+    o.background = background;
+    o.save_iterations = s.save_iterations;
+    o.save_iterations.insert(s.iterations);
+    o.test_iterations = s.test_iterations;
+    return o;
+}
+
+/// The scene's points, or random ones: half as many as there may be, so that there is room to grow where it
+/// matters.
+gaussians first_model(const scene& scene, const train::train_options& o) {
+    constexpr std::size_t most_random = 100000;
+    const auto points = scene.points.empty()
+                            ? random_points(scene, std::min(most_random, o.max_cap / 2 + 1), o.seed)
+                            : scene.points;
+    return from_points(points, o.sh_degree, o.max_cap, o.seed);
+}
+
+std::filesystem::path ply_of(const std::filesystem::path& output, int iteration) {
+    return output / "point_cloud" / ("iteration_" + std::to_string(iteration)) / "point_cloud.ply";
+}
+
+std::filesystem::path pictures_of(const std::filesystem::path& output, int iteration) {
+    return output / "test" / ("ours_" + std::to_string(iteration));
+}
+
+ordered_json settings_json(const settings& s, const train::train_options& o) {
+    return {{"data", s.scene.data},
+            {"images", s.scene.images},
+            {"resolution", s.scene.resolution},
+            {"eval", s.scene.eval},
+            {"test_every", s.scene.test_every},
+            {"iterations", o.iterations},
+            {"sh_degree", o.sh_degree},
+            {"sh_degree_interval", o.sh_degree_interval},
+            {"max_cap", o.max_cap},
+            {"gradient", s.gradient},
+            {"background", s.background},
+            {"device", s.device},
+            {"seed", s.seed}};
+}
+
+/// What this trainer simulates of a scene, and why.
+ordered_json effects_json(const settings& s, const scene& scene, const train::background_choice& background) {
+    const auto effect = [](const char* name, bool on, const std::string& reason) {
+        return ordered_json{{"name", name}, {"on", on}, {"reason", reason}};
+    };
+    return {effect("view-dependent colour", s.sh_degree > 0, "--sh-degree " + std::to_string(s.sh_degree)),
+            effect("background", scene.has_alpha || background.random,
+                   scene.has_alpha ? "the photos have transparent parts" : "--background " + s.background)};
+}
+
+/// Milliseconds of an iteration by stage, and nanoseconds a pixel-Gaussian pair where pairs are what a stage
+/// works on.
+ordered_json stages_json(const device::stage_times& times, double pairs_per_iteration) {
+    ordered_json stages;
+    for (std::size_t i = 0; i < device::stage_names.size(); ++i) {
+        const double ms = times.milliseconds[i] / std::max(times.sampled, 1);
+        stages[device::stage_names[i]] = {{"milliseconds", ms},
+                                          {"nanoseconds_per_pair", ms * 1e6 / pairs_per_iteration}};
+    }
+    return stages;
+}
+
+std::size_t peak_host_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string number(const char* format, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+}  // namespace
+
+void train(const settings& s) {
+    const session session(s);
+    const auto engine = session.make_engine();
+    const stopwatch loading;
+    const scene scene = session.load();
+    const train::background_choice background = session.background(scene.has_alpha);
+    const train::train_options options = options_of(s, scene, background);
+    const gaussians model = first_model(scene, options);
+    const output_folder output(s.output);
+    engine->set_views(scene.train, scene.test);
+    engine->set_model(model);
+    const double load_seconds = loading.seconds();
+    session.say("training on " + engine->device_name() + ": " + std::to_string(scene.train.size()) +
+                " views, " + std::to_string(model.count()) + " Gaussians, at most " +
+                std::to_string(options.max_cap));
+
+    ordered_json tested;
+    progress_bar bar(s.quiet);
+    train::progress last;
+    train::train_events events;
+    events.report = [&](const train::progress& p) {
+        last = p;
+        bar.show(p);
+    };
+    events.save = [&](int iteration) {
+        const auto file = ply_of(output.path(), iteration);
+        std::filesystem::create_directories(file.parent_path());
+        write_ply(file, engine->get_model());
+    };
+    events.test = [&](int iteration) {
+        const auto report = evaluate::measure_test_views(*engine, scene, background.colour, {});
+        tested.push_back({{"iteration", iteration}, {"psnr", report.psnr()}, {"ssim", report.ssim()}});
+        session.say("iteration " + std::to_string(iteration) + ": held-out PSNR " +
+                    number("%.2f dB", report.psnr()));
+    };
+    const train::train_result result = train::train(*engine, scene, options, events);
+    const device::stage_times times = engine->times();
+    const double pairs = static_cast<double>(engine->pairs()) / options.iterations;
+
+    const stopwatch evaluating;
+    const auto pictures = pictures_of(output.path(), options.iterations);
+    const auto report = evaluate::measure_test_views(*engine, scene, background.colour, pictures);
+
+    ordered_json metrics = to_json(report);
+    metrics["training_psnr"] = last.psnr;
+    metrics["tests"] = tested;
+    metrics["iterations"] = options.iterations;
+    metrics["gaussians"] = engine->count();
+    metrics["seconds"] = {
+        {"load", load_seconds}, {"train", result.seconds}, {"evaluate", evaluating.seconds()}};
+    metrics["iterations_per_second"] = options.iterations / result.seconds;
+    metrics["densify_seconds"] = result.densify_seconds;
+    metrics["skipped_steps"] = result.skipped_steps;
+    metrics["pairs_per_iteration"] = pairs;
+    metrics["stages"] = stages_json(times, pairs);
+    metrics["peak_host_bytes"] = peak_host_bytes();
+    metrics["peak_device_bytes"] = engine->peak_device_bytes();
+    metrics["device"] = engine->device_name();
+    metrics["gradient"] = s.gradient;
+    metrics["accumulate"] = "native";
+    metrics["effects"] = effects_json(s, scene, background);
+    metrics["seed"] = s.seed;
+    write_json(output.path() / "settings.json", settings_json(s, options));
+    write_json(output.path() / "metrics.json", metrics);
+
+    if (report.views.empty()) {
+        session.say("training PSNR " + number("%.2f dB", last.psnr) + " (no held-out views without --eval)");
+    } else {
+        session.say("held-out PSNR " + number("%.2f dB", report.psnr()) + ", SSIM " +
+                    number("%.4f", report.ssim()) + " over " + std::to_string(report.views.size()) +
+                    " views");
+        session.say("pictures  " + (pictures / "renders").string());
+    }
+    session.say("model     " + ply_of(output.path(), options.iterations).string());
+    session.say("metrics   " + (output.path() / "metrics.json").string());
+}
+
+}  // namespace gs::cli

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "cli/settings.hpp"
+#include "error.hpp"
+
+int main(int argc, char** argv) {
+    try {
+#if defined(__AVX2__)
+        if (!__builtin_cpu_supports("avx2"))
+            throw gs::error(
+                "this program was built for CPUs with AVX2: build it with -DWARPAGG_CPU_ARCH=native here");
+#endif
+        const gs::cli::settings settings = gs::cli::parse(argc, argv);
+        if (settings.command == "train") gs::cli::train(settings);
+        if (settings.command == "evaluate") gs::cli::evaluate(settings);
+        if (settings.command == "render") gs::cli::render(settings);
+        return 0;
+    } catch (const gs::error& e) {
+        std::fprintf(stderr, "error: %s\n", e.what());
+        return 2;
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "error: out of memory: lower --resolution or --max-cap\n");
+        return 3;
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "error: %s\n", e.what());
+        return 3;
+    }
+}

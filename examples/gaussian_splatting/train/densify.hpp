@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "../raster/geometry.hpp"
+#include "../raster/project_backward.hpp"
+#include "densify_rule.hpp"
+#include "random.hpp"
+
+namespace gs::train {
+
+/// How a Gaussian came to be in the new generation.
+enum birth : std::uint32_t { kept, copied, split };
+
+/// Who stays, who wants to grow, and who would do it by splitting: one index a Gaussian.
+struct judge_gaussians {
+    parameter_arrays<const float> gaussians;
+    const raster::visibility* seen;
+    densify_rule rule;
+    std::uint32_t* stays;    ///< 1 or 0
+    std::uint32_t* large;    ///< 1 or 0
+    std::uint32_t* urgency;  ///< sort key: the more urgent the growth the smaller; all ones for none
+    std::uint32_t* identities;
+
+    WARPAGG_HD void operator()(std::size_t index) const {
+        const auto i = static_cast<unsigned>(index);
+        const raster::visibility v = seen[i];
+        const float mean = v.seen > 0 ? v.gradient / v.seen : 0.0f;
+        const glm::vec3 s = raster::load3(gaussians.log_scale, i);
+        const float largest = glm::exp(warpagg::max(s.x, warpagg::max(s.y, s.z)));
+        const bool opaque = raster::sigmoid(gaussians.opacity[i]) >= rule.least_opacity;
+        const bool too_large = (rule.most_scale > 0 && largest > rule.most_scale) ||
+                               (rule.most_radius > 0 && v.radius > rule.most_radius);
+        const bool stay = opaque && !too_large;
+        stays[i] = stay ? 1 : 0;
+        large[i] = largest > rule.dense_scale ? 1 : 0;
+        identities[i] = i;
+        // Positive floats sort as their bits do; the complement turns the order round.
+        urgency[i] = stay && mean >= rule.gradient ? ~bits_of(mean) : 0xffffffffu;
+    }
+
+  private:
+    static WARPAGG_HD std::uint32_t bits_of(float a) {
+#if defined(__CUDA_ARCH__)
+        return __float_as_uint(a);
+#else
+        return __builtin_bit_cast(std::uint32_t, a);
+#endif
+    }
+};
+
+/// The most urgent that there is room for become two: one index a rank.
+struct let_grow {
+    const std::uint32_t* urgency;
+    const std::uint32_t* gaussian_of;
+    std::size_t room;
+    std::uint32_t* copies;
+
+    WARPAGG_HD void operator()(std::size_t rank) const {
+        if (rank < room && urgency[rank] != 0xffffffffu) copies[gaussian_of[rank]] = 2;
+    }
+};
+
+/// Where each new Gaussian comes from: one index an old one.
+struct place_copies {
+    const std::uint32_t* copies;
+    const std::uint32_t* large;
+    const std::uint64_t* first;
+    std::uint32_t* origin;
+    birth* births;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        for (std::uint32_t c = 0; c < copies[i]; ++c) {
+            origin[first[i] + c] = static_cast<std::uint32_t>(i);
+            births[first[i] + c] = copies[i] == 1 ? kept : large[i] != 0 ? split : c == 0 ? kept : copied;
+        }
+    }
+};
+
+/// Carries one parameter over to the new Gaussians: one index a new value. New ones begin without momentum.
+struct carry_over {
+    const std::uint32_t* origin;
+    const birth* births;
+    std::uint32_t width;
+    const float* from;
+    const float* from_first;
+    const float* from_second;
+    float* to;
+    float* to_first;
+    float* to_second;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        const std::size_t gaussian = i / width;
+        const std::size_t source = std::size_t{origin[gaussian]} * width + i % width;
+        const bool old = births[gaussian] == kept;
+        to[i] = from[source];
+        to_first[i] = old ? from_first[source] : 0;
+        to_second[i] = old ? from_second[source] : 0;
+    }
+};
+
+/// Both halves of a split draw a place from their parent's distribution and are 1.6 times smaller: one index
+/// a new Gaussian.
+struct part_halves {
+    const birth* births;
+    std::uint64_t seed;
+    std::uint64_t step;
+    parameter_arrays<float> gaussians;
+
+    WARPAGG_HD void operator()(std::size_t index) const {
+        const auto i = static_cast<unsigned>(index);
+        if (births[i] != split) return;
+        const glm::vec3 log_scale = raster::load3(gaussians.log_scale, i);
+        const float* p = gaussians.quaternion + 4 * i;
+        const glm::vec4 q(p[0], p[1], p[2], p[3]);
+        counter_random random(seed, step, i);
+        const glm::vec3 offset =
+            raster::rotation_of(glm::normalize(q)) * (glm::exp(log_scale) * random.normal3());
+        raster::store3(gaussians.mean, i, raster::load3(gaussians.mean, i) + offset);
+        raster::store3(gaussians.log_scale, i, log_scale - glm::vec3(0.47000363f));  // log 1.6
+    }
+};
+
+/// Brings every opacity down to at most `most` (a logit) and forgets its momentum.
+struct lower_opacity {
+    float* opacity;
+    float* first;
+    float* second;
+    float most;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        opacity[i] = warpagg::min(opacity[i], most);
+        first[i] = 0;
+        second[i] = 0;
+    }
+};
+
+}  // namespace gs::train

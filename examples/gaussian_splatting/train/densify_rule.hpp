@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gs::train {
+
+/// When a Gaussian is copied, split or dropped (Kerbl et al. 2023, section 5.2).
+struct densify_rule {
+    float gradient = 2e-4f;  ///< grows at this mean gradient of its centre, in halves of the picture
+    float dense_scale = 0;   ///< world units: a growing Gaussian up to this is copied, a larger one split
+    float least_opacity = 0.005f;  ///< drops below it
+    float most_scale = 0;          ///< world units: drops above it; 0 for never
+    float most_radius = 0;         ///< pixels: likewise
+    std::size_t cap = 0;           ///< no growth past this many
+    std::uint64_t seed = 0;        ///< where the halves of a split come to lie
+    std::uint64_t step = 0;
+};
+
+}  // namespace gs::train

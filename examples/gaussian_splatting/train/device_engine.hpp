@@ -1,0 +1,313 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "../raster/renderer.hpp"
+#include "adam.hpp"
+#include "densify.hpp"
+#include "engine.hpp"
+#include "photometric.hpp"
+
+namespace gs::train {
+
+/// Clamps to [0, 1], as a picture is shown: one index a value.
+struct clamp_picture {
+    const float* from;
+    float* to;
+    WARPAGG_HD void operator()(std::size_t i) const {
+        to[i] = warpagg::min(warpagg::max(from[i], 0.0f), 1.0f);
+    }
+};
+
+/// Counts the steps that were left out: one index.
+struct count_skipped {
+    const std::uint64_t* instances;
+    std::uint64_t reserved;
+    std::uint64_t* skipped;
+    WARPAGG_HD void operator()(std::size_t) const { *skipped += *instances > reserved ? 1 : 0; }
+};
+
+/// An `engine` on a device: the order of the kernels, and the memory they share.
+template <class Device>
+class device_engine final : public engine {
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+    using arrays = std::array<buffer<float>, parameter_count>;
+
+  public:
+    device_engine() : renderer_(device_), photometric_(device_) {
+        skipped_.resize(1);
+        device_.zero(skipped_.data(), 1);
+    }
+
+    std::string device_name() const override { return device_.name(); }
+
+    void set_views(const std::vector<view>& train, const std::vector<view>& test) override {
+        std::size_t bytes = 0;
+        for (const auto* views : {&train, &test})
+            for (const view& v : *views) bytes += v.pixels.rgba.size();
+        photos_.resize(bytes);
+        bytes = 0;
+        const auto put = [&](const std::vector<view>& views, std::vector<photo>& to) {
+            to.clear();
+            for (const view& v : views) {
+                device_.upload(photos_.data() + bytes, v.pixels.rgba.data(), v.pixels.rgba.size());
+                to.push_back({v.camera, bytes});
+                bytes += v.pixels.rgba.size();
+            }
+        };
+        put(train, train_);
+        put(test, test_);
+        device_.wait();
+    }
+
+    void set_model(const gaussians& model) override {
+        sh_degree_ = model.sh_degree;
+        resize(values_, model.count());
+        resize(first_, model.count());
+        resize(second_, model.count());
+        const auto put = [&](parameter p, const std::vector<float>& from) {
+            device_.upload(values_[index(p)].data(), from.data(), from.size());
+        };
+        put(parameter::mean, model.mean);
+        put(parameter::log_scale, model.log_scale);
+        put(parameter::quaternion, model.quaternion);
+        put(parameter::opacity, model.opacity);
+        put(parameter::sh0, model.sh_constant);
+        for (int band = 1; band <= sh_degree_; ++band)
+            put(static_cast<parameter>(static_cast<int>(parameter::sh0) + band), band_of(model, band));
+        for (auto* moments : {&first_, &second_})
+            for (auto& m : *moments) device_.zero(m.data(), m.size());
+        device_.wait();
+        begin_generation(model.count());
+        steps_ = 0;
+    }
+
+    gaussians get_model() override {
+        gaussians model;
+        model.sh_degree = sh_degree_;
+        const auto get = [&](parameter p, std::vector<float>& to) {
+            to.resize(values_[index(p)].size());
+            device_.download(to.data(), values_[index(p)].data(), to.size());
+        };
+        get(parameter::mean, model.mean);
+        get(parameter::log_scale, model.log_scale);
+        get(parameter::quaternion, model.quaternion);
+        get(parameter::opacity, model.opacity);
+        get(parameter::sh0, model.sh_constant);
+        const auto width = static_cast<std::size_t>(model.rest_width());
+        model.sh_rest.resize(count_ * width);
+        std::size_t at = 0;
+        for (int band = 1; band <= sh_degree_; ++band) {
+            std::vector<float> values;
+            const auto p = static_cast<parameter>(static_cast<int>(parameter::sh0) + band);
+            get(p, values);
+            const auto w = static_cast<std::size_t>(parameter_width[index(p)]);
+            for (std::size_t i = 0; i < count_; ++i)
+                std::copy_n(values.data() + i * w, w, model.sh_rest.data() + i * width + at);
+            at += w;
+        }
+        return model;
+    }
+
+    std::size_t count() const override { return count_; }
+
+    void step(const step_plan& plan) override {
+        using device::stage;
+        const photo& shot = train_[plan.view];
+        renderer_.forward(read(values_), count_, shot.camera, plan.sh_degree, plan.background);
+        device_.begin(stage::loss);
+        photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
+                               plan.background);
+        const float* by_picture = photometric_.gradient(renderer_.picture(), plan.ssim_weight);
+        renderer_.backward(by_picture, plan.gradient, write(gradients_), plan.watch ? seen_.data() : nullptr);
+        device_.begin(stage::adam);
+        descend(plan);
+        device_.end_iteration();
+    }
+
+    void densify(const densify_rule& rule) override {
+        if (count_ == 0) return;
+        for (auto* b : {&copies_, &large_, &urgency_, &gaussian_of_}) b->resize(count_);
+        device_.for_each_index(count_, judge_gaussians{read(values_), seen_.data(), rule, copies_.data(),
+                                                       large_.data(), urgency_.data(), gaussian_of_.data()});
+        const std::size_t staying = total_of_copies();
+        const std::size_t room = rule.cap > staying ? rule.cap - staying : 0;
+        device_.sort_pairs(urgency_, gaussian_of_, count_, 32);
+        device_.for_each_index(count_, let_grow{urgency_.data(), gaussian_of_.data(), room, copies_.data()});
+        const std::size_t next = total_of_copies();
+
+        origin_.resize(next);
+        births_.resize(next);
+        device_.for_each_index(count_, place_copies{copies_.data(), large_.data(), first_copy_.data(),
+                                                    origin_.data(), births_.data()});
+        for (std::size_t p = 0; p < parameter_count; ++p) {
+            if (!has_parameter(p, sh_degree_)) continue;
+            const auto width = static_cast<std::uint32_t>(parameter_width[p]);
+            for (auto* spare : {&spare_value_, &spare_first_, &spare_second_}) spare->resize(next * width);
+            device_.for_each_index(next * width,
+                                   carry_over{origin_.data(), births_.data(), width, values_[p].data(),
+                                              first_[p].data(), second_[p].data(), spare_value_.data(),
+                                              spare_first_.data(), spare_second_.data()});
+            std::swap(values_[p], spare_value_);
+            std::swap(first_[p], spare_first_);
+            std::swap(second_[p], spare_second_);
+        }
+        device_.for_each_index(next, part_halves{births_.data(), rule.seed, rule.step, write(values_)});
+        begin_generation(next);
+    }
+
+    void reset_opacity(float most) override {
+        constexpr std::size_t p = index(parameter::opacity);
+        device_.for_each_index(count_, lower_opacity{values_[p].data(), first_[p].data(), second_[p].data(),
+                                                     std::log(most / (1 - most))});
+    }
+
+    void reserve(int sh_degree) override {
+        std::uint64_t most = 0;
+        for (const photo& p : train_)
+            most = std::max(most, renderer_.count_instances(read(values_), count_, p.camera, sh_degree));
+        renderer_.reserve_instances(most + most / 2 + 4096);
+    }
+
+    quality take_training_quality() override { return photometric_.take(); }
+
+    std::uint64_t skipped_steps() override {
+        std::uint64_t n = 0;
+        device_.download(&n, skipped_.data(), 1);
+        return n;
+    }
+
+    std::vector<float> render(const camera& camera, const std::array<float, 3>& background) override {
+        draw(camera, background);
+        std::vector<float> picture(values_of(camera));
+        device_.download(picture.data(), renderer_.picture(), picture.size());
+        return picture;
+    }
+
+    quality measure(std::size_t test_view, const std::array<float, 3>& background) override {
+        const photo& shot = test_[test_view];
+        draw(shot.camera, background);
+        const std::size_t n = values_of(shot.camera);
+        shown_.resize(n);
+        device_.for_each_index(n, clamp_picture{renderer_.picture(), shown_.data()});
+        photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
+                               background);
+        photometric_.compare(shown_.data());
+        return photometric_.take();
+    }
+
+    device::stage_times times() override { return device_.times(); }
+    std::uint64_t pairs() override {
+        unsigned long long n = 0;
+        device_.download(&n, renderer_.pairs(), 1);
+        return n;
+    }
+    std::size_t peak_device_bytes() const override { return device_.peak_bytes(); }
+    void wait() override { device_.wait(); }
+
+  private:
+    struct photo {
+        gs::camera camera;
+        std::size_t first;  ///< byte in `photos_`
+    };
+
+    static constexpr std::size_t index(parameter p) { return static_cast<std::size_t>(p); }
+    static std::size_t values_of(const camera& c) {
+        return 3 * static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height);
+    }
+
+    static std::vector<float> band_of(const gaussians& model, int band) {
+        const auto width = static_cast<std::size_t>(model.rest_width());
+        const auto from = static_cast<std::size_t>(3 * (sh_coefficients(band - 1) - 1));
+        const auto to = static_cast<std::size_t>(3 * (sh_coefficients(band) - 1));
+        std::vector<float> values;
+        values.reserve(model.count() * (to - from));
+        for (std::size_t i = 0; i < model.count(); ++i)
+            values.insert(values.end(), model.sh_rest.begin() + static_cast<std::ptrdiff_t>(i * width + from),
+                          model.sh_rest.begin() + static_cast<std::ptrdiff_t>(i * width + to));
+        return values;
+    }
+
+    void resize(arrays& a, std::size_t count) {
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            if (has_parameter(p, sh_degree_))
+                a[p].resize(count * static_cast<std::size_t>(parameter_width[p]));
+    }
+    template <class Real>
+    static parameter_arrays<Real> pointers(const arrays& a) {
+        return {a[0].data(),
+                a[1].data(),
+                a[2].data(),
+                a[3].data(),
+                {a[4].data(), a[5].data(), a[6].data(), a[7].data()}};
+    }
+    static parameter_arrays<const float> read(const arrays& a) { return pointers<const float>(a); }
+    static parameter_arrays<float> write(arrays& a) { return pointers<float>(a); }
+
+    /// `values_` and the moments hold `count` Gaussians that nobody has seen.
+    void begin_generation(std::size_t count) {
+        count_ = count;
+        resize(gradients_, count);
+        seen_.resize(count);
+        device_.zero(seen_.data(), count);
+    }
+
+    std::size_t total_of_copies() {
+        first_copy_.resize(count_ + 1);
+        device_.prefix_sum(copies_, first_copy_, count_);
+        std::uint64_t total = 0;
+        device_.download(&total, first_copy_.data() + count_, 1);
+        return total;
+    }
+
+    void descend(const step_plan& plan) {
+        ++steps_;
+        const double by_first = 1 / (1 - std::pow(adam<float>::beta1, steps_));
+        const double by_second = 1 / std::sqrt(1 - std::pow(adam<float>::beta2, steps_));
+        for (std::size_t p = 0; p < parameter_count; ++p) {
+            if (!has_parameter(p, plan.sh_degree)) continue;
+            const std::size_t n = count_ * static_cast<std::size_t>(parameter_width[p]);
+            device_.for_each_element(
+                n, adam<float>{values_[p].data(), first_[p].data(), second_[p].data(), gradients_[p].data(),
+                               static_cast<float>(plan.rates[p] * by_first), static_cast<float>(by_second),
+                               renderer_.instances(), renderer_.reserved_instances()});
+        }
+        device_.for_each_index(
+            1, count_skipped{renderer_.instances(), renderer_.reserved_instances(), skipped_.data()});
+    }
+
+    /// A picture of the whole model, whatever room it takes.
+    void draw(const camera& camera, const std::array<float, 3>& background) {
+        const std::uint64_t reserved = renderer_.reserved_instances();
+        const std::uint64_t needed = renderer_.count_instances(read(values_), count_, camera, sh_degree_);
+        renderer_.reserve_instances(std::max(reserved, needed));
+        renderer_.forward(read(values_), count_, camera, sh_degree_, background);
+    }
+
+    Device device_;
+    raster::renderer<Device, float> renderer_;
+    photometric<Device, float> photometric_;
+    buffer<std::uint8_t> photos_;
+    std::vector<photo> train_, test_;
+
+    int sh_degree_ = 0;
+    std::size_t count_ = 0;
+    int steps_ = 0;
+    arrays values_, first_, second_, gradients_;
+    buffer<raster::visibility> seen_;
+    buffer<std::uint64_t> skipped_;
+    buffer<float> shown_;
+
+    // What `densify` works with.
+    buffer<std::uint32_t> copies_, large_, urgency_, gaussian_of_, origin_;
+    buffer<birth> births_;
+    buffer<std::uint64_t> first_copy_;
+    buffer<float> spare_value_, spare_first_, spare_second_;
+};
+
+}  // namespace gs::train

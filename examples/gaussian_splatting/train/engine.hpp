@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../device/stages.hpp"
+#include "../model/gaussians.hpp"
+#include "../raster/gradient_policy.hpp"
+#include "../scene/scene.hpp"
+#include "densify_rule.hpp"
+#include "quality.hpp"
+
+namespace gs::train {
+
+/// One iteration: which photo, and what it is worth to learn from it.
+struct step_plan {
+    std::size_t view = 0;  ///< of the training views
+    int sh_degree = 0;
+    std::array<float, 3> background{};
+    gradient_policy gradient = gradient_policy::scatter;
+    std::array<float, 8> rates{};  ///< of Adam, by `parameter`
+    double ssim_weight = 0.2;
+    bool watch = false;  ///< note what `densify` wants to know
+};
+
+/// A model in training on a device, and all that happens to it. The host says what is done; nothing comes
+/// back to it but what it asks for.
+class engine {
+  public:
+    virtual ~engine() = default;
+
+    virtual std::string device_name() const = 0;
+
+    /// The photos of a scene, to learn from and to be measured by.
+    virtual void set_views(const std::vector<view>& train, const std::vector<view>& test) = 0;
+    /// Begins anew with this model: moments zero.
+    virtual void set_model(const gaussians& model) = 0;
+    virtual gaussians get_model() = 0;
+    virtual std::size_t count() const = 0;
+
+    virtual void step(const step_plan& plan) = 0;
+    /// Copies, splits and drops Gaussians by what `step`s have seen since the last call.
+    virtual void densify(const densify_rule& rule) = 0;
+    virtual void reset_opacity(float most) = 0;
+    /// Makes room for the longest lists of the training views at this degree, and half as much again for what
+    /// they grow to. To be called after `set_model` and `densify`.
+    virtual void reserve(int sh_degree) = 0;
+    /// The means over the `step`s since the last call.
+    virtual quality take_training_quality() = 0;
+    /// Steps that changed nothing since their lists did not fit.
+    virtual std::uint64_t skipped_steps() = 0;
+
+    /// Three planes, not clamped.
+    virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background) = 0;
+    /// A test view against its photo, clamped to [0, 1].
+    virtual quality measure(std::size_t test_view, const std::array<float, 3>& background) = 0;
+
+    virtual device::stage_times times() = 0;
+    virtual std::uint64_t pairs() = 0;                  ///< pixel-Gaussian pairs evaluated forward so far
+    virtual std::size_t peak_device_bytes() const = 0;  ///< zero where that is the host's
+    virtual void wait() = 0;
+};
+
+std::unique_ptr<engine> make_cpu_engine();
+/// Throws `error` where there is no GPU.
+std::unique_ptr<engine> make_cuda_engine();
+/// Whether a GPU is there, and why not.
+bool cuda_is_available(std::string& reason);
+
+}  // namespace gs::train

@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <warpagg/atomic.hpp>
+
+namespace gs::train {
+
+using warpagg::fma;
+using warpagg::mask_t;
+using warpagg::select;
+using warpagg::value_t;
+
+/// The photo over a background: premultiplied RGBA bytes to three planes in [0, 1]. One index a pixel.
+template <class Real>
+struct composite {
+    const std::uint8_t* rgba;
+    glm::vec<3, Real> background;
+    std::size_t pixels;
+    Real* planes;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        const std::uint8_t* p = rgba + 4 * i;
+        const Real through = Real(255 - p[3]);
+        for (int c = 0; c < 3; ++c)
+            planes[static_cast<std::size_t>(c) * pixels + i] =
+                (Real(p[c]) + through * background[c]) * Real(1.0 / 255);
+    }
+};
+
+/// The window of the structural similarity: 11 taps of a Gaussian of standard deviation 1.5, normalised
+/// (Wang et al. 2004).
+struct ssim_window {
+    static constexpr int radius = 5;
+    double tap[radius + 1];
+
+    static ssim_window make() {
+        ssim_window w{};
+        double sum = 0;
+        for (int i = 0; i <= radius; ++i) {
+            w.tap[i] = std::exp(-i * i / (2 * 1.5 * 1.5));
+            sum += i == 0 ? w.tap[i] : 2 * w.tap[i];
+        }
+        for (double& t : w.tap) t /= sum;
+        return w;
+    }
+};
+
+/// A row of pixels as wide as the warp, in one of three planes. What lies outside the picture counts as zero.
+template <class W>
+struct pixel_row {
+    unsigned row;
+    value_t<W, unsigned> column, place;  ///< place: in the three planes
+    mask_t<W> inside;
+    unsigned width, height;
+
+    static unsigned per_line(int width) { return (static_cast<unsigned>(width) + W::size - 1) / W::size; }
+    static std::size_t count(int width, int height) {
+        return 3 * static_cast<std::size_t>(height) * per_line(width);
+    }
+
+    WARPAGG_HD pixel_row(const W& w, unsigned index, int width_, int height_)
+        : width(static_cast<unsigned>(width_)), height(static_cast<unsigned>(height_)) {
+        const unsigned lines = (width + W::size - 1) / W::size, line = index / lines;
+        row = line % height;
+        column = w.lane() + index % lines * W::size;
+        place = column + line * width;
+        inside = column < width;
+    }
+
+    /// Sums `tap * map` along the row (or, if `Down`, along the column) over each of N maps.
+    template <bool Down, int N, class Real>
+    WARPAGG_HD void blur(const W& w, const ssim_window& window, const Real* const (&maps)[N],
+                         value_t<W, Real> (&sums)[N]) const {
+        for (int t = -ssim_window::radius; t <= ssim_window::radius; ++t) {
+            const auto shift = static_cast<unsigned>(t);  // wraps around where it is negative, and back
+            mask_t<W> there = inside;
+            unsigned step = shift;
+            if constexpr (Down) {
+                if (row + shift >= height) continue;
+                step = shift * width;
+            } else {
+                there = there && column + shift < width;
+            }
+            const Real tap = static_cast<Real>(window.tap[t < 0 ? -t : t]);
+            for (int m = 0; m < N; ++m)
+                sums[m] = fma(value_t<W, Real>(tap), w.load(maps[m], place + step, there), sums[m]);
+        }
+    }
+};
+
+/// First pass: the means along the rows of x, y, x^2, y^2 and xy, into five maps of three planes.
+template <class Real>
+struct ssim_moments {
+    const Real* x;
+    const Real* y;
+    int width, height;
+    ssim_window window;
+    Real* moments[5];
+
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        using real = value_t<W, Real>;
+        const pixel_row<W> p(w, index, width, height);
+        real sum[5] = {real(0), real(0), real(0), real(0), real(0)};
+        for (int t = -ssim_window::radius; t <= ssim_window::radius; ++t) {
+            const auto shift = static_cast<unsigned>(t);
+            const mask_t<W> there = p.inside && p.column + shift < p.width;
+            const real tap(static_cast<Real>(window.tap[t < 0 ? -t : t]));
+            const real a = w.load(x, p.place + shift, there), b = w.load(y, p.place + shift, there);
+            sum[0] = fma(tap, a, sum[0]);
+            sum[1] = fma(tap, b, sum[1]);
+            sum[2] = fma(tap * a, a, sum[2]);
+            sum[3] = fma(tap * b, b, sum[3]);
+            sum[4] = fma(tap * a, b, sum[4]);
+        }
+        for (int m = 0; m < 5; ++m) w.store(moments[m], p.place, sum[m], p.inside);
+    }
+};
+
+/// Where the second pass adds up what it finds over all pixels and channels.
+enum loss_sum { sum_absolute, sum_square, sum_ssim, loss_sum_count };
+
+/// Second pass: the means along the columns, the similarity of each pixel, and its derivatives by the mean of
+/// x, of x^2 and of xy. Adds the absolute and square errors and the similarity to `totals`.
+template <class Real>
+struct ssim_compare {
+    const Real* x;
+    const Real* y;
+    int width, height;
+    ssim_window window;
+    const Real* moments[5];
+    Real* derivatives[3];
+    double* totals;  ///< `loss_sum_count`
+
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        using real = value_t<W, Real>;
+        const pixel_row<W> p(w, index, width, height);
+        real m[5] = {real(0), real(0), real(0), real(0), real(0)};
+        p.template blur<true>(w, window, moments, m);
+
+        // S = (2 mx my + C1)(2 cov + C2) / ((mx^2 + my^2 + C1)(vx + vy + C2)), with vx = m[2] - mx^2 and so
+        // on.
+        constexpr auto C1 = static_cast<Real>(0.01 * 0.01), C2 = static_cast<Real>(0.03 * 0.03);
+        const real mean_product = m[0] * m[1], squares = fma(m[0], m[0], m[1] * m[1]);
+        const real a1 = mean_product + mean_product + C1, b1 = squares + C1;
+        const real covariance = m[4] - mean_product;
+        const real a2 = covariance + covariance + C2, b2 = m[2] + m[3] - squares + C2;
+        const real inverse = Real(1) / (b1 * b2);
+        const real s = a1 * a2 * inverse;
+        const real by_square = -s / b2;
+        const real by_product = (a1 + a1) * inverse;
+        const real by_mean =
+            (m[1] + m[1]) * (a2 - a1) * inverse + (m[0] + m[0]) * s * (Real(1) / b2 - Real(1) / b1);
+        w.store(derivatives[0], p.place, by_mean, p.inside);
+        w.store(derivatives[1], p.place, by_square, p.inside);
+        w.store(derivatives[2], p.place, by_product, p.inside);
+
+        const real error = w.load(x, p.place, p.inside) - w.load(y, p.place, p.inside);
+        const value_t<W, double> found[loss_sum_count] = {
+            warpagg::convert<double>(warpagg::max(error, -error)), warpagg::convert<double>(error * error),
+            warpagg::convert<double>(s)};
+        warpagg::warp_reduce_atomic(w, totals, found, p.inside);
+    }
+};
+
+/// Third pass: the derivatives, blurred along the rows.
+template <class Real>
+struct ssim_spread {
+    int width, height;
+    ssim_window window;
+    const Real* derivatives[3];
+    Real* spread[3];
+
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        using real = value_t<W, Real>;
+        const pixel_row<W> p(w, index, width, height);
+        real sum[3] = {real(0), real(0), real(0)};
+        p.template blur<false>(w, window, derivatives, sum);
+        for (int m = 0; m < 3; ++m) w.store(spread[m], p.place, sum[m], p.inside);
+    }
+};
+
+/// Last pass: the gradient by x of `(1 - ssim_weight) mean|x - y| + ssim_weight (1 - mean SSIM)`.
+template <class Real>
+struct loss_gradient {
+    const Real* x;
+    const Real* y;
+    int width, height;
+    ssim_window window;
+    const Real* spread[3];
+    Real ssim_weight;
+    Real* gradient;
+
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        using real = value_t<W, Real>;
+        const pixel_row<W> p(w, index, width, height);
+        real sum[3] = {real(0), real(0), real(0)};
+        p.template blur<true>(w, window, spread, sum);
+        const real a = w.load(x, p.place, p.inside), b = w.load(y, p.place, p.inside);
+        const real similarity = sum[0] + (a + a) * sum[1] + b * sum[2];
+        const Real each = Real(1) / (Real(3) * Real(width) * Real(height));
+        const real sign = select(a > b, real(1), select(a < b, real(-1), real(0)));
+        const real g = sign * (each * (Real(1) - ssim_weight)) - similarity * (each * ssim_weight);
+        w.store(gradient, p.place, g, p.inside);
+    }
+};
+
+}  // namespace gs::train

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "trainer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+#include <random>
+
+namespace gs::train {
+
+namespace {
+
+using clock = std::chrono::steady_clock;
+
+double seconds_since(clock::time_point from) {
+    return std::chrono::duration<double>(clock::now() - from).count();
+}
+
+/// Every view once before any comes again, each time in another order.
+class view_order {
+  public:
+    view_order(std::size_t views, std::uint64_t seed) : order_(views), next_(views), random_(seed) {
+        std::iota(order_.begin(), order_.end(), std::size_t{0});
+    }
+    std::size_t next() {
+        if (next_ == order_.size()) {
+            // Not std::shuffle, whose order is the library's own business.
+            for (std::size_t i = order_.size(); i > 1; --i) std::swap(order_[i - 1], order_[random_() % i]);
+            next_ = 0;
+        }
+        return order_[next_++];
+    }
+
+  private:
+    std::vector<std::size_t> order_;
+    std::size_t next_;
+    std::mt19937_64 random_;
+};
+
+std::array<float, 3> random_colour(std::mt19937_64& random) {
+    const auto channel = [&] { return static_cast<float>(random() >> 40) * 0x1p-24f; };
+    const float r = channel(), g = channel(), b = channel();
+    return {r, g, b};
+}
+
+densify_rule rule_at(int iteration, const schedule& schedule, const train_options& options) {
+    densify_rule rule;
+    rule.dense_scale = static_cast<float>(0.01 * schedule.extent);
+    if (schedule.drops_large(iteration)) {
+        rule.most_scale = static_cast<float>(0.1 * schedule.extent);
+        rule.most_radius = 20;
+    }
+    rule.cap = options.max_cap;
+    rule.seed = options.seed;
+    rule.step = static_cast<std::uint64_t>(iteration);
+    return rule;
+}
+
+}  // namespace
+
+std::size_t default_cap(const scene& scene) {
+    std::size_t pixels = 0;
+    for (const view& v : scene.train)
+        pixels += static_cast<std::size_t>(v.camera.width) * static_cast<std::size_t>(v.camera.height);
+    return std::max<std::size_t>(pixels / 32, 10000);
+}
+
+train_result train(engine& engine, const scene& scene, const train_options& options,
+                   const train_events& events) {
+    schedule schedule;
+    schedule.iterations = options.iterations;
+    schedule.sh_degree = options.sh_degree;
+    schedule.sh_degree_interval = options.sh_degree_interval;
+    schedule.extent = scene.extent();
+    schedule.white = scene.has_alpha && options.background.colour == std::array<float, 3>{1, 1, 1};
+
+    constexpr int report_every = 100;
+    view_order order(scene.train.size(), options.seed);
+    std::mt19937_64 colours(options.seed + 1);
+    train_result result;
+    engine.reserve(0);
+    engine.wait();
+    const auto start = clock::now();
+    double outside = 0;  // in callbacks
+
+    for (int iteration = 1; iteration <= options.iterations; ++iteration) {
+        step_plan plan;
+        plan.view = order.next();
+        plan.sh_degree = schedule.sh_degree_at(iteration);
+        plan.background = options.background.random ? random_colour(colours) : options.background.colour;
+        plan.gradient = options.gradient;
+        plan.rates = schedule.rates_at(iteration);
+        plan.ssim_weight = schedule::ssim_weight;
+        plan.watch = schedule.watches(iteration);
+        engine.step(plan);
+
+        if (iteration % schedule::densify_every == 0) {
+            engine.wait();
+            const auto from = clock::now();
+            if (schedule.densifies(iteration)) engine.densify(rule_at(iteration, schedule, options));
+            engine.reserve(plan.sh_degree);
+            result.densify_seconds += seconds_since(from);
+        }
+        if (schedule.resets_opacity(iteration)) engine.reset_opacity(schedule::reset_opacity);
+
+        const bool last = iteration == options.iterations;
+        if (iteration % report_every == 0 || last) {
+            const quality q = engine.take_training_quality();
+            events.report({iteration, options.iterations, q.loss(schedule::ssim_weight), q.psnr(),
+                           engine.count(), seconds_since(start) - outside});
+        }
+        const auto aside = clock::now();
+        if (options.test_iterations.contains(iteration)) events.test(iteration);
+        if (options.save_iterations.contains(iteration)) events.save(iteration);
+        outside += seconds_since(aside);
+    }
+    engine.wait();
+    result.seconds = seconds_since(start) - outside;
+    result.skipped_steps = engine.skipped_steps();
+    return result;
+}
+
+}  // namespace gs::train
