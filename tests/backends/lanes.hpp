@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <warpagg/simt/lanes.hpp>
+
+#include "host_memory.hpp"
+
+namespace {
+
+/// Where a test text runs; each header of this folder defines one. A test passes `launch` an object `f` with
+/// `f(const W& warp)`, which exactly one warp executes, and which sees only `memory`.
+struct backend {
+    using warp = warpagg::emulator::lanes;
+    static constexpr const char* name = "lanes";
+    static constexpr bool commits_in_lane_order = true;
+
+    template <class T>
+    using memory = host_memory<T>;
+    template <class T>
+    using span = std::span<T>;
+
+    template <class F>
+    static void launch(const F& f) {
+        f(warp{});
+    }
+};
+
+}  // namespace

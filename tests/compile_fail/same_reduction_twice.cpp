@@ -1,0 +1,6 @@
+// expect: a policy takes one reduce tag: per_lane, shfl_down, butterfly or scatter
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <warpagg/policy.hpp>
+
+const auto wrong = warpagg::policy{warpagg::scatter, warpagg::scatter};

@@ -1,0 +1,6 @@
+// expect: shfl_down leaves the sums in lane 0: contiguous needs butterfly or scatter
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <warpagg/policy.hpp>
+
+const auto wrong = warpagg::policy{warpagg::shfl_down, warpagg::contiguous};

@@ -1,0 +1,6 @@
+// expect: a policy takes one commit tag: scalar or contiguous
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <warpagg/policy.hpp>
+
+const auto wrong = warpagg::policy{warpagg::scalar, warpagg::butterfly, warpagg::contiguous};
