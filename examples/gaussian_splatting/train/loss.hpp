@@ -52,42 +52,42 @@ struct ssim_window {
 /// A row of pixels as wide as the warp, in one of three planes. What lies outside the picture counts as zero.
 template <class W>
 struct pixel_row {
-    unsigned row;
-    value_t<W, unsigned> column, place;  ///< place: in the three planes
+    unsigned row, width, height;
+    std::ptrdiff_t first;         ///< the row's place in the three planes
+    value_t<W, unsigned> column;  ///< of each lane
     mask_t<W> inside;
-    unsigned width, height;
 
-    static unsigned per_line(int width) { return (static_cast<unsigned>(width) + W::size - 1) / W::size; }
     static std::size_t count(int width, int height) {
-        return 3 * static_cast<std::size_t>(height) * per_line(width);
+        return 3 * static_cast<std::size_t>(height) *
+               ((static_cast<unsigned>(width) + W::size - 1) / W::size);
     }
 
     WARPAGG_HD pixel_row(const W& w, unsigned index, int width_, int height_)
         : width(static_cast<unsigned>(width_)), height(static_cast<unsigned>(height_)) {
-        const unsigned lines = (width + W::size - 1) / W::size, line = index / lines;
+        const unsigned per_line = (width + W::size - 1) / W::size, line = index / per_line;
+        const unsigned left = index % per_line * W::size;
         row = line % height;
-        column = w.lane() + index % lines * W::size;
-        place = column + line * width;
+        first = static_cast<std::ptrdiff_t>(line) * width + left;
+        column = w.lane() + left;
         inside = column < width;
     }
 
-    /// Sums `tap * map` along the row (or, if `Down`, along the column) over each of N maps.
+    /// Which lanes have a pixel `shift` columns further.
+    WARPAGG_HD mask_t<W> has_column(int shift) const {
+        return inside &&
+               column + static_cast<unsigned>(shift) < width;  // what is left of the picture wraps around
+    }
+
+    /// Sums `tap * map` along the row, or along the column if `Down`, over each of N maps.
     template <bool Down, int N, class Real>
     WARPAGG_HD void blur(const W& w, const ssim_window& window, const Real* const (&maps)[N],
                          value_t<W, Real> (&sums)[N]) const {
         for (int t = -ssim_window::radius; t <= ssim_window::radius; ++t) {
-            const auto shift = static_cast<unsigned>(t);  // wraps around where it is negative, and back
-            mask_t<W> there = inside;
-            unsigned step = shift;
-            if constexpr (Down) {
-                if (row + shift >= height) continue;
-                step = shift * width;
-            } else {
-                there = there && column + shift < width;
-            }
-            const Real tap = static_cast<Real>(window.tap[t < 0 ? -t : t]);
-            for (int m = 0; m < N; ++m)
-                sums[m] = fma(value_t<W, Real>(tap), w.load(maps[m], place + step, there), sums[m]);
+            if (Down && row + static_cast<unsigned>(t) >= height) continue;
+            const std::ptrdiff_t from = first + (Down ? static_cast<std::ptrdiff_t>(t) * width : t);
+            const mask_t<W> there = Down ? inside : has_column(t);
+            const value_t<W, Real> tap(static_cast<Real>(window.tap[t < 0 ? -t : t]));
+            for (int m = 0; m < N; ++m) sums[m] = fma(tap, w.load_row(maps[m], from, there), sums[m]);
         }
     }
 };
@@ -107,17 +107,16 @@ struct ssim_moments {
         const pixel_row<W> p(w, index, width, height);
         real sum[5] = {real(0), real(0), real(0), real(0), real(0)};
         for (int t = -ssim_window::radius; t <= ssim_window::radius; ++t) {
-            const auto shift = static_cast<unsigned>(t);
-            const mask_t<W> there = p.inside && p.column + shift < p.width;
+            const mask_t<W> there = p.has_column(t);
             const real tap(static_cast<Real>(window.tap[t < 0 ? -t : t]));
-            const real a = w.load(x, p.place + shift, there), b = w.load(y, p.place + shift, there);
+            const real a = w.load_row(x, p.first + t, there), b = w.load_row(y, p.first + t, there);
             sum[0] = fma(tap, a, sum[0]);
             sum[1] = fma(tap, b, sum[1]);
             sum[2] = fma(tap * a, a, sum[2]);
             sum[3] = fma(tap * b, b, sum[3]);
             sum[4] = fma(tap * a, b, sum[4]);
         }
-        for (int m = 0; m < 5; ++m) w.store(moments[m], p.place, sum[m], p.inside);
+        for (int m = 0; m < 5; ++m) w.store_row(moments[m], p.first, sum[m], p.inside);
     }
 };
 
@@ -156,11 +155,11 @@ struct ssim_compare {
         const real by_product = (a1 + a1) * inverse;
         const real by_mean =
             (m[1] + m[1]) * (a2 - a1) * inverse + (m[0] + m[0]) * s * (Real(1) / b2 - Real(1) / b1);
-        w.store(derivatives[0], p.place, by_mean, p.inside);
-        w.store(derivatives[1], p.place, by_square, p.inside);
-        w.store(derivatives[2], p.place, by_product, p.inside);
+        w.store_row(derivatives[0], p.first, by_mean, p.inside);
+        w.store_row(derivatives[1], p.first, by_square, p.inside);
+        w.store_row(derivatives[2], p.first, by_product, p.inside);
 
-        const real error = w.load(x, p.place, p.inside) - w.load(y, p.place, p.inside);
+        const real error = w.load_row(x, p.first, p.inside) - w.load_row(y, p.first, p.inside);
         const value_t<W, double> found[loss_sum_count] = {
             warpagg::convert<double>(warpagg::max(error, -error)), warpagg::convert<double>(error * error),
             warpagg::convert<double>(s)};
@@ -182,7 +181,7 @@ struct ssim_spread {
         const pixel_row<W> p(w, index, width, height);
         real sum[3] = {real(0), real(0), real(0)};
         p.template blur<false>(w, window, derivatives, sum);
-        for (int m = 0; m < 3; ++m) w.store(spread[m], p.place, sum[m], p.inside);
+        for (int m = 0; m < 3; ++m) w.store_row(spread[m], p.first, sum[m], p.inside);
     }
 };
 
@@ -203,12 +202,12 @@ struct loss_gradient {
         const pixel_row<W> p(w, index, width, height);
         real sum[3] = {real(0), real(0), real(0)};
         p.template blur<true>(w, window, spread, sum);
-        const real a = w.load(x, p.place, p.inside), b = w.load(y, p.place, p.inside);
+        const real a = w.load_row(x, p.first, p.inside), b = w.load_row(y, p.first, p.inside);
         const real similarity = sum[0] + (a + a) * sum[1] + b * sum[2];
         const Real each = Real(1) / (Real(3) * Real(width) * Real(height));
         const real sign = select(a > b, real(1), select(a < b, real(-1), real(0)));
         const real g = sign * (each * (Real(1) - ssim_weight)) - similarity * (each * ssim_weight);
-        w.store(gradient, p.place, g, p.inside);
+        w.store_row(gradient, p.first, g, p.inside);
     }
 };
 

@@ -45,6 +45,14 @@ struct warp {
     __device__ __forceinline__ void store(T* to, unsigned index, T v, bool active) const {
         if (active) to[index] = v;
     }
+    template <class T>
+    __device__ __forceinline__ T load_row(const T* from, std::ptrdiff_t first, bool active) const {
+        return active ? from[first + static_cast<std::ptrdiff_t>(lane())] : T{};
+    }
+    template <class T>
+    __device__ __forceinline__ void store_row(T* to, std::ptrdiff_t first, T v, bool active) const {
+        if (active) to[first + static_cast<std::ptrdiff_t>(lane())] = v;
+    }
     /// Compiles to RED, which returns nothing. `T`: float, double (sm_60), int, unsigned.
     template <class Dst, class T>
     __device__ __forceinline__ void atomic_add(Dst dst, unsigned index, T v, bool active) const {

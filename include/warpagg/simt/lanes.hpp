@@ -117,6 +117,37 @@ struct basic_lanes : Counting {
     WARPAGG_HD void store(T* to, const value<unsigned>& index, const value<T>& v, const mask& active) const {
         for_each_lane(bits(active), [&](int lane) { to[index[lane]] = v[lane]; });
     }
+    template <class T>
+    WARPAGG_HD value<T> load_row(const T* from, std::ptrdiff_t first, const mask& active) const {
+        value<T> r;
+        for (int i = 0; i < r.chunks; ++i) {
+            const T* p = from + first + i * r.width;
+#if defined(__AVX2__)
+            if constexpr (sizeof(T) == 4) {
+                r.part[i] = reinterpret_cast<typename value<T>::chunk>(_mm256_maskload_epi32(
+                    reinterpret_cast<const int*>(p), reinterpret_cast<__m256i>(active.part[i])));
+                continue;
+            }
+#endif
+            for (int k = 0; k < r.width; ++k) r.set(i * r.width + k, active[i * r.width + k] ? p[k] : T{});
+        }
+        return r;
+    }
+    template <class T>
+    WARPAGG_HD void store_row(T* to, std::ptrdiff_t first, const value<T>& v, const mask& active) const {
+        for (int i = 0; i < v.chunks; ++i) {
+            T* p = to + first + i * v.width;
+#if defined(__AVX2__)
+            if constexpr (sizeof(T) == 4) {
+                _mm256_maskstore_epi32(reinterpret_cast<int*>(p), reinterpret_cast<__m256i>(active.part[i]),
+                                       reinterpret_cast<__m256i>(v.part[i]));
+                continue;
+            }
+#endif
+            for (int k = 0; k < v.width; ++k)
+                if (active[i * v.width + k]) p[k] = v[i * v.width + k];
+        }
+    }
     template <class Dst, class T>
     WARPAGG_HD void atomic_add(Dst dst, const value<unsigned>& index, const value<T>& v,
                                const mask& active) const {

@@ -38,6 +38,14 @@ struct serial {
     void store(T* to, unsigned index, T v, bool active) const {
         if (active) to[index] = v;
     }
+    template <class T>
+    T load_row(const T* from, std::ptrdiff_t first, bool active) const {
+        return active ? from[first] : T{};
+    }
+    template <class T>
+    void store_row(T* to, std::ptrdiff_t first, T v, bool active) const {
+        if (active) to[first] = v;
+    }
     template <class Dst, class T>
     void atomic_add(Dst dst, unsigned index, T v, bool active) const {
         if (active) detail::atomic_add(dst(index), v);

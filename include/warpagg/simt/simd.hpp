@@ -49,7 +49,6 @@ struct lanes {
     using scalar = T;
     using element = detail::element_t<T>;
     using chunk = detail::chunk_t<T>;
-    using signed_element = std::conditional_t<sizeof(element) == 4, std::int32_t, std::int64_t>;
     static constexpr int width = detail::chunk_bytes / static_cast<int>(sizeof(element));  // lanes a chunk
     static constexpr int chunks = L / width;
     static_assert(L % width == 0);
@@ -134,9 +133,15 @@ struct lanes {
     WARPAGG_LANES_COMPARISON(!=)
 #undef WARPAGG_LANES_COMPARISON
 
-    /// Chunk `i` of a mask, as wide as T.
-    static WARPAGG_HD void widen_mask(const lanes<bool, L>& m, int i, detail::chunk_t<signed_element>& to) {
-        for (int k = 0; k < width; ++k) to[k] = m.raw(i * width + k);
+    /// Chunk `i` of lanes of 64 bits, converted from lanes of 32 bits.
+    template <class From>
+    static WARPAGG_HD void widen(const lanes<From, L>& from, int i, chunk& to) {
+        const auto& both = from.part[i / 2];
+        if (i % 2 == 0) {
+            to = __builtin_convertvector(__builtin_shufflevector(both, both, 0, 1, 2, 3), chunk);
+        } else {
+            to = __builtin_convertvector(__builtin_shufflevector(both, both, 4, 5, 6, 7), chunk);
+        }
     }
 
   private:
@@ -157,8 +162,8 @@ WARPAGG_HD lanes<T, L> select(const lanes<bool, L>& mask, const lanes<T, L>& yes
         if constexpr (sizeof(typename lanes<T, L>::element) == sizeof(std::int32_t)) {
             r.part[i] = mask.part[i] ? yes.part[i] : no.part[i];
         } else {
-            detail::chunk_t<typename lanes<T, L>::signed_element> wide;
-            lanes<T, L>::widen_mask(mask, i, wide);
+            typename lanes<std::int64_t, L>::chunk wide;
+            lanes<std::int64_t, L>::widen(mask, i, wide);
             r.part[i] = wide ? yes.part[i] : no.part[i];
         }
     }
@@ -231,6 +236,8 @@ WARPAGG_HD lanes<To, L> convert(const lanes<From, L>& a) {
     if constexpr (sizeof(To) == sizeof(From)) {
         for (int i = 0; i < r.chunks; ++i)
             r.part[i] = __builtin_convertvector(a.part[i], typename lanes<To, L>::chunk);
+    } else if constexpr (sizeof(To) == 2 * sizeof(From)) {
+        for (int i = 0; i < r.chunks; ++i) lanes<To, L>::widen(a, i, r.part[i]);
     } else {
         for (int k = 0; k < L; ++k) r.set(k, static_cast<To>(a[k]));
     }

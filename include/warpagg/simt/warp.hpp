@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -44,7 +45,9 @@ using mask_t = value_t<W, bool>;
 /// | `shfl_xor(v, d)` | v of the lane whose number differs in the bits of d |
 /// | `load(p, i, active)` | `p[i]` per active lane; inactive lanes read nothing and get T{} |
 /// | `store(p, i, v, active)` | `p[i] = v` per active lane |
-/// | `atomic_add(dst, i, v, active)` | per active lane, `*dst(i) += v`, atomically, relaxed |
+/// | `load_row(p, i, active)` | `p[i + lane]` per active lane; `i` is the same in every lane and may be
+/// negative | | `store_row(p, i, v, active)` | `p[i + lane] = v` per active lane | | `atomic_add(dst, i, v,
+/// active)` | per active lane, `*dst(i) += v`, atomically, relaxed |
 template <class W>
 concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i, mask_t<W> p, float* m,
                         float* (*dst)(unsigned)) {
@@ -57,6 +60,8 @@ concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i,
     { w.shfl_xor(v, 1u) } -> std::same_as<value_t<W, float>>;
     { w.load(m, i, p) } -> std::same_as<value_t<W, float>>;
     w.store(m, i, v, p);
+    { w.load_row(m, std::ptrdiff_t{}, p) } -> std::same_as<value_t<W, float>>;
+    w.store_row(m, std::ptrdiff_t{}, v, p);
     w.atomic_add(dst, i, v, p);
 };
 
