@@ -119,9 +119,16 @@ class basic_cpu {
         }
     }
 
+    /// Times every n-th iteration from now on.
+    void sample_times(int every) {
+        sampling_ = every;
+        iteration_ = 0;
+        times_ = {};
+    }
+    /// Marks where a stage begins.
     void begin(stage s) {
         const auto now = clock::now();
-        if (running_ != stage::count)
+        if (running_ != stage::count && iteration_ % sampling_ == 0)
             times_.milliseconds[static_cast<std::size_t>(running_)] +=
                 std::chrono::duration<double, std::milli>(now - since_).count();
         running_ = s;
@@ -129,7 +136,7 @@ class basic_cpu {
     }
     void end_iteration() {
         begin(stage::count);
-        ++times_.sampled;
+        if (iteration_++ % sampling_ == 0) ++times_.sampled;
     }
     const stage_times& times() { return times_; }
 
@@ -174,6 +181,7 @@ class basic_cpu {
     std::vector<std::size_t> histograms_;
     stage_times times_;
     stage running_ = stage::count;
+    int sampling_ = 1, iteration_ = 0;
     clock::time_point since_;
 };
 

@@ -188,16 +188,22 @@ class cuda {
         if (v.selector == 1) std::swap(values, other_values_);
     }
 
-    /// Marks where a stage begins. Only every 50th iteration is timed: the events of all would cost more than
-    /// they tell.
+    /// Times every n-th iteration from now on.
+    void sample_times(int every) {
+        collect();
+        sampling_ = every;
+        iteration_ = 0;
+        times_ = {};
+    }
+    /// Marks where a stage begins.
     void begin(stage s) {
-        if (iteration_ % sampling != 0) return;
+        if (iteration_ % sampling_ != 0) return;
         check(cudaEventRecord(marks_[static_cast<std::size_t>(s)], stream_));
         pending_[static_cast<std::size_t>(s)] = true;
     }
     void end_iteration() {
         begin(stage::count);
-        if (++iteration_ % sampling == 0) collect();
+        if (++iteration_ % sampling_ == 0) collect();
     }
     const stage_times& times() {
         collect();
@@ -247,14 +253,13 @@ class cuda {
         peak() = std::max(peak(), static_cast<std::size_t>(now));
     }
 
-    static constexpr int sampling = 50;
     cudaStream_t stream_{};
     buffer<std::uint32_t> other_keys_, other_values_;
     buffer<char> scratch_;
     std::array<cudaEvent_t, static_cast<std::size_t>(stage::count) + 1> marks_{};
     std::array<bool, static_cast<std::size_t>(stage::count) + 1> pending_{};
     stage_times times_;
-    int iteration_ = 0;
+    int sampling_ = 50, iteration_ = 0;  // the events of every iteration would cost more than they tell
 };
 
 }  // namespace gs::device

@@ -7,8 +7,8 @@
 
 namespace gs {
 
-/// The parameters of a Gaussian as the device holds them, each an array of its own. Every SH band is one, so that
-/// a band that is not in use is neither stored, read nor updated.
+/// The parameters of a Gaussian as the device holds them, each an array of its own. Every SH band is one, so
+/// that a band that is not in use is neither stored, read nor updated.
 enum class parameter { mean, log_scale, quaternion, opacity, sh0, sh1, sh2, sh3, count };
 inline constexpr std::size_t parameter_count = static_cast<std::size_t>(parameter::count);
 
@@ -20,7 +20,8 @@ constexpr bool has_parameter(std::size_t p, int sh_degree) {
     return static_cast<int>(p) - static_cast<int>(parameter::sh0) <= sh_degree;
 }
 
-/// Where the arrays lie: `count * width` values each, Gaussian-major. Values, gradients and moments have this form.
+/// Where the arrays lie: `count * width` values each, Gaussian-major. Values, gradients and moments have this
+/// form.
 template <class Real>
 struct parameter_arrays {
     Real* mean = nullptr;

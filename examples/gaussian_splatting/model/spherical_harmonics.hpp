@@ -7,8 +7,8 @@
 
 namespace gs {
 
-/// The real spherical harmonics up to degree 3 at a unit vector, in the order and with the signs of the reference
-/// implementation (Kerbl et al. 2023). `basis` has room for 16.
+/// The real spherical harmonics up to degree 3 at a unit vector, in the order and with the signs of the
+/// reference implementation (Kerbl et al. 2023). `basis` has room for 16.
 template <class Real>
 WARPAGG_HD void sh_basis(int degree, const glm::vec<3, Real>& d, Real* basis) {
     const Real x = d.x, y = d.y, z = d.z;
@@ -43,7 +43,8 @@ WARPAGG_HD glm::vec<3, Real> sh_gradient(int degree, const glm::vec<3, Real>& d,
     if (degree < 1) return g;
     g += Real(0.4886025119029199) * vec3(-weight[3], -weight[1], weight[2]);
     if (degree < 2) return g;
-    g += Real(1.0925484305920792) * (weight[4] * vec3(y, x, 0) - weight[5] * vec3(0, z, y) - weight[7] * vec3(z, 0, x));
+    g += Real(1.0925484305920792) *
+         (weight[4] * vec3(y, x, 0) - weight[5] * vec3(0, z, y) - weight[7] * vec3(z, 0, x));
     g += Real(0.31539156525252005) * weight[6] * vec3(-2 * x, -2 * y, 4 * z);
     g += Real(0.5462742152960396) * weight[8] * vec3(2 * x, -2 * y, 0);
     if (degree < 3) return g;

@@ -14,7 +14,8 @@
 namespace gs {
 
 /// A pinhole camera. A world point p is at `rotation * p + translation` in camera space (x right, y down,
-/// z forward) and at (fx x/z + cx, fy y/z + cy) in pixels, where the centre of the top left pixel is (0.5, 0.5).
+/// z forward) and at (fx x/z + cx, fy y/z + cy) in pixels, where the centre of the top left pixel is (0.5,
+/// 0.5).
 struct camera {
     int width = 0;
     int height = 0;
@@ -52,10 +53,10 @@ struct scene {
 struct load_options {
     std::string data;               ///< a folder, or "synthetic:NAME"
     std::string images = "images";  ///< COLMAP: the folder of photos, relative to `data`
-    int resolution = 1;             ///< 1, 2, 4, 8 divide the size; any other number is the longer side in pixels
-    bool eval = false;              ///< hold out test views
-    int test_every = 8;             ///< COLMAP: every n-th view, sorted by name, from the first
-    std::uint64_t seed = 0;         ///< synthetic: its point cloud
+    int resolution = 1;      ///< 1, 2, 4, 8 divide the size; any other number is the longer side in pixels
+    bool eval = false;       ///< hold out test views
+    int test_every = 8;      ///< COLMAP: every n-th view, sorted by name, from the first
+    std::uint64_t seed = 0;  ///< synthetic: its point cloud
 };
 
 using log_function = std::function<void(const std::string&)>;

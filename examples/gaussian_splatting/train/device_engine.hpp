@@ -201,6 +201,7 @@ class device_engine final : public engine {
         return photometric_.take();
     }
 
+    void sample_times(int every) override { device_.sample_times(every); }
     device::stage_times times() override { return device_.times(); }
     std::uint64_t pairs() override {
         unsigned long long n = 0;

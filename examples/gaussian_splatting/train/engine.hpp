@@ -60,7 +60,10 @@ class engine {
     /// A test view against its photo, clamped to [0, 1].
     virtual quality measure(std::size_t test_view, const std::array<float, 3>& background) = 0;
 
-    virtual device::stage_times times() = 0;
+    /// Times every n-th step from now on. By default, what costs nothing: all on the CPU, every 50th on a
+    /// GPU.
+    virtual void sample_times(int every) = 0;
+    virtual device::stage_times times() = 0;            ///< since `sample_times`, or ever
     virtual std::uint64_t pairs() = 0;                  ///< pixel-Gaussian pairs evaluated forward so far
     virtual std::size_t peak_device_bytes() const = 0;  ///< zero where that is the host's
     virtual void wait() = 0;

@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "model/initialise.hpp"
+#include "train/trainer.hpp"
+
+namespace {
+
+using gs::gaussians;
+using gs::train::densify_rule;
+using gs::train::engine;
+
+using make_engine = std::unique_ptr<engine> (*)();
+
+std::vector<make_engine> engines() {
+    std::vector<make_engine> all{gs::train::make_cpu_engine};
+#if defined(WARPAGG_TEST_CUDA)
+    all.push_back(gs::train::make_cuda_engine);
+#endif
+    return all;
+}
+
+gs::scene small_scene(const char* name = "synthetic:spheres") {
+    gs::load_options o;
+    o.data = name;
+    o.resolution = 48;
+    o.eval = true;
+    return gs::load_scene(o, [](const std::string&) {});
+}
+
+gs::train::step_plan plan_for(std::size_t view) {
+    gs::train::schedule s;
+    gs::train::step_plan p;
+    p.view = view;
+    p.rates = s.rates_at(1);
+    p.watch = true;
+    return p;
+}
+
+bool same(const gaussians& a, const gaussians& b) {
+    return a.mean == b.mean && a.log_scale == b.log_scale && a.quaternion == b.quaternion &&
+           a.opacity == b.opacity && a.sh_constant == b.sh_constant && a.sh_rest == b.sh_rest;
+}
+
+double psnr_between(const std::vector<float>& a, const std::vector<float>& b) {
+    double square = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        square += std::pow(static_cast<double>(a[i]) - static_cast<double>(b[i]), 2);
+    return -10 * std::log10(square / static_cast<double>(a.size()) + 1e-20);
+}
+
+}  // namespace
+
+TEST_CASE("a model comes back from the device as it went, at every degree") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines())
+        for (int degree = 0; degree <= 3; ++degree) {
+            gaussians model = gs::from_points(scene.points, degree, 500, 1);
+            for (std::size_t i = 0; i < model.sh_rest.size(); ++i) model.sh_rest[i] = static_cast<float>(i);
+            const auto e = make();
+            e->set_model(model);
+            CHECK(e->count() == 500);
+            CHECK(same(e->get_model(), model));
+        }
+}
+
+TEST_CASE("training brings the held-out views near the photos") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(gs::from_points(scene.points, 1, 3000, 1));
+        const double before = e->measure(0, {}).psnr();
+        gs::train::train_options o;
+        o.iterations = 300;
+        o.sh_degree = 1;
+        o.sh_degree_interval = 100;
+        o.max_cap = 4000;
+        int reports = 0;
+        gs::train::train_events events{[&](const gs::train::progress& p) {
+                                           ++reports;
+                                           CHECK(std::isfinite(p.loss));
+                                       },
+                                       [](int) {}, [](int) {}};
+        const auto result = gs::train::train(*e, scene, o, events);
+        CHECK(reports == 3);
+        CHECK(result.skipped_steps == 0);
+        CHECK(before < 22);
+        CHECK(e->measure(0, {}).psnr() > before + 5);
+        CHECK(e->measure(0, {}).ssim > 0.9);
+    }
+}
+
+TEST_CASE("what it measures is what it draws") {
+    const gs::scene scene = small_scene("synthetic:alpha");
+    REQUIRE(scene.has_alpha);
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(gs::from_points(scene.points, 0, 1000, 1));
+        const std::array<float, 3> white{1, 1, 1};
+        const auto& view = scene.test[1];
+        auto picture = e->render(view.camera, white);
+        for (float& x : picture) x = std::clamp(x, 0.0f, 1.0f);
+        CHECK(e->measure(1, white).psnr() ==
+              doctest::Approx(psnr_between(picture, gs::over_background(view.pixels, white.data())))
+                  .epsilon(1e-4));
+    }
+}
+
+TEST_CASE("the most urgent grow first, and none past the cap") {
+    const gs::scene scene = small_scene();
+    const gaussians model = gs::from_points(scene.points, 0, 1000, 1);
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(model);
+        e->reserve(0);
+        for (std::size_t v = 0; v < 4; ++v) e->step(plan_for(v));
+        const gaussians stepped = e->get_model();
+        densify_rule rule;
+        rule.gradient = 1e-12f;  // everything that was seen to move
+        rule.least_opacity = 0;
+        rule.dense_scale = 1e9f;  // copied, not split
+        rule.cap = 1100;
+        e->densify(rule);
+        CHECK(e->count() == 1100);
+
+        // Copies are exact: every Gaussian of before is there once or twice, in its order.
+        const gaussians grown = e->get_model();
+        std::size_t from = 0, twice = 0;
+        for (std::size_t i = 0; i < grown.count(); ++i) {
+            const bool same_as_from =
+                std::equal(grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                           grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i + 3),
+                           stepped.mean.begin() + static_cast<std::ptrdiff_t>(3 * from));
+            if (!same_as_from) ++from;
+            REQUIRE(std::equal(grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                               grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i + 3),
+                               stepped.mean.begin() + static_cast<std::ptrdiff_t>(3 * from)));
+            CHECK(grown.opacity[i] == stepped.opacity[from]);
+            if (i > 0 && same_as_from) ++twice;
+        }
+        CHECK(from == 999);
+        CHECK(twice == 100);
+
+        // Nobody has been seen since: nothing grows.
+        e->densify(rule);
+        CHECK(e->count() == 1100);
+    }
+}
+
+TEST_CASE("a split leaves two that are 1.6 times smaller, near their parent") {
+    const gs::scene scene = small_scene();
+    const gaussians model = gs::from_points(scene.points, 0, 200, 1);
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(model);
+        e->reserve(0);
+        auto still = plan_for(0);
+        still.rates = {};
+        e->step(still);
+        densify_rule rule;
+        rule.gradient = 1e-12f;
+        rule.least_opacity = 0;
+        rule.dense_scale = 1e-9f;  // split, not copied
+        rule.cap = 1000;
+        e->densify(rule);
+        const gaussians grown = e->get_model();
+        REQUIRE(grown.count() > 300);
+        std::size_t halves = 0;
+        for (std::size_t i = 0, parent = 0; i < grown.count(); ++parent) {
+            REQUIRE(parent < model.count());
+            const float shrunk = model.log_scale[3 * parent] - std::log(1.6f);
+            const bool is_split = std::abs(grown.log_scale[3 * i] - shrunk) < 1e-5f;
+            for (std::size_t half = 0; half < (is_split ? 2 : 1); ++half, ++i) {
+                float distance = 0;
+                for (std::size_t k = 0; k < 3; ++k)
+                    distance =
+                        std::max(distance, std::abs(grown.mean[3 * i + k] - model.mean[3 * parent + k]));
+                if (is_split) {
+                    ++halves;
+                    CHECK(grown.log_scale[3 * i] == doctest::Approx(shrunk));
+                    CHECK(distance > 0);
+                    CHECK(distance < 6 * std::exp(model.log_scale[3 * parent]));
+                } else {
+                    CHECK(distance == 0);
+                }
+            }
+        }
+        CHECK(halves == 2 * (grown.count() - model.count()));
+    }
+}
+
+TEST_CASE("the transparent, the huge and the wide are dropped") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 0, 300, 1);
+    for (std::size_t i = 0; i < 300; i += 3) model.opacity[i] = -10;
+    for (std::size_t i = 1; i < 300; i += 3) model.log_scale[3 * i + 1] = 3;
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_model(model);
+        densify_rule rule;
+        rule.gradient = 1e9f;
+        rule.cap = 1000;
+        e->densify(rule);
+        CHECK(e->count() == 200);
+        rule.most_scale = 2;
+        e->densify(rule);
+        CHECK(e->count() == 100);
+
+        // Who is wide on the screen is only known once it was seen.
+        rule.most_scale = 0;
+        rule.most_radius = 1e-3f;
+        e->densify(rule);
+        CHECK(e->count() == 100);
+        e->set_views(scene.train, scene.test);
+        e->reserve(0);
+        auto still = plan_for(0);
+        still.rates = {};
+        e->step(still);
+        e->densify(rule);
+        CHECK(e->count() < 50);
+    }
+}
+
+TEST_CASE("opacities are brought down, never up") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 0, 4, 1);
+    model.opacity = {-9, -4.6f, 0, 9};
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_model(model);
+        e->reset_opacity(0.01f);
+        const float most = std::log(0.01f / 0.99f);
+        CHECK(e->get_model().opacity == std::vector<float>{-9, -4.6f, most, most});
+    }
+}
+
+TEST_CASE("a step whose lists do not fit changes nothing, and is counted") {
+    const gs::scene scene = small_scene();
+    const gaussians small = gs::from_points(scene.points, 0, 1, 1);
+    gaussians large = gs::from_points(scene.points, 0, 3000, 1);
+    for (float& s : large.log_scale)
+        s = 0;  // each meets every tile: 27,000 instances, where 4,096 are reserved
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(small);
+        e->reserve(0);
+        e->set_model(large);
+        e->step(plan_for(0));
+        CHECK(e->skipped_steps() == 1);
+        CHECK(same(e->get_model(), large));
+        e->reserve(0);
+        e->step(plan_for(0));
+        CHECK(e->skipped_steps() == 1);
+        CHECK_FALSE(same(e->get_model(), large));
+    }
+}
+
+#if defined(WARPAGG_TEST_CUDA)
+TEST_CASE("CPU and GPU draw the same picture") {
+    const gs::scene scene = small_scene();
+    const gaussians model = gs::from_points(scene.points, 3, 3000, 1);
+    const auto cpu = gs::train::make_cpu_engine(), gpu = gs::train::make_cuda_engine();
+    cpu->set_model(model);
+    gpu->set_model(model);
+    for (const auto& v : scene.test)
+        CHECK(psnr_between(cpu->render(v.camera, {1, 1, 1}), gpu->render(v.camera, {1, 1, 1})) > 60);
+}
+#endif

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "device/cpu.hpp"
+#include "train/photometric.hpp"
+
+namespace {
+
+/// The similarity from its definition: a full two-dimensional window, in double, no pass shared with the
+/// kernels.
+double ssim_by_definition(const std::vector<double>& x, const std::vector<double>& y, int width, int height) {
+    double window[11][11], sum = 0;
+    for (int i = 0; i < 11; ++i)
+        for (int j = 0; j < 11; ++j)
+            sum += window[i][j] = std::exp(-((i - 5) * (i - 5) + (j - 5) * (j - 5)) / (2 * 1.5 * 1.5));
+    double total = 0;
+    for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < height; ++r)
+            for (int q = 0; q < width; ++q) {
+                double mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
+                for (int i = 0; i < 11; ++i)
+                    for (int j = 0; j < 11; ++j) {
+                        const int row = r + i - 5, column = q + j - 5;
+                        if (row < 0 || row >= height || column < 0 || column >= width) continue;
+                        const auto at = static_cast<std::size_t>((c * height + row) * width + column);
+                        const double w = window[i][j] / sum;
+                        mx += w * x[at];
+                        my += w * y[at];
+                        xx += w * x[at] * x[at];
+                        yy += w * y[at] * y[at];
+                        xy += w * x[at] * y[at];
+                    }
+                total += (2 * mx * my + 1e-4) * (2 * (xy - mx * my) + 9e-4) /
+                         ((mx * mx + my * my + 1e-4) * (xx - mx * mx + yy - my * my + 9e-4));
+            }
+    return total / (3 * width * height);
+}
+
+}  // namespace
+
+TEST_CASE("the measures are those of their definitions, at odd sizes too") {
+    std::mt19937 random(3);
+    for (const auto& [width, height] : {std::pair{1, 1}, {1, 17}, {17, 1}, {33, 9}, {64, 20}, {40, 31}}) {
+        CAPTURE(width);
+        CAPTURE(height);
+        const auto pixels = static_cast<std::size_t>(width * height);
+        std::vector<std::uint8_t> rgba(4 * pixels);
+        for (std::size_t i = 0; i < pixels; ++i) {
+            rgba[4 * i + 3] = static_cast<std::uint8_t>(random() % 256);
+            for (std::size_t c = 0; c < 3; ++c)
+                rgba[4 * i + c] = static_cast<std::uint8_t>(random() % (rgba[4 * i + 3] + 1u));
+        }
+        const std::array<float, 3> background{0.25f, 1.0f, 0.5f};
+        std::vector<float> picture(3 * pixels);
+        for (float& x : picture) x = static_cast<float>(random() % 1000) / 999;
+
+        std::vector<double> x(picture.begin(), picture.end()), y(3 * pixels);
+        double absolute = 0, square = 0;
+        for (std::size_t i = 0; i < y.size(); ++i) {
+            const std::size_t c = i / pixels, at = i % pixels;
+            const double through = 1 - rgba[4 * at + 3] / 255.0;
+            y[i] = rgba[4 * at + c] / 255.0 + through * static_cast<double>(background[c]);
+            absolute += std::abs(x[i] - y[i]) / static_cast<double>(y.size());
+            square += (x[i] - y[i]) * (x[i] - y[i]) / static_cast<double>(y.size());
+        }
+
+        gs::device::cpu device;
+        gs::train::photometric<gs::device::cpu, float> photometric(device);
+        photometric.set_photo(rgba.data(), width, height, background);
+        photometric.compare(picture.data());
+        const gs::train::quality q = photometric.take();
+        CHECK(q.absolute == doctest::Approx(absolute).epsilon(1e-5));
+        CHECK(q.square == doctest::Approx(square).epsilon(1e-5));
+        CHECK(q.psnr() == doctest::Approx(-10 * std::log10(square)).epsilon(1e-5));
+        CHECK(q.ssim == doctest::Approx(ssim_by_definition(x, y, width, height)).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("a picture is like itself") {
+    gs::device::cpu device;
+    gs::train::photometric<gs::device::cpu, float> photometric(device);
+    std::vector<std::uint8_t> rgba(4 * 20 * 20, 255);
+    for (std::size_t i = 0; i < rgba.size(); i += 4) rgba[i] = static_cast<std::uint8_t>(i);
+    photometric.set_photo(rgba.data(), 20, 20, {});
+    std::vector<float> picture(3 * 400);
+    for (std::size_t i = 0; i < 400; ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            picture[c * 400 + i] = static_cast<float>(rgba[4 * i + c]) * (1.0f / 255);
+    photometric.compare(picture.data());
+    const gs::train::quality q = photometric.take();
+    CHECK(q.ssim == doctest::Approx(1).epsilon(1e-5));
+    CHECK(q.absolute < 1e-7);
+}
