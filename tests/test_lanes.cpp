@@ -84,13 +84,17 @@ void for_random_pairs(F f) {
     }
 }
 
-#define CHECK_OPERATOR(op)                                                                       \
-    do {                                                                                         \
-        const auto expected = each([&](std::size_t i) { return static_cast<T>(a[i] op b[i]); }); \
-        CHECK(same_bits(va op vb, expected));                                                    \
-        vector<T> in_place = va;                                                                 \
-        in_place op## = vb;                                                                      \
-        CHECK(same_bits(in_place, expected));                                                    \
+/// Promoted first: compilers doubt & and | of bools.
+#define CHECK_OPERATOR(op)                              \
+    do {                                                \
+        const auto expected = each([&](std::size_t i) { \
+            const auto x = +a[i], y = +b[i];            \
+            return static_cast<T>(x op y);              \
+        });                                             \
+        CHECK(same_bits(va op vb, expected));           \
+        vector<T> in_place = va;                        \
+        in_place op## = vb;                             \
+        CHECK(same_bits(in_place, expected));           \
     } while (false)
 
 #define CHECK_COMPARISON(op) \
