@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
+#include <limits>
 #include <vector>
 
 #include "../error.hpp"
@@ -50,6 +52,32 @@ void refuse_unknown(const CLI::App& command, const std::vector<std::string>& arg
     }
 }
 
+/// CLI11 would say that a command is missing, whatever stands in its place.
+void require_command(const CLI::App& app, const std::vector<CLI::App*>& commands,
+                     const std::vector<std::string>& arguments) {
+    std::string names;
+    for (const CLI::App* command : commands) names += (names.empty() ? "" : ", ") + command->get_name();
+    if (arguments.empty()) throw error("a command is missing: there are " + names + " (see --help)");
+    const std::string& first = arguments.front();
+    const auto is_first = [&](const CLI::App* command) { return command->get_name() == first; };
+    if (std::ranges::any_of(commands, is_first) || app.get_option_no_throw(first) != nullptr) return;
+    throw error("the command comes first, and '" + first + "' is none: there are " + names + " (see --help)");
+}
+
+/// CLI11's own checks print bounds as doubles do, and take -1 for the largest unsigned number.
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+    const std::string range = std::to_string(least) + " to " + std::to_string(most);
+    const auto refusal = [=](const std::string& text) {
+        std::uint64_t value = 0;
+        const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool whole = problem == std::errc() && end == text.data() + text.size();
+        return whole && value >= least && value <= most
+                   ? std::string()
+                   : "must be a whole number from " + range + ", not '" + text + "'";
+    };
+    return {refusal, range};
+}
+
 void add_scene(CLI::App& app, settings& s, bool required) {
     auto* data = app.add_option("-d,--data,-s,--source-path", s.scene.data,
                                 "Scene: a folder (COLMAP or Blender) or synthetic:NAME");
@@ -58,11 +86,11 @@ void add_scene(CLI::App& app, settings& s, bool required) {
         ->capture_default_str();
     app.add_option("-r,--resolution", s.scene.resolution,
                    "1, 2, 4, 8 divide the size; else the longer side in pixels")
-        ->check(CLI::PositiveNumber)
+        ->check(whole_number(1, 65536))
         ->capture_default_str();
     auto* eval = app.add_flag("--eval", s.scene.eval, "Hold out test views");
     app.add_option("--test-every", s.scene.test_every, "Hold out every n-th view (COLMAP)")
-        ->check(CLI::Range(2, 1000000))
+        ->check(whole_number(2, 1000000))
         ->needs(eval)
         ->capture_default_str();
 }
@@ -78,7 +106,9 @@ void add_common(CLI::App& app, settings& s) {
     app.add_flag_callback(
            "-w,--white-background", [&s] { s.background = "white"; }, "The same as --background white")
         ->excludes(background);
-    app.add_option("--seed", s.seed, "Of everything random")->capture_default_str();
+    app.add_option("--seed", s.seed, "Of everything random")
+        ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+        ->capture_default_str();
     app.add_flag("-q,--quiet", s.quiet, "Print errors only");
 }
 
@@ -87,15 +117,17 @@ CLI::App* add_train(CLI::App& app, settings& s) {
     add_scene(*train, s, true);
     add_common(*train, s);
     train->add_option("-o,--output,-m,--model-path", s.output, "Folder for the results")->required();
-    train->add_option("-i,--iterations", s.iterations)->check(CLI::Range(1, 10000000))->capture_default_str();
+    train->add_option("-i,--iterations", s.iterations)
+        ->check(whole_number(1, 10000000))
+        ->capture_default_str();
     train->add_option("--sh-degree", s.sh_degree, "Of view-dependent colour")
-        ->check(CLI::Range(0, 3))
+        ->check(whole_number(0, 3))
         ->capture_default_str();
     train->add_option("--sh-degree-interval", s.sh_degree_interval, "Iterations between two degrees")
-        ->check(CLI::PositiveNumber)
+        ->check(whole_number(1, 10000000))
         ->capture_default_str();
     train->add_option("--max-cap", s.max_cap, "Most Gaussians; by default one for 32 pixels of the photos")
-        ->check(CLI::PositiveNumber);
+        ->check(whole_number(1, 1000000000));
     std::set<std::string> policies(gradient_policy_names.begin(), gradient_policy_names.end());
     train->add_option("--gradient", s.gradient, "How gradients are added up")
         ->check(CLI::IsMember(policies))
@@ -124,7 +156,7 @@ CLI::App* add_render(CLI::App& app, settings& s) {
     add_common(*render, s);
     render->add_option("-o,--output", s.output, "Folder for the pictures")->required();
     render->add_option("--orbit-views", s.orbit_views, "Without --data: pictures of the orbit")
-        ->check(CLI::Range(1, 10000))
+        ->check(whole_number(1, 10000))
         ->excludes(render->get_option("--data"))
         ->capture_default_str();
     return render;
@@ -151,8 +183,9 @@ settings parse(int argc, char** argv) {
         if (a.starts_with("--"))
             std::replace(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(std::min(a.find('='), a.size())),
                          '_', '-');
-    for (CLI::App* command : commands)
-        if (!arguments.empty() && arguments[0] == command->get_name()) refuse_unknown(*command, arguments);
+    require_command(app, commands, arguments);
+    for (const CLI::App* command : commands)
+        if (arguments[0] == command->get_name()) refuse_unknown(*command, arguments);
     try {
         std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // as CLI11 wants them
         app.parse(reversed);

@@ -178,7 +178,7 @@ std::vector<colmap_camera> read_binary_cameras(const std::filesystem::path& file
         const auto model_id = reader.take<std::int32_t>();
         const auto width = reader.take<std::uint64_t>();
         const auto height = reader.take<std::uint64_t>();
-        const camera_model& model = find_model(model_id, "number " + std::to_string(model_id), reader.file());
+        const camera_model model = find_model(model_id, "number " + std::to_string(model_id), reader.file());
         std::vector<double> parameters(model.parameter_count());
         for (double& parameter : parameters) parameter = reader.take<double>();
         cameras.push_back(make_camera(id, model, width, height, parameters, reader.file()));
@@ -316,7 +316,7 @@ std::vector<colmap_camera> read_text_cameras(const std::filesystem::path& file) 
     while (reader.next_record()) {
         const auto id = reader.number<std::uint32_t>("the camera's id");
         const std::string_view name = reader.word("the camera model");
-        const camera_model& model = find_model(name, std::string(name), reader.where());
+        const camera_model model = find_model(name, std::string(name), reader.where());
         const auto width = reader.number<std::uint64_t>("the width");
         const auto height = reader.number<std::uint64_t>("the height");
         std::vector<double> parameters(model.parameter_count());
