@@ -17,7 +17,6 @@ inline constexpr unsigned record_stride = 12;
 struct visibility {
     float gradient;  ///< sum of the norms of dL/d(centre), in halves of the picture's sides
     float seen;      ///< iterations in which it was drawn
-    float radius;    ///< largest 3-sigma radius, pixels
 };
 
 /// From the sums over pixels to the gradients of the parameters: one index a Gaussian. Gradients of Gaussians
@@ -61,7 +60,7 @@ struct project_backward {
 
         shape(i, f, dax, day);
         position(i, f, centre, f.rotation * (dax * f.scale), f.rotation * (day * f.scale), s);
-        if (seen != nullptr) note(i, f, centre);
+        if (seen != nullptr) note(i, centre);
     }
 
   private:
@@ -134,15 +133,10 @@ struct project_backward {
         return (d - direction * glm::dot(direction, d)) * inverse_length;
     }
 
-    WARPAGG_HD void note(unsigned i, const footprint<Real>& f, const vec2<Real>& centre) const {
-        const vec2<Real> g =
-            centre * vec2<Real>(Real(0.5) * Real(camera.width), Real(0.5) * Real(camera.height));
-        const Real mid = Real(0.5) * (f.xx + f.yy);
-        const Real largest = mid + warpagg::sqrt(warpagg::max(mid * mid - f.determinant, Real(0)));
-        visibility& v = seen[i];
-        v.gradient += static_cast<float>(glm::length(g));
-        v.seen += 1;
-        v.radius = warpagg::max(v.radius, static_cast<float>(3 * warpagg::sqrt(largest)));
+    WARPAGG_HD void note(unsigned i, const vec2<Real>& centre) const {
+        const vec2<Real> halves(Real(0.5) * Real(camera.width), Real(0.5) * Real(camera.height));
+        seen[i].gradient += static_cast<float>(glm::length(centre * halves));
+        seen[i].seen += 1;
     }
 };
 

@@ -31,8 +31,7 @@ struct judge_gaussians {
         const glm::vec3 s = raster::load3(gaussians.log_scale, i);
         const float largest = glm::exp(warpagg::max(s.x, warpagg::max(s.y, s.z)));
         const bool opaque = raster::sigmoid(gaussians.opacity[i]) >= rule.least_opacity;
-        const bool too_large = (rule.most_scale > 0 && largest > rule.most_scale) ||
-                               (rule.most_radius > 0 && v.radius > rule.most_radius);
+        const bool too_large = rule.most_scale > 0 && largest > rule.most_scale;
         const bool stay = opaque && !too_large;
         stays[i] = stay ? 1 : 0;
         large[i] = largest > rule.dense_scale ? 1 : 0;

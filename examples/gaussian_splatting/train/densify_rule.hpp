@@ -13,7 +13,6 @@ struct densify_rule {
     float dense_scale = 0;   ///< world units: a growing Gaussian up to this is copied, a larger one split
     float least_opacity = 0.005f;  ///< drops below it
     float most_scale = 0;          ///< world units: drops above it; 0 for never
-    float most_radius = 0;         ///< pixels: likewise
     std::size_t cap = 0;           ///< no growth past this many
     std::uint64_t seed = 0;        ///< where the halves of a split come to lie
     std::uint64_t step = 0;

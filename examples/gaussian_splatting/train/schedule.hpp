@@ -28,7 +28,8 @@ struct schedule {
     bool watches(int iteration) const { return iteration < densify_until(); }
     bool densifies(int iteration) const;
     bool resets_opacity(int iteration) const;
-    /// Large Gaussians are dropped once opacities have been reset.
+    /// Gaussians that are large in the world are dropped once opacities have been reset. Those that are large
+    /// on the screen are not: that costs lego 2 dB.
     bool drops_large(int iteration) const { return iteration > opacity_reset_every; }
 };
 

@@ -47,10 +47,7 @@ std::array<float, 3> random_colour(std::mt19937_64& random) {
 densify_rule rule_at(int iteration, const schedule& schedule, const train_options& options) {
     densify_rule rule;
     rule.dense_scale = static_cast<float>(0.01 * schedule.extent);
-    if (schedule.drops_large(iteration)) {
-        rule.most_scale = static_cast<float>(0.1 * schedule.extent);
-        rule.most_radius = 20;
-    }
+    if (schedule.drops_large(iteration)) rule.most_scale = static_cast<float>(0.1 * schedule.extent);
     rule.cap = options.max_cap;
     rule.seed = options.seed;
     rule.step = static_cast<std::uint64_t>(iteration);
