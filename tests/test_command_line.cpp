@@ -1,0 +1,613 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "model/ply.hpp"
+#include "scene/image.hpp"
+#include "temporary_folder.hpp"
+#include "train/engine.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using gs_test::read_file;
+using gs_test::says;
+using gs_test::temporary_folder;
+using gs_test::write_file;
+using words = std::vector<std::string>;
+using json = nlohmann::json;
+
+// ----------------------------------------------------------------------------------------- running the
+// program
+
+struct outcome {
+    int code;  ///< of the exit; -1 for the end by a signal
+    std::string out, err;
+};
+
+/// Replaces this process by the program, which writes to the two files.
+[[noreturn]] void become_program(const words& arguments, const fs::path& out, const fs::path& err,
+                                 const char* threads) {
+    for (const auto& [file, descriptor] : {std::pair(out, STDOUT_FILENO), std::pair(err, STDERR_FILENO)}) {
+        const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        if (opened < 0 || dup2(opened, descriptor) < 0) _exit(126);
+    }
+    if (threads) setenv("OMP_NUM_THREADS", threads, 1);
+    setenv("OMP_WAIT_POLICY", "passive", 1);  // waiting threads leave a busy machine to others
+    std::string name = WARPAGG_PROGRAM;
+    words copies = arguments;
+    std::vector<char*> argv{name.data()};
+    for (std::string& argument : copies) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    execv(argv[0], argv.data());
+    _exit(127);
+}
+
+outcome run(const words& arguments, const char* threads = nullptr) {
+    const temporary_folder streams;
+    const fs::path out = streams / "out", err = streams / "err";
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) become_program(arguments, out, err, threads);
+    int status = 0;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
+}
+
+words operator+(words some, const words& more) {
+    some.insert(some.end(), more.begin(), more.end());
+    return some;
+}
+
+std::string joined(const words& arguments) {
+    std::string text;
+    for (const std::string& argument : arguments) text += " " + argument;
+    return text;
+}
+
+/// What lies in a folder: relative names, and the bytes of files.
+std::map<std::string, std::string> contents(const fs::path& folder) {
+    std::map<std::string, std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        found[fs::relative(entry.path(), folder).string()] =
+            entry.is_regular_file() ? read_file(entry.path()) : "a folder";
+    return found;
+}
+
+// ------------------------------------------------------------------------------------------------ refusals
+
+/// It ends with one line that says what is wrong, and names the culprit.
+void check_refusal(const words& arguments, const words& culprits) {
+    CAPTURE(joined(arguments));
+    const outcome o = run(arguments);
+    CAPTURE(o.err);
+    CHECK(o.code > 0);
+    CHECK(o.code < 126);
+    CHECK(o.err.starts_with("error: "));
+    CHECK(std::ranges::count(o.err, '\n') == 1);
+    CHECK(o.err.ends_with('\n'));
+    for (const std::string& culprit : culprits) {
+        CAPTURE(culprit);
+        CHECK(says(o.err, {culprit}));
+    }
+}
+
+/// And it leaves no folder behind, nor touches one with earlier results.
+void check_refusal_without_trace(const words& arguments, const words& culprits) {
+    const temporary_folder folder;
+    const fs::path fresh = folder / "new/results", earlier = folder / "earlier";
+    check_refusal(arguments + words{"-o", fresh.string()}, culprits);
+    CHECK(fs::is_empty(folder.path()));
+
+    write_file(earlier / "metrics.json", "{}\n");
+    write_file(earlier / "point_cloud/iteration_10/point_cloud.ply", "ply\n");
+    const auto before = contents(earlier);
+    check_refusal(arguments + words{"-o", earlier.string()}, culprits);
+    CHECK(contents(earlier) == before);
+}
+
+// ------------------------------------------------------------------------------------- a small COLMAP scene
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+class bytes {
+  public:
+    template <class T>
+    bytes& put(const T& value) {
+        data_.append(reinterpret_cast<const char*>(&value), sizeof(T));
+        return *this;
+    }
+    bytes& put_name(const std::string& name) {
+        data_.append(name.c_str(), name.size() + 1);
+        return *this;
+    }
+    const std::string& data() const { return data_; }
+
+  private:
+    std::string data_;
+};
+
+constexpr int width = 24, height = 16;
+
+struct small_scene {
+    int photos = 4;
+    std::uint64_t cameras = 1;
+    std::int32_t camera_model = 1;  // PINHOLE
+    std::array<double, 4> rotation{1, 0, 0, 0};
+    double depth = 4;
+
+    std::string cameras_bin() const {
+        bytes out;
+        out.put(cameras);
+        for (std::uint64_t i = 0; i < cameras; ++i) {
+            out.put(std::uint32_t{1}).put(camera_model);
+            out.put(std::uint64_t{width}).put(std::uint64_t{height});
+            for (const double parameter : {24.0, 24.0, 12.0, 8.0}) out.put(parameter);
+        }
+        return out.data();
+    }
+
+    std::string images_bin() const {
+        bytes out;
+        out.put(static_cast<std::uint64_t>(photos));
+        for (int i = 0; i < photos; ++i) {
+            out.put(static_cast<std::uint32_t>(i + 1)).put(rotation).put(0.1 * i).put(0.0).put(depth);
+            out.put(std::uint32_t{1}).put_name(photo(i)).put(std::uint64_t{0});
+        }
+        return out.data();
+    }
+
+    static std::string points_bin() {
+        bytes out;
+        out.put(std::uint64_t{8});
+        for (unsigned i = 0; i < 8; ++i) {
+            out.put(std::uint64_t{i + 1})
+                .put(i & 1 ? 0.5 : -0.5)
+                .put(i & 2 ? 0.5 : -0.5)
+                .put(i & 4 ? 0.5 : -0.5);
+            out.put(std::array<std::uint8_t, 3>{200, 100, 50}).put(0.5).put(std::uint64_t{0});
+        }
+        return out.data();
+    }
+
+    static std::string photo(int i) { return "photo_" + std::to_string(i) + ".png"; }
+
+    void write(const fs::path& folder) const {
+        write_file(folder / "sparse/0/cameras.bin", cameras_bin());
+        write_file(folder / "sparse/0/images.bin", images_bin());
+        write_file(folder / "sparse/0/points3D.bin", points_bin());
+        fs::create_directories(folder / "images");
+        for (int i = 0; i < photos; ++i) write_photo(folder / "images" / photo(i), width, height);
+    }
+
+    static void write_photo(const fs::path& file, int w, int h) {
+        gs::write_png(file, w, h, std::vector<float>(static_cast<std::size_t>(3 * w * h), 0.5F));
+    }
+};
+
+words training(const fs::path& data) { return {"train", "-d", data.string(), "-i", "5", "--device", "cpu"}; }
+
+void check_scene_is_refused(const small_scene& scene, const words& culprits, const words& options = {}) {
+    const temporary_folder data;
+    scene.write(data.path());
+    check_refusal_without_trace(training(data.path()) + options, culprits);
+}
+
+/// `spoil` is done to a scene that is good.
+template <class Spoil>
+void check_spoilt_scene_is_refused(const Spoil& spoil, const words& culprits) {
+    const temporary_folder data;
+    small_scene{}.write(data.path());
+    spoil(data.path());
+    check_refusal_without_trace(training(data.path()), culprits);
+}
+
+// ---------------------------------------------------------------------------------------------- a small
+// model
+
+gs::gaussians small_model() {
+    gs::gaussians model;
+    for (const float x : {-0.5F, 0.0F, 0.5F}) {
+        model.mean.insert(model.mean.end(), {x, 0, 0});
+        model.log_scale.insert(model.log_scale.end(), {-2, -2, -2});
+        model.quaternion.insert(model.quaternion.end(), {1, 0, 0, 0});
+        model.opacity.push_back(1);
+        model.sh_constant.insert(model.sh_constant.end(), {1, 0, -1});
+    }
+    return model;
+}
+
+void replace(std::string& text, const std::string& what, const std::string& with) {
+    const std::size_t at = text.find(what);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, what.size(), with);
+}
+
+/// `evaluate` and `render` of this model, from a good scene and without one.
+void check_model_is_refused(const std::string& ply, const words& culprits) {
+    const temporary_folder data;
+    small_scene{}.write(data.path());
+    check_refusal_without_trace({"evaluate", ply, "-d", data.path().string()}, culprits);
+    check_refusal_without_trace({"render", ply, "-d", data.path().string()}, culprits);
+    check_refusal_without_trace({"render", ply}, culprits);
+}
+
+const words train_spheres{"train", "-d", "synthetic:spheres"};
+
+}  // namespace
+
+TEST_CASE("a scene that is not there is refused") {
+    const temporary_folder folder;
+    check_refusal_without_trace(training(folder / "nowhere"), {(folder / "nowhere").string()});
+    check_refusal_without_trace(training(folder.path()), {folder.path().string(), "is no scene"});
+    write_file(folder / "file", "x");
+    check_refusal_without_trace(training(folder / "file"), {(folder / "file").string(), "not a folder"});
+    check_refusal_without_trace({"train", "-d", "synthetic:NOPE"}, {"NOPE", "spheres", "alpha"});
+}
+
+TEST_CASE("a scene with a wrong model is refused") {
+    small_scene scene;
+    SUBCASE("no cameras") {
+        scene.cameras = 0;
+        check_scene_is_refused(scene, {"cameras.bin", "no cameras"});
+    }
+    SUBCASE("an unknown camera model") {
+        scene.camera_model = 77;
+        check_scene_is_refused(scene, {"cameras.bin", "77", "PINHOLE"});
+    }
+    SUBCASE("a pose that is not a number") {
+        scene.depth = not_a_number;
+        check_scene_is_refused(scene, {"images.bin", "photo_0.png", "not finite"});
+    }
+    SUBCASE("a rotation that is not a number") {
+        scene.rotation = {1, not_a_number, 0, 0};
+        check_scene_is_refused(scene, {"images.bin", "photo_0.png", "not finite"});
+    }
+    SUBCASE("a rotation that is none") {
+        scene.rotation = {0, 0, 0, 0};
+        check_scene_is_refused(scene, {"images.bin", "photo_0.png", "rotation"});
+    }
+    SUBCASE("no images") {
+        scene.photos = 0;
+        check_scene_is_refused(scene, {"images.bin", "no images"});
+    }
+    SUBCASE("nothing left to train on") {
+        scene.photos = 1;
+        check_scene_is_refused(scene, {"no training views", "1 held out"}, {"--eval"});
+    }
+}
+
+TEST_CASE("a scene with a file of the wrong length is refused") {
+    for (const std::string name : {"cameras.bin", "images.bin", "points3D.bin"}) {
+        const auto spoil = [&](const auto& change) {
+            return [&, change](const fs::path& data) {
+                const fs::path file = data / "sparse/0" / name;
+                std::string text = read_file(file);
+                change(text);
+                write_file(file, text);
+            };
+        };
+        check_spoilt_scene_is_refused(spoil([](std::string& text) { text.resize(text.size() - 3); }),
+                                      {name, "truncated"});
+        check_spoilt_scene_is_refused(spoil([](std::string& text) { text.clear(); }), {name, "truncated"});
+        check_spoilt_scene_is_refused(spoil([](std::string& text) { text += "more"; }), {name, "too long"});
+        // A count that no memory could hold is not believed.
+        check_spoilt_scene_is_refused(spoil([](std::string& text) { text[7] = '\x7f'; }),
+                                      {name, "truncated"});
+    }
+}
+
+TEST_CASE("a scene with a wrong photo is refused") {
+    const auto photo = [](const fs::path& data) { return data / "images/photo_2.png"; };
+    check_spoilt_scene_is_refused([&](const fs::path& data) { fs::remove(photo(data)); }, {"photo_2.png"});
+    check_spoilt_scene_is_refused([](const fs::path& data) { fs::remove_all(data / "images"); }, {"images"});
+    check_spoilt_scene_is_refused(
+        [&](const fs::path& data) { write_file(photo(data), std::string(500, '\x5a')); }, {"photo_2.png"});
+    check_spoilt_scene_is_refused([&](const fs::path& data) { write_file(photo(data), ""); },
+                                  {"photo_2.png"});
+    check_spoilt_scene_is_refused(
+        [&](const fs::path& data) { small_scene::write_photo(photo(data), height, width); },
+        {"photo_2.png", "wrong size", "16x24", "24x16"});
+    // Half of a PNG has a good header.
+    check_spoilt_scene_is_refused(
+        [&](const fs::path& data) {
+            const std::string whole = read_file(photo(data));
+            write_file(photo(data), whole.substr(0, whole.size() / 2));
+        },
+        {"photo_2.png"});
+    // The signature and the header of a picture of 0x0 pixels, with its right checksum.
+    const std::string no_pixels{"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\0\0\0\0\0\x08\x02\0\0\0\xb4\xe9\xeb\x45",
+                                33};
+    check_spoilt_scene_is_refused([&](const fs::path& data) { write_file(photo(data), no_pixels); },
+                                  {"photo_2.png"});
+}
+
+TEST_CASE("a model that is not sound is refused") {
+    const temporary_folder folder;
+    const fs::path file = folder / "model.ply";
+    gs::write_ply(file, small_model());
+    std::string text = read_file(file);
+    SUBCASE("it is not there") {
+        fs::remove(file);
+        check_model_is_refused(file.string(), {file.string()});
+    }
+    SUBCASE("a field is missing") {
+        replace(text, "property float opacity\n", "");
+        write_file(file, text);
+        check_model_is_refused(file.string(), {file.string(), "opacity"});
+    }
+    SUBCASE("the header promises more than there is") {
+        replace(text, "element vertex 3", "element vertex 3000000");
+        write_file(file, text);
+        check_model_is_refused(file.string(), {file.string(), "3000000"});
+    }
+    SUBCASE("the header promises less than there is") {
+        replace(text, "element vertex 3", "element vertex 2");
+        write_file(file, text);
+        check_model_is_refused(file.string(), {file.string()});
+    }
+    SUBCASE("it is no PLY") {
+        write_file(file, "solid cube\n");
+        check_model_is_refused(file.string(), {file.string()});
+    }
+    SUBCASE("it holds nothing to draw") {
+        gs::write_ply(file, gs::gaussians());
+        check_refusal_without_trace({"render", file.string()}, {file.string(), "no Gaussians"});
+    }
+}
+
+TEST_CASE("an output that cannot be written is refused") {
+    const temporary_folder folder;
+    const fs::path data = folder / "scene", model = folder / "model.ply", file = folder / "file";
+    small_scene{}.write(data);
+    gs::write_ply(model, small_model());
+    write_file(file, "mine");
+    const auto before = contents(folder.path());
+    const std::vector<words> commands{
+        training(data), {"evaluate", model.string(), "-d", data.string()}, {"render", model.string()}};
+    for (const words& command : commands)
+        for (const std::string& output : words{file.string(), (file / "below").string(), "/proc/nope"})
+            check_refusal(command + words{"-o", output}, {output});
+    CHECK(contents(folder.path()) == before);
+}
+
+TEST_CASE("contradictory options are refused") {
+    check_refusal_without_trace(train_spheres + words{"--white-background", "--background", "black"},
+                                {"--white-background", "--background"});
+    check_refusal_without_trace(train_spheres + words{"--test-every", "4"}, {"--test-every", "--eval"});
+    check_refusal_without_trace(train_spheres + words{"-i", "20", "--test-iterations", "5"},
+                                {"--test-iterations", "--eval"});
+    check_refusal_without_trace(train_spheres + words{"-i", "20", "--save-iterations", "10", "21"},
+                                {"--save-iterations", "21", "20"});
+    check_refusal_without_trace(train_spheres + words{"--save-iterations", "0"}, {"--save-iterations", "0"});
+    check_refusal_without_trace({"render", "model.ply", "--orbit-views", "3", "-d", "synthetic:spheres"},
+                                {"--orbit-views", "--data"});
+    check_refusal_without_trace({"render", "model.ply", "--eval"}, {"--eval", "--data"});
+}
+
+TEST_CASE("an option that is not known is refused, and the nearest one named") {
+    check_refusal_without_trace(train_spheres + words{"--itertions", "20"}, {"--itertions", "--iterations"});
+    check_refusal_without_trace(train_spheres + words{"--sh_degre=2"}, {"--sh-degre", "--sh-degree"});
+    check_refusal_without_trace({"render", "model.ply", "--orbit-vews", "3"},
+                                {"--orbit-vews", "--orbit-views"});
+    check_refusal_without_trace(train_spheres + words{"stray"}, {"stray"});
+}
+
+TEST_CASE("a command that is missing or not known is refused") {
+    check_refusal({}, {"train", "evaluate", "render"});
+    check_refusal({"trian", "-d", "synthetic:spheres"}, {"'trian'", "train", "evaluate", "render"});
+    check_refusal({"--quiet", "train"}, {"'--quiet'", "train", "evaluate", "render"});
+    check_refusal({"train", "-o", "nowhere"}, {"--data"});
+    check_refusal({"train", "-d", "synthetic:spheres"}, {"--output"});
+    check_refusal({"evaluate", "-d", "synthetic:spheres"}, {"ply"});
+}
+
+TEST_CASE("a number that makes no sense is refused") {
+    const std::vector<std::array<std::string, 3>> cases{{"-r", "0", "--resolution"},
+                                                        {"-r", "-3", "--resolution"},
+                                                        {"-r", "1.5", "--resolution"},
+                                                        {"-i", "0", "--iterations"},
+                                                        {"-i", "abc", "--iterations"},
+                                                        {"-i", "", "--iterations"},
+                                                        {"-i", "5x", "--iterations"},
+                                                        {"--sh-degree", "4", ""},
+                                                        {"--sh-degree", "-1", ""},
+                                                        {"--seed", "-1", ""},
+                                                        {"--max-cap", "0", ""},
+                                                        {"--sh-degree-interval", "0", ""},
+                                                        {"--save-iterations", "abc", ""},
+                                                        {"--background", "beige", ""},
+                                                        {"--device", "tpu", ""},
+                                                        {"--gradient", "magic", ""},
+                                                        {"-i", "99999999999999999999", "--iterations"}};
+    for (const auto& [option, value, long_name] : cases)
+        check_refusal_without_trace(train_spheres + words{option, value},
+                                    {long_name.empty() ? option : long_name, value});
+}
+
+TEST_CASE("--device cuda is refused where there is no GPU") {
+    std::string reason;
+    if (gs::train::cuda_is_available(reason)) {
+        MESSAGE("there is a GPU: not tested");
+        return;
+    }
+    check_refusal_without_trace(train_spheres + words{"--device", "cuda"}, {"--device cuda", "GPU"});
+}
+
+// ---------------------------------------------------------------------------------------------- good paths
+
+namespace {
+
+const words small_spheres{"-d", "synthetic:spheres", "-r", "32", "--eval", "--device", "cpu"};
+
+words small_training(const fs::path& output) {
+    return words{"train", "-i", "60", "-o", output.string()} + small_spheres;
+}
+
+void check_success(const words& arguments, const char* threads = nullptr) {
+    CAPTURE(joined(arguments));
+    const outcome o = run(arguments, threads);
+    CHECK(o.err == "");
+    REQUIRE(o.code == 0);
+}
+
+json read_json(const fs::path& file) { return json::parse(read_file(file)); }
+
+fs::path model_of(const fs::path& output, int iteration) {
+    return output / "point_cloud" / ("iteration_" + std::to_string(iteration)) / "point_cloud.ply";
+}
+
+std::vector<std::string> pictures_in(const fs::path& folder, int expected_width, int expected_height) {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const gs::image picture = gs::read_image(entry.path());
+        CHECK(picture.width == expected_width);
+        CHECK(picture.height == expected_height);
+        names.push_back(entry.path().filename().string());
+    }
+    std::ranges::sort(names);
+    return names;
+}
+
+void check_metrics(const json& metrics) {
+    CHECK(metrics.at("psnr").get<double>() > 15);
+    CHECK(metrics.at("ssim").get<double>() > 0.3);
+    CHECK(metrics.at("ssim").get<double>() < 1);
+    REQUIRE(metrics.at("views").size() == 8);
+    double sum = 0;
+    for (const json& view : metrics.at("views")) {
+        CHECK(view.at("name").get<std::string>().ends_with(".png"));
+        CHECK(view.at("ssim").is_number());
+        sum += view.at("psnr").get<double>();
+    }
+    CHECK(sum / 8 == doctest::Approx(metrics.at("psnr").get<double>()).epsilon(1e-12));
+    for (const char* stage : {"load", "train", "evaluate"})
+        CHECK(metrics.at("seconds").at(stage).get<double>() > 0);
+    CHECK(metrics.at("iterations") == 60);
+    CHECK(metrics.at("gaussians").get<int>() > 0);
+    CHECK(says(metrics.at("device").get<std::string>(), {"cpu"}));
+    CHECK(metrics.at("accumulate").is_string());
+    REQUIRE(!metrics.at("effects").empty());
+    for (const json& effect : metrics.at("effects")) {
+        CHECK(effect.at("name").is_string());
+        CHECK(effect.at("on").is_boolean());
+        CHECK(!effect.at("reason").get<std::string>().empty());
+    }
+    CHECK(metrics.at("seed") == 7);
+}
+
+}  // namespace
+
+TEST_CASE("training writes a model, measures and pictures; evaluate and render read them") {
+    const temporary_folder folder;
+    const fs::path output = folder / "deep/results", model = model_of(output, 60);
+    const outcome trained =
+        run(small_training(output) + words{"--seed", "7", "--save_iterations", "30", "--sh_degree", "1"});
+    CHECK(trained.err == "");
+    REQUIRE(trained.code == 0);
+    CHECK(says(trained.out, {"held-out PSNR", model.string(), (output / "metrics.json").string()}));
+
+    const json metrics = read_json(output / "metrics.json");
+    check_metrics(metrics);
+    const json settings = read_json(output / "settings.json");
+    CHECK(settings.at("data") == "synthetic:spheres");
+    CHECK(settings.at("iterations") == 60);
+    CHECK(settings.at("sh_degree") == 1);  // `_` and `-` are alike
+    CHECK(settings.at("resolution") == 32);
+    CHECK(settings.at("seed") == 7);
+
+    CHECK(gs::read_ply(model_of(output, 30)).count() > 0);
+    const gs::gaussians saved = gs::read_ply(model);
+    CHECK(saved.sh_degree == 1);
+    CHECK(saved.count() == metrics.at("gaussians").get<std::size_t>());
+    const auto renders = pictures_in(output / "test/ours_60/renders", 32, 32);
+    CHECK(renders.size() == 8);
+    CHECK(pictures_in(output / "test/ours_60/gt", 32, 32) == renders);
+
+    SUBCASE("evaluate measures the same") {
+        const fs::path again = folder / "again";
+        check_success(words{"evaluate", model.string(), "-o", again.string()} + small_spheres);
+        const json measured = read_json(again / "metrics.json");
+        // The file holds every bit of the parameters, and a pixel is blended in one order only. But threads
+        // add up errors over pixels as they finish: the last bits of sums of 3072 doubles may differ.
+        constexpr double rounding = 1e-12;
+        for (const char* measure : {"psnr", "ssim"})
+            CHECK(measured.at(measure).get<double>() ==
+                  doctest::Approx(metrics.at(measure).get<double>()).epsilon(rounding));
+        CHECK(measured.at("views").size() == metrics.at("views").size());
+        CHECK(contents(again / "test") == contents(output / "test/ours_60"));
+    }
+    SUBCASE("evaluate without an output says it only") {
+        const outcome said = run(words{"evaluate", model.string()} + small_spheres);
+        CHECK(said.code == 0);
+        CHECK(says(said.out, {"PSNR", "8 views"}));
+    }
+    SUBCASE("render from the scene's cameras draws what training drew") {
+        const fs::path pictures = folder / "pictures";
+        check_success(words{"render", model.string(), "-o", pictures.string()} + small_spheres);
+        CHECK(pictures_in(pictures, 32, 32) == renders);
+        CHECK(contents(pictures) == contents(output / "test/ours_60/renders"));
+    }
+    SUBCASE("render from the model alone draws an orbit") {
+        const fs::path pictures = folder / "orbit";
+        check_success({"render", model.string(), "-o", pictures.string(), "--orbit-views", "3", "-r", "40",
+                       "--device", "cpu"});
+        CHECK(pictures_in(pictures, 40, 40) == words{"00000.png", "00001.png", "00002.png"});
+    }
+}
+
+TEST_CASE("a second training replaces the results of the first") {
+    const temporary_folder folder;
+    write_file(folder / "metrics.json", "{}\n");
+    write_file(folder / "notes.txt", "mine");
+    check_success(small_training(folder.path()) + words{"--quiet"});
+    CHECK(read_json(folder / "metrics.json").at("iterations") == 60);
+    CHECK(read_file(folder / "notes.txt") == "mine");
+}
+
+TEST_CASE("a scene of photos trains") {
+    const temporary_folder folder;
+    small_scene{}.write(folder / "scene");
+    check_success(training(folder / "scene") + words{"-o", (folder / "results").string()});
+    CHECK(read_json(folder / "results/metrics.json").at("psnr").is_null());  // no views were held out
+}
+
+TEST_CASE("--quiet prints nothing") {
+    const temporary_folder folder;
+    const outcome o = run(small_training(folder.path()) + words{"--quiet"});
+    CHECK(o.code == 0);
+    CHECK(o.out == "");
+    CHECK(o.err == "");
+}
+
+TEST_CASE("the same seed on one thread gives the same file, to the byte") {
+    const temporary_folder folder;
+    for (const char* name : {"one", "two"})
+        check_success(small_training(folder / name) + words{"--quiet", "--seed", "3"}, "1");
+    check_success(small_training(folder / "other") + words{"--quiet", "--seed", "4"}, "1");
+    const std::string one = read_file(model_of(folder / "one", 60));
+    CHECK(!one.empty());
+    CHECK(one == read_file(model_of(folder / "two", 60)));
+    CHECK(one != read_file(model_of(folder / "other", 60)));
+}
+
+TEST_CASE("help and version are no errors") {
+    for (const words& asked : {words{"--help"}, words{"train", "--help"}, words{"--version"}}) {
+        const outcome o = run(asked);
+        CHECK(o.code == 0);
+        CHECK(!o.out.empty());
+        CHECK(o.err == "");
+    }
+}
