@@ -32,6 +32,7 @@ WARPAGG_EXEC_CHECK_DISABLE
 template <class Policy, warp W, class Dst, class V, int N>
 WARPAGG_HD void reduce_and_commit(const W& w, Dst dst, const V (&v)[N], const mask_t<W>& active) {
     V sums[N];
+    WARPAGG_UNROLL
     for (int i = 0; i < N; ++i) sums[i] = select(active, v[i], V{});  // a NaN of an inactive lane ends here
     if constexpr (std::is_same_v<typename Policy::reduce, reduce::scatter>) {
         reduce::sum_scatter(w, sums);
@@ -59,9 +60,8 @@ WARPAGG_HD void reduce_and_commit(const W& w, Dst dst, const V (&v)[N], const ma
 ///
 /// ```cpp
 /// float g[9] = {...};
-/// warpagg::warp_reduce_atomic(w, grad + 9 * id, g, active);                                  // the default
-/// policy warpagg::warp_reduce_atomic(w, grad + 9 * id, g, active, warpagg::policy{warpagg::shfl_down});  //
-/// the paper
+/// warpagg::warp_reduce_atomic(w, grad + 9 * id, g, active);  // the default policy
+/// warpagg::warp_reduce_atomic(w, grad + 9 * id, g, active, policy{shfl_down});  // the paper
 /// ```
 ///
 /// @param w       a model of `warp`; all of its lanes call this together

@@ -141,6 +141,9 @@ struct policy {
                   "shfl_down leaves the sums in lane 0: contiguous needs butterfly or scatter");
     static_assert(!pairs<warpagg::reduce::scatter, warpagg::commit::scalar>,
                   "scatter leaves the sums spread over the lanes: scalar needs shfl_down or butterfly");
+    static_assert(!(std::is_same_v<idle, warpagg::idle::add_zeros> &&
+                    std::is_same_v<reduce, warpagg::reduce::per_lane>),
+                  "per_lane has no sums, so an idle warp has no zeros to add: take skip");
     static_assert(!(std::is_same_v<idle, warpagg::idle::add_zeros> && detail::least_lanes<gate> > 0),
                   "at_least<K> sends an idle warp to per-lane atomics, so it never adds zeros: take skip");
 

@@ -126,6 +126,10 @@ CLI::App* add_train(CLI::App& app, settings& s) {
     train->add_option("--sh-degree-interval", s.sh_degree_interval, "Iterations between two degrees")
         ->check(whole_number(1, 10000000))
         ->capture_default_str();
+    train->add_option("--densify-grad-threshold", s.densify_grad_threshold,
+                      "Mean gradient of a centre, in halves of the picture, from which a Gaussian grows")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
     train->add_option("--max-cap", s.max_cap, "Most Gaussians; by default one for 32 pixels of the photos")
         ->check(whole_number(1, 1000000000));
     std::set<std::string> policies(gradient_policy_names.begin(), gradient_policy_names.end());

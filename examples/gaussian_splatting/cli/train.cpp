@@ -28,6 +28,7 @@ train::train_options options_of(const settings& s, const scene& scene,
     o.iterations = s.iterations;
     o.sh_degree = s.sh_degree;
     o.sh_degree_interval = s.sh_degree_interval;
+    o.densify_gradient = s.densify_grad_threshold;
     o.max_cap = s.max_cap > 0 ? s.max_cap : train::default_cap(scene);
     o.seed = s.seed;
     o.gradient = policy_of(s.gradient);
@@ -65,6 +66,7 @@ ordered_json settings_json(const settings& s, const train::train_options& o) {
             {"iterations", o.iterations},
             {"sh_degree", o.sh_degree},
             {"sh_degree_interval", o.sh_degree_interval},
+            {"densify_grad_threshold", o.densify_gradient},
             {"max_cap", o.max_cap},
             {"gradient", s.gradient},
             {"background", s.background},

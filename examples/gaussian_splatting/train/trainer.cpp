@@ -48,6 +48,7 @@ densify_rule rule_at(int iteration, const schedule& schedule, const train_option
     densify_rule rule;
     rule.dense_scale = static_cast<float>(0.01 * schedule.extent);
     if (schedule.drops_large(iteration)) rule.most_scale = static_cast<float>(0.1 * schedule.extent);
+    rule.gradient = options.densify_gradient;
     rule.cap = options.max_cap;
     rule.seed = options.seed;
     rule.step = static_cast<std::uint64_t>(iteration);

@@ -23,6 +23,7 @@ struct train_options {
     int iterations = 7000;
     int sh_degree = 3;
     int sh_degree_interval = 1000;
+    float densify_gradient = densify_rule{}.gradient;
     std::size_t max_cap = 0;  ///< most Gaussians
     std::uint64_t seed = 0;
     gradient_policy gradient = gradient_policy::scatter;

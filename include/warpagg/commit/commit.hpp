@@ -10,6 +10,7 @@ namespace warpagg::commit {
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Dst, class V, int N>
 WARPAGG_HD void each_lane(const W& w, Dst dst, const V (&v)[N], const mask_t<W>& active) {
+    WARPAGG_UNROLL
     for (int i = 0; i < N; ++i)
         w.atomic_add(dst, value_t<W, unsigned>(static_cast<unsigned>(i)), v[i], active);
 }
@@ -25,6 +26,7 @@ WARPAGG_HD void first_lane(const W& w, Dst dst, const V (&v)[N]) {
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Dst, class V, int N>
 WARPAGG_HD void own_value(const W& w, Dst dst, const V (&v)[N]) {
+    WARPAGG_UNROLL
     for (int base = 0; base < N; base += static_cast<int>(W::size)) {
         const auto index = w.lane() + static_cast<unsigned>(base);
         V own = v[base];

@@ -19,6 +19,7 @@ template <warp W>
 WARPAGG_HD value_t<W, unsigned> scattered_index(const W& w, int k) {
     const value_t<W, unsigned> lane = w.lane();
     value_t<W, unsigned> index(W::size * static_cast<unsigned>(k));
+    WARPAGG_UNROLL
     for (unsigned from = W::size / 2, to = 1; from > 0; from /= 2, to *= 2)
         index += select((lane & from) != 0u, value_t<W, unsigned>(to), value_t<W, unsigned>(0u));
     return index;

@@ -34,6 +34,7 @@ struct basic_lanes : Counting {
 
     WARPAGG_HD value<unsigned> lane() const {
         value<unsigned> r;
+        WARPAGG_UNROLL
         for (int i = 0; i < 32; ++i) r.set(i, static_cast<unsigned>(i));
         return r;
     }
@@ -68,6 +69,7 @@ struct basic_lanes : Counting {
                 return down<1>(v);
             default: {
                 value<T> r = v;
+                WARPAGG_UNROLL
                 for (unsigned i = 0; i + distance < size; ++i)
                     r.set(static_cast<int>(i), v[static_cast<int>(i + distance)]);
                 return r;
@@ -90,6 +92,7 @@ struct basic_lanes : Counting {
                 return across<1>(v);
             default: {
                 value<T> r;
+                WARPAGG_UNROLL
                 for (unsigned i = 0; i < size; ++i)
                     r.set(static_cast<int>(i), v[static_cast<int>((i ^ distance) % size)]);
                 return r;
@@ -100,6 +103,7 @@ struct basic_lanes : Counting {
     template <class T>
     WARPAGG_HD value<T> load(const T* from, const value<unsigned>& index, const mask& active) const {
         value<T> r;
+        WARPAGG_UNROLL
         for (int i = 0; i < r.chunks; ++i) {
 #if defined(__AVX2__)
             if constexpr (sizeof(T) == 4 && !std::is_same_v<T, bool>) {
@@ -109,6 +113,7 @@ struct basic_lanes : Counting {
                 continue;
             }
 #endif
+            WARPAGG_UNROLL
             for (int k = i * r.width; k < (i + 1) * r.width; ++k) r.set(k, active[k] ? from[index[k]] : T{});
         }
         return r;
@@ -120,6 +125,7 @@ struct basic_lanes : Counting {
     template <class T>
     WARPAGG_HD value<T> load_row(const T* from, std::ptrdiff_t first, const mask& active) const {
         value<T> r;
+        WARPAGG_UNROLL
         for (int i = 0; i < r.chunks; ++i) {
             const T* p = from + first + i * r.width;
 #if defined(__AVX2__)
@@ -129,12 +135,14 @@ struct basic_lanes : Counting {
                 continue;
             }
 #endif
+            WARPAGG_UNROLL
             for (int k = 0; k < r.width; ++k) r.set(i * r.width + k, active[i * r.width + k] ? p[k] : T{});
         }
         return r;
     }
     template <class T>
     WARPAGG_HD void store_row(T* to, std::ptrdiff_t first, const value<T>& v, const mask& active) const {
+        WARPAGG_UNROLL
         for (int i = 0; i < v.chunks; ++i) {
             T* p = to + first + i * v.width;
 #if defined(__AVX2__)
@@ -144,6 +152,7 @@ struct basic_lanes : Counting {
                 continue;
             }
 #endif
+            WARPAGG_UNROLL
             for (int k = 0; k < v.width; ++k)
                 if (active[i * v.width + k]) p[k] = v[i * v.width + k];
         }
@@ -188,12 +197,14 @@ struct basic_lanes : Counting {
 
     static WARPAGG_HD std::uint32_t bits(const mask& p) {
         std::uint32_t r = 0;
+        WARPAGG_UNROLL
         for (int i = 0; i < p.chunks; ++i) {
 #if defined(__AVX__)
             const auto b =
                 static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(p.part[i])));
 #else
             std::uint32_t b = 0;
+            WARPAGG_UNROLL
             for (int k = 0; k < p.width; ++k) b |= (p.part[i][k] != 0 ? 1u : 0u) << k;
 #endif
             r |= b << (i * p.width);
@@ -209,6 +220,7 @@ struct basic_lanes : Counting {
     static WARPAGG_HD value<T> down(const value<T>& v) {
         constexpr int width = value<T>::width, chunks = value<T>::chunks, d = static_cast<int>(D);
         value<T> r;
+        WARPAGG_UNROLL
         for (int i = 0; i < chunks; ++i) {
             if constexpr (d >= width) {
                 constexpr int step = d / width;
@@ -234,6 +246,7 @@ struct basic_lanes : Counting {
     static WARPAGG_HD value<T> across(const value<T>& v) {
         constexpr int width = value<T>::width, d = static_cast<int>(D);
         value<T> r;
+        WARPAGG_UNROLL
         for (int i = 0; i < r.chunks; ++i) {
             if constexpr (d >= width) {
                 r.part[i] = v.part[i ^ (d / width)];

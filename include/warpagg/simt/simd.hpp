@@ -51,6 +51,7 @@ struct lanes {
     using chunk = detail::chunk_t<T>;
     static constexpr int width = detail::chunk_bytes / static_cast<int>(sizeof(element));  // lanes a chunk
     static constexpr int chunks = L / width;
+    static constexpr bool has_order = !std::is_same_v<T, bool>;
     static_assert(L % width == 0);
 
     chunk part[chunks];
@@ -64,6 +65,7 @@ struct lanes {
         } else {
             e = value;
         }
+        WARPAGG_UNROLL
         for (auto& p : part) p = e - chunk{};
     }
 
@@ -86,6 +88,7 @@ struct lanes {
 #define WARPAGG_LANES_OPERATOR(op)                                           \
     friend WARPAGG_HD lanes operator op(const lanes& a, const lanes& b) {    \
         lanes r;                                                             \
+        WARPAGG_UNROLL                                                       \
         for (int i = 0; i < chunks; ++i) r.part[i] = a.part[i] op b.part[i]; \
         return r;                                                            \
     }                                                                        \
@@ -104,11 +107,13 @@ struct lanes {
 
     friend WARPAGG_HD lanes operator-(const lanes& a) {
         lanes r;
+        WARPAGG_UNROLL
         for (int i = 0; i < chunks; ++i) r.part[i] = -a.part[i];
         return r;
     }
     friend WARPAGG_HD lanes operator!(const lanes& a) requires std::is_same_v<T, bool> {
         lanes r;
+        WARPAGG_UNROLL
         for (int i = 0; i < chunks; ++i) r.part[i] = ~a.part[i];
         return r;
     }
@@ -119,18 +124,19 @@ struct lanes {
         return a | b;
     }
 
-#define WARPAGG_LANES_COMPARISON(op)                                                \
-    friend WARPAGG_HD lanes<bool, L> operator op(const lanes& a, const lanes& b) {  \
-        lanes<bool, L> r;                                                           \
-        for (int i = 0; i < chunks; ++i) narrow_mask(r, i, a.part[i] op b.part[i]); \
-        return r;                                                                   \
+#define WARPAGG_LANES_COMPARISON(op, allowed)                                                        \
+    friend WARPAGG_HD lanes<bool, L> operator op(const lanes& a, const lanes& b) requires(allowed) { \
+        lanes<bool, L> r;                                                                            \
+        WARPAGG_UNROLL                                                                               \
+        for (int i = 0; i < chunks; ++i) narrow_mask(r, i, a.part[i] op b.part[i]);                  \
+        return r;                                                                                    \
     }
-    WARPAGG_LANES_COMPARISON(<)
-    WARPAGG_LANES_COMPARISON(<=)
-    WARPAGG_LANES_COMPARISON(>)
-    WARPAGG_LANES_COMPARISON(>=)
-    WARPAGG_LANES_COMPARISON(==)
-    WARPAGG_LANES_COMPARISON(!=)
+    WARPAGG_LANES_COMPARISON(<, has_order)
+    WARPAGG_LANES_COMPARISON(<=, has_order)
+    WARPAGG_LANES_COMPARISON(>, has_order)
+    WARPAGG_LANES_COMPARISON(>=, has_order)
+    WARPAGG_LANES_COMPARISON(==, true)
+    WARPAGG_LANES_COMPARISON(!=, true)
 #undef WARPAGG_LANES_COMPARISON
 
     /// Chunk `i` of lanes of 64 bits, converted from lanes of 32 bits.
@@ -150,6 +156,7 @@ struct lanes {
         if constexpr (sizeof(element) == sizeof(std::int32_t)) {
             to.part[i] = from;
         } else {
+            WARPAGG_UNROLL
             for (int k = 0; k < width; ++k) to.set(i * width + k, from[k] != 0);
         }
     }
@@ -158,6 +165,7 @@ struct lanes {
 template <class T, int L>
 WARPAGG_HD lanes<T, L> select(const lanes<bool, L>& mask, const lanes<T, L>& yes, const lanes<T, L>& no) {
     lanes<T, L> r;
+    WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
         if constexpr (sizeof(typename lanes<T, L>::element) == sizeof(std::int32_t)) {
             r.part[i] = mask.part[i] ? yes.part[i] : no.part[i];
@@ -176,23 +184,27 @@ WARPAGG_HD lanes<T, L> select(const lanes<bool, L>& mask, const lanes<T, L>& yes
 }
 
 template <class T, int L>
-WARPAGG_HD lanes<T, L> min(const lanes<T, L>& a, const lanes<T, L>& b) {
+requires(!std::is_same_v<T, bool>) WARPAGG_HD lanes<T, L> min(const lanes<T, L>& a, const lanes<T, L>& b) {
     lanes<T, L> r;
+    WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) r.part[i] = b.part[i] < a.part[i] ? b.part[i] : a.part[i];
     return r;
 }
 template <class T, int L>
-WARPAGG_HD lanes<T, L> max(const lanes<T, L>& a, const lanes<T, L>& b) {
+requires(!std::is_same_v<T, bool>) WARPAGG_HD lanes<T, L> max(const lanes<T, L>& a, const lanes<T, L>& b) {
     lanes<T, L> r;
+    WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) r.part[i] = a.part[i] < b.part[i] ? b.part[i] : a.part[i];
     return r;
 }
 template <class T, int L>
-WARPAGG_HD lanes<T, L> min(const lanes<T, L>& a, std::type_identity_t<T> b) {
+requires(!std::is_same_v<T, bool>)
+    WARPAGG_HD lanes<T, L> min(const lanes<T, L>& a, std::type_identity_t<T> b) {
     return min(a, lanes<T, L>(b));
 }
 template <class T, int L>
-WARPAGG_HD lanes<T, L> max(const lanes<T, L>& a, std::type_identity_t<T> b) {
+requires(!std::is_same_v<T, bool>)
+    WARPAGG_HD lanes<T, L> max(const lanes<T, L>& a, std::type_identity_t<T> b) {
     return max(a, lanes<T, L>(b));
 }
 
@@ -200,6 +212,7 @@ WARPAGG_HD lanes<T, L> max(const lanes<T, L>& a, std::type_identity_t<T> b) {
 template <class T, int L>
 WARPAGG_HD lanes<T, L> fma(const lanes<T, L>& a, const lanes<T, L>& b, const lanes<T, L>& c) {
     lanes<T, L> r;
+    WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
 #if defined(__FMA__)
         if constexpr (std::is_same_v<T, float>) {
@@ -209,6 +222,7 @@ WARPAGG_HD lanes<T, L> fma(const lanes<T, L>& a, const lanes<T, L>& b, const lan
             continue;
         }
 #endif
+        WARPAGG_UNROLL
         for (int k = 0; k < r.width; ++k) r.part[i][k] = fma(a.part[i][k], b.part[i][k], c.part[i][k]);
     }
     return r;
@@ -217,6 +231,7 @@ WARPAGG_HD lanes<T, L> fma(const lanes<T, L>& a, const lanes<T, L>& b, const lan
 template <class T, int L>
 WARPAGG_HD lanes<T, L> sqrt(const lanes<T, L>& a) {
     lanes<T, L> r;
+    WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
 #if defined(__AVX__)
         if constexpr (std::is_same_v<T, float>) {
@@ -225,6 +240,7 @@ WARPAGG_HD lanes<T, L> sqrt(const lanes<T, L>& a) {
             continue;
         }
 #endif
+        WARPAGG_UNROLL
         for (int k = 0; k < r.width; ++k) r.part[i][k] = sqrt(a.part[i][k]);
     }
     return r;
@@ -234,11 +250,14 @@ template <class To, class From, int L>
 WARPAGG_HD lanes<To, L> convert(const lanes<From, L>& a) {
     lanes<To, L> r;
     if constexpr (sizeof(To) == sizeof(From)) {
+        WARPAGG_UNROLL
         for (int i = 0; i < r.chunks; ++i)
             r.part[i] = __builtin_convertvector(a.part[i], typename lanes<To, L>::chunk);
     } else if constexpr (sizeof(To) == 2 * sizeof(From)) {
+        WARPAGG_UNROLL
         for (int i = 0; i < r.chunks; ++i) lanes<To, L>::widen(a, i, r.part[i]);
     } else {
+        WARPAGG_UNROLL
         for (int k = 0; k < L; ++k) r.set(k, static_cast<To>(a[k]));
     }
     return r;
@@ -274,6 +293,7 @@ WARPAGG_HD lanes<float, L> exp2(const lanes<float, L>& x) {
 template <int L>
 WARPAGG_HD lanes<double, L> exp2(const lanes<double, L>& a) {
     lanes<double, L> r;
+    WARPAGG_UNROLL
     for (int k = 0; k < L; ++k) r.set(k, exp2(a[k]));
     return r;
 }

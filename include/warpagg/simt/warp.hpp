@@ -23,6 +23,13 @@
 #define WARPAGG_EXEC_CHECK_DISABLE
 #endif
 
+// A short loop over registers: rolled up, its arrays would live in memory.
+#if defined(__CUDACC__) || defined(__clang__)
+#define WARPAGG_UNROLL _Pragma("unroll")
+#else
+#define WARPAGG_UNROLL _Pragma("GCC unroll 64")
+#endif
+
 namespace warpagg {
 
 /// The type that holds one `T` per lane of the warp model `W`.
@@ -43,7 +50,7 @@ using mask_t = value_t<W, bool>;
 /// | `shfl(v, i)` | lane i's v, `i` the same in every lane |
 /// | `shfl_down(v, d)` | v of the lane d further; lanes past the end keep their own |
 /// | `shfl_xor(v, d)` | v of the lane whose number differs in the bits of d |
-/// | `load(p, i, active)` | `p[i]` per active lane; inactive lanes read nothing and get T{} |
+/// | `load(p, i, active)` | `p[i]` per active lane; inactive lanes read nothing and get T{}; i < 2^31 |
 /// | `store(p, i, v, active)` | `p[i] = v` per active lane |
 /// | `load_row(p, i, active)` | `p[i + lane]` per active lane; `i` is the same in every lane and may be
 /// negative | | `store_row(p, i, v, active)` | `p[i + lane] = v` per active lane | | `atomic_add(dst, i, v,
