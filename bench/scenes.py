@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The warpagg authors
+# SPDX-License-Identifier: MIT
+"""Trains scenes and keeps what each run measured, as JSON; or shows such JSON as a table.
+
+    bench/scenes.py run --program build/cuda/.../gaussian_splatting --data ../shared/data \
+        --scenes fern truck --seeds 0 1 2 --output bench/results/colmap.json -- -i 7000 --device cuda
+    bench/scenes.py table bench/results/colmap.json
+"""
+import argparse
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+KEPT = ["psnr", "ssim", "training_psnr", "gaussians", "iterations", "iterations_per_second", "seconds", "densify_seconds",
+        "skipped_steps", "pairs_per_iteration", "stages", "peak_host_bytes", "peak_device_bytes", "seed", "device",
+        "gradient"]
+
+
+def first_line(*command):
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip().splitlines()[0]
+    except (OSError, subprocess.CalledProcessError, IndexError):
+        return None
+
+
+def environment(commit):
+    nvcc = first_line("sh", "-c", "nvcc --version | grep release")
+    return {"commit": commit or first_line("git", "describe", "--always", "--dirty", "--abbrev=12"),
+            "gpu_and_driver": first_line("nvidia-smi", "--query-gpu=name,driver_version", "--format=csv,noheader"),
+            "nvcc": nvcc,
+            "compiler": first_line("c++", "--version"),
+            "processor": first_line("sh", "-c", "grep -m1 'model name' /proc/cpuinfo | cut -d: -f2")}
+
+
+def train(program, data, scene, seed, options):
+    with tempfile.TemporaryDirectory() as folder:
+        command = [program, "train", "-d", str(pathlib.Path(data) / scene), "-o", folder, "--eval", "-q",
+                   "--seed", str(seed), *options]
+        subprocess.run(command, check=True)
+        metrics = json.loads((pathlib.Path(folder) / "metrics.json").read_text())
+    return {"scene": scene, **{key: metrics[key] for key in KEPT}}
+
+
+def run(arguments):
+    runs = []
+    for scene in arguments.scenes:
+        for seed in arguments.seeds:
+            runs.append(train(arguments.program, arguments.data, scene, seed, arguments.options))
+            print(scene, seed, f"{runs[-1]['psnr']:.2f} dB", f"{runs[-1]['seconds']['train']:.1f} s", flush=True)
+    result = {"bench": "scenes", "options": arguments.options, **environment(arguments.commit), "runs": runs}
+    pathlib.Path(arguments.output).write_text(json.dumps(result, indent=1) + "\n")
+
+
+def spread(values, form):
+    middle = statistics.median(values)
+    text = form.format(middle)
+    return text if len(values) == 1 else f"{text} ({form.format(min(values))} to {form.format(max(values))})"
+
+
+def table(arguments):
+    result = json.loads(pathlib.Path(arguments.file).read_text())
+    print(f"`{' '.join(result['options'])}`, {result['gpu_and_driver'] or result['processor']}, "
+          f"{result['nvcc'] or result['compiler']}, commit {result['commit']}, "
+          f"seeds {sorted({r['seed'] for r in result['runs']})}; median (least to most)\n")
+    print("| scene | held-out PSNR, dB | SSIM | Gaussians | it/s | loop, s | peak device MiB |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
+    for scene in dict.fromkeys(r["scene"] for r in result["runs"]):
+        runs = [r for r in result["runs"] if r["scene"] == scene]
+        column = lambda pick, form: spread([pick(r) for r in runs], form)
+        print("|", " | ".join([scene, column(lambda r: r["psnr"], "{:.2f}"), column(lambda r: r["ssim"], "{:.3f}"),
+                               column(lambda r: r["gaussians"], "{:,.0f}"),
+                               column(lambda r: r["iterations_per_second"], "{:.0f}"),
+                               column(lambda r: r["seconds"]["train"], "{:.1f}"),
+                               column(lambda r: r["peak_device_bytes"] / 2**20, "{:.0f}")]), "|")
+    print("\n| scene | " + " | ".join(result["runs"][0]["stages"]) + " | (ms an iteration) |")
+    print("| --- |" + " --- |" * (len(result["runs"][0]["stages"]) + 1))
+    for scene in dict.fromkeys(r["scene"] for r in result["runs"]):
+        runs = [r for r in result["runs"] if r["scene"] == scene]
+        cells = [f"{statistics.median(r['stages'][s]['milliseconds'] for r in runs):.3f}" for s in runs[0]["stages"]]
+        whole = statistics.median(1000 / r["iterations_per_second"] for r in runs)
+        print("|", " | ".join([scene, *cells, f"{whole:.3f} of wall"]), "|")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(required=True)
+    runner = commands.add_parser("run")
+    runner.add_argument("--program", required=True)
+    runner.add_argument("--data", required=True)
+    runner.add_argument("--scenes", nargs="+", required=True)
+    runner.add_argument("--seeds", nargs="+", type=int, default=[0])
+    runner.add_argument("--commit", help="where the sources are no git checkout")
+    runner.add_argument("--output", required=True)
+    runner.set_defaults(action=run)
+    shower = commands.add_parser("table")
+    shower.add_argument("file")
+    shower.set_defaults(action=table)
+    own, options = sys.argv[1:], []
+    if "--" in own:
+        own, options = own[:own.index("--")], own[own.index("--") + 1:]
+    arguments = parser.parse_args(own)
+    arguments.options = options
+    arguments.action(arguments)
+
+
+main()
