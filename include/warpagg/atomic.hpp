@@ -31,6 +31,7 @@ namespace detail {
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Policy, warp W, class Dst, class V, int N>
 WARPAGG_HD void reduce_and_commit(const W& w, Dst dst, const V (&v)[N], const mask_t<W>& active) {
+    using math::select;  // and by its arguments, that of SIMD lanes
     V sums[N];
     WARPAGG_UNROLL
     for (int i = 0; i < N; ++i) sums[i] = select(active, v[i], V{});  // a NaN of an inactive lane ends here

@@ -82,8 +82,8 @@ struct footprint {
 template <class Real>
 WARPAGG_HD footprint<Real> see(const parameter_arrays<const Real>& g, unsigned i,
                                const device_camera<Real>& camera) {
-    using warpagg::max;
-    using warpagg::min;
+    using warpagg::math::max;
+    using warpagg::math::min;
     footprint<Real> f;
     f.drawable = false;
     f.at = camera.rotation * load3(g.mean, i) + camera.translation;
@@ -93,7 +93,7 @@ WARPAGG_HD footprint<Real> see(const parameter_arrays<const Real>& g, unsigned i
                        g.quaternion[4 * i + 3]);
     const Real length2 = glm::dot(q, q);
     if (!(length2 > 0)) return f;
-    f.inverse_length = 1 / warpagg::sqrt(length2);
+    f.inverse_length = 1 / warpagg::math::sqrt(length2);
     f.unit = q * f.inverse_length;
     f.scale = glm::exp(load3(g.log_scale, i));
     f.rotation = rotation_of(f.unit);

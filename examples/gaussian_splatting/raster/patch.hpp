@@ -8,9 +8,9 @@
 
 namespace gs::raster {
 
-using warpagg::fma;
+using warpagg::math::fma;
 using warpagg::mask_t;
-using warpagg::select;
+using warpagg::math::select;
 using warpagg::value_t;
 
 /// The pixels that a warp owns, one a lane: 8 × 4 for 32 lanes, one for one. A tile is cut into patches.
@@ -34,8 +34,8 @@ struct patch {
         const value_t<W, unsigned> column = w.lane() % across + x0, row = w.lane() / across + y0;
         left = Real(x0) + Real(0.5);
         top = Real(y0) + Real(0.5);
-        x = warpagg::convert<Real>(column) + Real(0.5);
-        y = warpagg::convert<Real>(row) + Real(0.5);
+        x = warpagg::math::convert<Real>(column) + Real(0.5);
+        y = warpagg::math::convert<Real>(row) + Real(0.5);
         pixel = row * static_cast<unsigned>(width) + column;
         inside = column < static_cast<unsigned>(width) && row < static_cast<unsigned>(height);
     }
@@ -71,9 +71,9 @@ struct coverage {
         dy = p.y - s.y;
         const value_t<W, Real> sigma = exponent(s, dx, dy);
         hit = sigma <= value_t<W, Real>(s.reach);
-        const value_t<W, Real> full = s.opacity * warpagg::exp2(-sigma);
+        const value_t<W, Real> full = s.opacity * warpagg::math::exp2(-sigma);
         free = full < value_t<W, Real>(Real(most_alpha));
-        alpha = warpagg::min(full, value_t<W, Real>(Real(most_alpha)));
+        alpha = warpagg::math::min(full, value_t<W, Real>(Real(most_alpha)));
     }
 };
 

@@ -65,7 +65,7 @@ struct project {
         s.b = -2 * f.xy * k;
         s.c = f.xx * k;
         const tile_box box =
-            bounds(s, warpagg::sqrt(2 * ln2 * s.reach * f.xx), warpagg::sqrt(2 * ln2 * s.reach * f.yy));
+            bounds(s, warpagg::math::sqrt(2 * ln2 * s.reach * f.xx), warpagg::math::sqrt(2 * ln2 * s.reach * f.yy));
         unsigned met = 0;
         for_each_tile(s, box, tiles_across, [&](unsigned) { ++met; });
         if (met == 0) return;
@@ -94,7 +94,7 @@ struct project {
     WARPAGG_HD tile_box bounds(const splat<Real>& s, Real half_x, Real half_y) const {
         const auto tile = [](Real pixel, unsigned end) {
             const Real t = glm::floor(pixel / tile_size);
-            return static_cast<std::uint16_t>(warpagg::min(warpagg::max(t, Real(0)), Real(end)));
+            return static_cast<std::uint16_t>(warpagg::math::min(warpagg::math::max(t, Real(0)), Real(end)));
         };
         const Real half(0.5);
         return {tile(s.x - half_x - half, tiles_across), tile(s.y - half_y - half, tiles_down),

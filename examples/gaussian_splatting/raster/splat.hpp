@@ -30,7 +30,7 @@ inline constexpr double least_transmittance = 1e-4;
 /// both see the same alpha to the bit.
 template <class V, class Real>
 WARPAGG_HD V exponent(const splat<Real>& s, const V& dx, const V& dy) {
-    using warpagg::fma;
+    using warpagg::math::fma;
     return fma(dx, fma(V(s.b), dy, dx * s.a), (dy * s.c) * dy);
 }
 
@@ -39,9 +39,9 @@ WARPAGG_HD V exponent(const splat<Real>& s, const V& dx, const V& dy) {
 template <class V>
 WARPAGG_HD V least_exponent(const V& a, const V& b, const V& c, const V& x0, const V& x1, const V& y0,
                             const V& y1) {
-    using warpagg::max;
-    using warpagg::min;
-    using warpagg::select;
+    using warpagg::math::max;
+    using warpagg::math::min;
+    using warpagg::math::select;
     const V zero(0);
     const V x = min(max(zero, x0), x1);  // the side's abscissa, or zero inside
     const V y = min(max(zero, y0), y1);

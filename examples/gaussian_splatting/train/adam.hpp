@@ -31,7 +31,7 @@ struct adam {
         const Real v = Real(beta2) * second[i] + Real(1 - beta2) * g * g;
         first[i] = m;
         second[i] = v;
-        values[i] -= rate * m / (warpagg::sqrt(v) * correction + Real(epsilon));
+        values[i] -= rate * m / (warpagg::math::sqrt(v) * correction + Real(epsilon));
     }
 };
 

@@ -29,7 +29,7 @@ struct judge_gaussians {
         const raster::visibility v = seen[i];
         const float mean = v.seen > 0 ? v.gradient / v.seen : 0.0f;
         const glm::vec3 s = raster::load3(gaussians.log_scale, i);
-        const float largest = glm::exp(warpagg::max(s.x, warpagg::max(s.y, s.z)));
+        const float largest = glm::exp(warpagg::math::max(s.x, warpagg::math::max(s.y, s.z)));
         const bool opaque = raster::sigmoid(gaussians.opacity[i]) >= rule.least_opacity;
         const bool too_large = rule.most_scale > 0 && largest > rule.most_scale;
         const bool stay = opaque && !too_large;
@@ -130,7 +130,7 @@ struct lower_opacity {
     float most;
 
     WARPAGG_HD void operator()(std::size_t i) const {
-        opacity[i] = warpagg::min(opacity[i], most);
+        opacity[i] = warpagg::math::min(opacity[i], most);
         first[i] = 0;
         second[i] = 0;
     }

@@ -19,7 +19,7 @@ struct clamp_picture {
     const float* from;
     float* to;
     WARPAGG_HD void operator()(std::size_t i) const {
-        to[i] = warpagg::min(warpagg::max(from[i], 0.0f), 1.0f);
+        to[i] = warpagg::math::min(warpagg::math::max(from[i], 0.0f), 1.0f);
     }
 };
 

@@ -24,8 +24,8 @@ struct counter_random {
     }
     /// Three normal deviates (Box and Muller 1958).
     WARPAGG_HD glm::vec3 normal3() {
-        const float r = warpagg::sqrt(-2 * glm::log(uniform())), a = 6.2831853f * uniform();
-        const float s = warpagg::sqrt(-2 * glm::log(uniform())), b = 6.2831853f * uniform();
+        const float r = warpagg::math::sqrt(-2 * glm::log(uniform())), a = 6.2831853f * uniform();
+        const float s = warpagg::math::sqrt(-2 * glm::log(uniform())), b = 6.2831853f * uniform();
         return {r * glm::cos(a), r * glm::sin(a), s * glm::cos(b)};
     }
 

@@ -26,6 +26,7 @@ WARPAGG_HD void first_lane(const W& w, Dst dst, const V (&v)[N]) {
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Dst, class V, int N>
 WARPAGG_HD void own_value(const W& w, Dst dst, const V (&v)[N]) {
+    using math::select;
     WARPAGG_UNROLL
     for (int base = 0; base < N; base += static_cast<int>(W::size)) {
         const auto index = w.lane() + static_cast<unsigned>(base);

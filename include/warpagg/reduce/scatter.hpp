@@ -17,6 +17,7 @@ constexpr int held_after_scatter(int n) {
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W>
 WARPAGG_HD value_t<W, unsigned> scattered_index(const W& w, int k) {
+    using math::select;
     const value_t<W, unsigned> lane = w.lane();
     value_t<W, unsigned> index(W::size * static_cast<unsigned>(k));
     WARPAGG_UNROLL
@@ -34,6 +35,7 @@ namespace detail {
 WARPAGG_EXEC_CHECK_DISABLE
 template <unsigned Distance, int M, int K, warp W, class V>
 WARPAGG_HD void exchange(const W& w, V* v, const mask_t<W>& upper) {
+    using math::select;
     if constexpr (2 * K + 1 < M) {
         const V keep = select(upper, v[2 * K + 1], v[2 * K]);
         const V send = select(upper, v[2 * K], v[2 * K + 1]);

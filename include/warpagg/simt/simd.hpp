@@ -223,7 +223,7 @@ WARPAGG_HD lanes<T, L> fma(const lanes<T, L>& a, const lanes<T, L>& b, const lan
         }
 #endif
         WARPAGG_UNROLL
-        for (int k = 0; k < r.width; ++k) r.part[i][k] = fma(a.part[i][k], b.part[i][k], c.part[i][k]);
+        for (int k = 0; k < r.width; ++k) r.part[i][k] = math::fma(a.part[i][k], b.part[i][k], c.part[i][k]);
     }
     return r;
 }
@@ -241,7 +241,7 @@ WARPAGG_HD lanes<T, L> sqrt(const lanes<T, L>& a) {
         }
 #endif
         WARPAGG_UNROLL
-        for (int k = 0; k < r.width; ++k) r.part[i][k] = sqrt(a.part[i][k]);
+        for (int k = 0; k < r.width; ++k) r.part[i][k] = math::sqrt(a.part[i][k]);
     }
     return r;
 }
@@ -294,8 +294,20 @@ template <int L>
 WARPAGG_HD lanes<double, L> exp2(const lanes<double, L>& a) {
     lanes<double, L> r;
     WARPAGG_UNROLL
-    for (int k = 0; k < L; ++k) r.set(k, exp2(a[k]));
+    for (int k = 0; k < L; ++k) r.set(k, math::exp2(a[k]));
     return r;
 }
+
+/// Beside the scalar ones, for masked code that names them in full. Unqualified calls find them by their
+/// arguments.
+namespace math {
+using warpagg::convert;
+using warpagg::exp2;
+using warpagg::fma;
+using warpagg::max;
+using warpagg::min;
+using warpagg::select;
+using warpagg::sqrt;
+}  // namespace math
 
 }  // namespace warpagg

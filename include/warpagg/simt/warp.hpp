@@ -72,7 +72,11 @@ concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i,
     w.atomic_add(dst, i, v, p);
 };
 
-/// The scalar faces of the lane-wise operations, so that masked code reads the same on every model.
+/// Lane-wise operations, so that masked code reads the same on every model: here for models whose lane values
+/// are scalars. A namespace of its own, since nvcc's own headers stumble over other overloads of sqrt and the
+/// like.
+namespace math {
+
 template <class T>
 WARPAGG_HD T select(bool mask, T yes, T no) {
     return mask ? yes : no;
@@ -101,6 +105,8 @@ WARPAGG_HD double exp2(double a) { return ::exp2(a); }
 /// Lane-wise conversion.
 template <class To, class From>
 requires std::is_arithmetic_v<From> WARPAGG_HD To convert(From a) { return static_cast<To>(a); }
+
+}  // namespace math
 
 namespace detail {
 
