@@ -25,6 +25,7 @@ struct options {
     std::string ply, output;
     gs::load_options scene;
     std::string device = "auto";
+    std::uint64_t model_seed = 0;
     int rounds = 7;
     std::size_t views = 50;
 };
@@ -38,6 +39,7 @@ options parse(int argc, char** argv) {
     app.add_option("-r,--resolution", o.scene.resolution)->check(CLI::PositiveNumber);
     app.add_option("-o,--output", o.output, "A JSON file");
     app.add_option("--device", o.device)->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+    app.add_option("--model-seed", o.model_seed, "The seed that the model was trained with, for the record");
     app.add_option("--rounds", o.rounds, "Turns of each policy")->check(CLI::Range(1, 1000));
     app.add_option("--views", o.views, "Training views in a turn")->check(CLI::Range(1, 100000));
     try {
@@ -55,6 +57,13 @@ struct timing {
 double median(std::vector<double> x) {
     std::ranges::sort(x);
     return 0.5 * (x[(x.size() - 1) / 2] + x[x.size() / 2]);
+}
+
+std::string driver() {
+    std::ifstream version("/proc/driver/nvidia/version");
+    std::string line;
+    std::getline(version, line);
+    return line;
 }
 
 /// Every view once, nothing learned.
@@ -104,6 +113,8 @@ void bench(const options& o) {
                       {"commit", WARPAGG_COMMIT},
                       {"compiler", WARPAGG_COMPILER},
                       {"nvcc", WARPAGG_NVCC},
+                      {"driver", driver()},
+                      {"model_seed", o.model_seed},
                       {"scene", std::filesystem::path(o.scene.data).filename().string()},
                       {"width", scene.train[0].camera.width},
                       {"height", scene.train[0].camera.height},

@@ -93,12 +93,10 @@ TEST_CASE("tag objects spell the same types") {
 TEST_CASE_TEMPLATE("the default per number of values", T, float, double, std::int32_t, std::uint32_t) {
     using one = warpagg::default_policy<T, 1>;
     using few = warpagg::default_policy<T, 2>;
-    using sixteen = warpagg::default_policy<T, 16>;
-    using many = warpagg::default_policy<T, 17>;
+    using many = warpagg::default_policy<T, 40>;
     CHECK(chooses<one, reduce::shfl_down, commit::scalar, idle::skip, gate::always>);
     CHECK(chooses<few, reduce::scatter, commit::contiguous, idle::skip, gate::always>);
-    CHECK(chooses<sixteen, reduce::scatter, commit::contiguous, idle::skip, gate::always>);
-    CHECK(chooses<many, reduce::scatter, commit::contiguous, idle::skip, gate::at_least<2>>);
+    CHECK(chooses<many, reduce::scatter, commit::contiguous, idle::skip, gate::always>);
 }
 
 TEST_SUITE_END();

@@ -13,7 +13,7 @@ namespace {
 template <int N>
 void check_many() {
     const problem<float> p(N, records, 3);
-    check<without_policy, N>(p, "no policy", default_rule<N>);
+    check<without_policy, N>(p, "no policy", {});
     check<with<policy<reduce::per_lane>>, N>(p, "per_lane", always_alone);
     check<with<policy<reduce::butterfly, commit::contiguous>>, N>(p, "butterfly contiguous", {});
     check<with<policy<reduce::scatter>>, N>(p, "scatter", {});

@@ -153,12 +153,9 @@ struct policy {
 template <class... Tags>
 policy(Tags...) -> policy<Tags...>;
 
-/// What `warp_reduce_atomic<T, N>` does unless told otherwise. One value is cheapest by `shfl_down` (as many
-/// shuffles as `scatter`, no bit reversal); more are cheapest by `scatter`; and from 17 values on, a warp
-/// with a single active lane is better off with that lane's own atomics (docs/policies.md).
+/// What `warp_reduce_atomic<T, N>` does unless told otherwise: one value is cheapest by `shfl_down`, several are by
+/// `scatter` (docs/policies.md has the measurement).
 template <class T, int N>
-using default_policy = std::conditional_t<
-    N == 1, policy<reduce::shfl_down>,
-    std::conditional_t<(N > 16), policy<reduce::scatter, gate::at_least<2>>, policy<reduce::scatter>>>;
+using default_policy = std::conditional_t<N == 1, policy<reduce::shfl_down>, policy<reduce::scatter>>;
 
 }  // namespace warpagg
