@@ -126,8 +126,9 @@ CLI::App* add_train(CLI::App& app, settings& s) {
     train->add_option("--sh-degree-interval", s.sh_degree_interval, "Iterations between two degrees")
         ->check(whole_number(1, 10000000))
         ->capture_default_str();
-    train->add_option("--densify-grad-threshold", s.densify_grad_threshold,
-                      "Mean gradient of a centre, in halves of the picture, from which a Gaussian grows")
+    train
+        ->add_option("--densify-grad-threshold", s.densify_grad_threshold,
+                     "Mean gradient of a centre, in halves of the picture, from which a Gaussian grows")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     train->add_option("--max-cap", s.max_cap, "Most Gaussians; by default one for 32 pixels of the photos")
