@@ -153,8 +153,8 @@ struct policy {
 template <class... Tags>
 policy(Tags...) -> policy<Tags...>;
 
-/// What `warp_reduce_atomic<T, N>` does unless told otherwise: one value is cheapest by `shfl_down`, several are by
-/// `scatter` (docs/policies.md has the measurement).
+/// What `warp_reduce_atomic<T, N>` does unless told otherwise: one value is cheapest by `shfl_down`, several
+/// are by `scatter` (docs/policies.md has the measurement).
 template <class T, int N>
 using default_policy = std::conditional_t<N == 1, policy<reduce::shfl_down>, policy<reduce::scatter>>;
 

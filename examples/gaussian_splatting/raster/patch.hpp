@@ -8,10 +8,10 @@
 
 namespace gs::raster {
 
-using warpagg::math::fma;
 using warpagg::mask_t;
-using warpagg::math::select;
 using warpagg::value_t;
+using warpagg::math::fma;
+using warpagg::math::select;
 
 /// The pixels that a warp owns, one a lane: 8 × 4 for 32 lanes, one for one. A tile is cut into patches.
 template <class W, class Real>

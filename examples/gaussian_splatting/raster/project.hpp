@@ -64,8 +64,8 @@ struct project {
         s.a = f.yy * k;
         s.b = -2 * f.xy * k;
         s.c = f.xx * k;
-        const tile_box box =
-            bounds(s, warpagg::math::sqrt(2 * ln2 * s.reach * f.xx), warpagg::math::sqrt(2 * ln2 * s.reach * f.yy));
+        const tile_box box = bounds(s, warpagg::math::sqrt(2 * ln2 * s.reach * f.xx),
+                                    warpagg::math::sqrt(2 * ln2 * s.reach * f.yy));
         unsigned met = 0;
         for_each_tile(s, box, tiles_across, [&](unsigned) { ++met; });
         if (met == 0) return;

@@ -9,10 +9,10 @@
 
 namespace gs::train {
 
-using warpagg::math::fma;
 using warpagg::mask_t;
-using warpagg::math::select;
 using warpagg::value_t;
+using warpagg::math::fma;
+using warpagg::math::select;
 
 /// The photo over a background: premultiplied RGBA bytes to three planes in [0, 1]. One index a pixel.
 template <class Real>
@@ -161,8 +161,8 @@ struct ssim_compare {
 
         const real error = w.load_row(x, p.first, p.inside) - w.load_row(y, p.first, p.inside);
         const value_t<W, double> found[loss_sum_count] = {
-            warpagg::math::convert<double>(warpagg::math::max(error, -error)), warpagg::math::convert<double>(error * error),
-            warpagg::math::convert<double>(s)};
+            warpagg::math::convert<double>(warpagg::math::max(error, -error)),
+            warpagg::math::convert<double>(error * error), warpagg::math::convert<double>(s)};
         warpagg::warp_reduce_atomic(w, totals, found, p.inside);
     }
 };
