@@ -63,10 +63,13 @@ def spread(values, form):
 
 def table(arguments):
     result = json.loads(pathlib.Path(arguments.file).read_text())
-    print(f"`{' '.join(result['options'])}`, {result['gpu_and_driver'] or result['processor']}, "
-          f"{result['nvcc'] or result['compiler']}, commit {result['commit']}, "
-          f"seeds {sorted({r['seed'] for r in result['runs']})}; median (least to most)\n")
-    print("| scene | held-out PSNR, dB | SSIM | Gaussians | it/s | loop, s | peak device MiB |")
+    cpu = result["runs"][0]["device"].startswith("cpu")
+    machine = [result["processor"].strip(), result["runs"][0]["device"], result["compiler"]] if cpu else [
+        result["gpu_and_driver"], result["nvcc"]]
+    seeds = ", ".join(str(s) for s in sorted({r["seed"] for r in result["runs"]}))
+    print(f"`{' '.join(result['options'])}`, {', '.join(machine)}, commit {result['commit']}, seeds {seeds}; "
+          "median (least to most)\n")
+    print(f"| scene | held-out PSNR, dB | SSIM | Gaussians | it/s | loop, s | peak {'host' if cpu else 'device'} MiB |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for scene in dict.fromkeys(r["scene"] for r in result["runs"]):
         runs = [r for r in result["runs"] if r["scene"] == scene]
@@ -75,7 +78,7 @@ def table(arguments):
                                column(lambda r: r["gaussians"], "{:,.0f}"),
                                column(lambda r: r["iterations_per_second"], "{:.0f}"),
                                column(lambda r: r["seconds"]["train"], "{:.1f}"),
-                               column(lambda r: r["peak_device_bytes"] / 2**20, "{:.0f}")]), "|")
+                               column(lambda r: r["peak_host_bytes" if cpu else "peak_device_bytes"] / 2**20, "{:.0f}")]), "|")
     print("\n| scene | " + " | ".join(result["runs"][0]["stages"]) + " | (ms an iteration) |")
     print("| --- |" + " --- |" * (len(result["runs"][0]["stages"]) + 1))
     for scene in dict.fromkeys(r["scene"] for r in result["runs"]):

@@ -659,6 +659,14 @@ TEST_CASE("the extent is 1.1 times the farthest camera's distance from their mea
     CHECK(scene.extent() == doctest::Approx(1.1 * 4).epsilon(rounding));
 }
 
+TEST_CASE("the extent of a single camera is how far the points are") {
+    gs::scene scene;
+    scene.train.emplace_back();
+    CHECK(scene.extent() == 1);
+    for (const double x : {1.0, 2.0, 90.0}) scene.points.push_back({{0, x, 0}, {}});
+    CHECK(scene.extent() == 2);
+}
+
 TEST_CASE("synthetic:NAME is made, not read") {
     gs::load_options options;
     options.data = "synthetic:spheres";

@@ -54,7 +54,13 @@ double scene::extent() const {
     for (const view& one : train) mean += one.camera.centre() / static_cast<double>(train.size());
     double farthest = 0;
     for (const view& one : train) farthest = std::max(farthest, glm::distance(mean, one.camera.centre()));
-    return 1.1 * farthest;
+    if (farthest > 0) return 1.1 * farthest;
+    if (points.empty()) return 1;
+    std::vector<double> distances;
+    for (const coloured_point& point : points) distances.push_back(glm::distance(mean, point.position));
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    return *middle;
 }
 
 scene load_scene(const load_options& options, const log_function& log) {

@@ -46,7 +46,8 @@ struct scene {
     std::string source;                  ///< "Blender", "COLMAP" or "synthetic", for messages
 
     /// 1.1 times the largest distance of a training camera from their mean: the unit of the learning rate of
-    /// positions and of densification (Kerbl et al. 2023, reference implementation).
+    /// positions and of densification (Kerbl et al. 2023, reference implementation). Where all cameras are in
+    /// one place, the median distance of the points from it, or 1 without points.
     double extent() const;
 };
 
