@@ -92,7 +92,7 @@ void bench(const options& o) {
     const std::size_t views = std::min(o.views, scene.train.size());
     engine->set_views(scene.train, {});
     engine->set_model(model);
-    engine->reserve(model.sh_degree);
+    engine->reserve();
 
     constexpr std::size_t policies = gs::gradient_policy_names.size();
     std::array<timing, policies> timings;

@@ -37,7 +37,6 @@ endif()
 message(STATUS "warpagg: CUDA ${warpagg_with_cuda}")
 
 find_package(OpenMP REQUIRED COMPONENTS CXX)
-find_package(Threads REQUIRED)
 
 # Options of all that is built here.
 add_library(warpagg_build INTERFACE)

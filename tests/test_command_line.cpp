@@ -395,6 +395,15 @@ TEST_CASE("contradictory options are refused") {
     check_refusal_without_trace({"render", "model.ply", "--orbit-views", "3", "-d", "synthetic:spheres"},
                                 {"--orbit-views", "--data"});
     check_refusal_without_trace({"render", "model.ply", "--eval"}, {"--eval", "--data"});
+    check_refusal_without_trace({"render", "model.ply", "--images", "photos"}, {"--images", "--data"});
+    check_refusal_without_trace({"render", "model.ply", "--background", "random"},
+                                {"--background", "random"});
+}
+
+TEST_CASE("options that say nothing of a scene are refused, not ignored") {
+    check_refusal_without_trace(train_spheres + words{"--images", "photos"}, {"--images", "synthetic"});
+    check_refusal_without_trace(train_spheres + words{"--eval", "--test-every", "4"},
+                                {"--test-every", "synthetic"});
 }
 
 TEST_CASE("an option that is not known is refused, and the nearest one named") {

@@ -213,4 +213,18 @@ TEST_CASE("the histogram of active lanes") {
         CHECK(total.active[active] == active % 3 + (active == 4 ? 2 : 1));
 }
 
+TEST_CASE("the README's example") {
+    counters did;
+    const counted_lanes w{{&did}};
+    const auto x = warpagg::convert<float>(w.lane());
+    const warpagg::lanes<float, 32> values[2] = {x, x * x};
+    float memory[2] = {};
+    warpagg::warp_reduce_atomic(w, memory, values, x < 10.0f);
+    CHECK(memory[0] == 45);
+    CHECK(memory[1] == 285);
+    CHECK(did.atomics == 2);
+    CHECK(did.commits == 1);
+    CHECK(did.votes == 1);
+}
+
 TEST_SUITE_END();

@@ -120,7 +120,7 @@ TEST_CASE("the most urgent grow first, and none past the cap") {
         const auto e = make();
         e->set_views(scene.train, scene.test);
         e->set_model(model);
-        e->reserve(0);
+        e->reserve();
         for (std::size_t v = 0; v < 4; ++v) e->step(plan_for(v));
         const gaussians stepped = e->get_model();
         densify_rule rule;
@@ -162,7 +162,7 @@ TEST_CASE("a split leaves two that are 1.6 times smaller, near their parent") {
         const auto e = make();
         e->set_views(scene.train, scene.test);
         e->set_model(model);
-        e->reserve(0);
+        e->reserve();
         auto still = plan_for(0);
         still.rates = {};
         e->step(still);
@@ -240,12 +240,12 @@ TEST_CASE("a step whose lists do not fit changes nothing, and is counted") {
         const auto e = make();
         e->set_views(scene.train, scene.test);
         e->set_model(small);
-        e->reserve(0);
+        e->reserve();
         e->set_model(large);
         e->step(plan_for(0));
         CHECK(e->skipped_steps() == 1);
         CHECK(same(e->get_model(), large));
-        e->reserve(0);
+        e->reserve();
         e->step(plan_for(0));
         CHECK(e->skipped_steps() == 1);
         CHECK_FALSE(same(e->get_model(), large));

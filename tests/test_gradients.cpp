@@ -141,12 +141,10 @@ TEST_CASE("the reference's gradients are those of central differences") {
 
 TEST_CASE("nothing to draw is the background, and no gradient") {
     question q = probe::random_question(9, 3, 20, 10, 1);
-    for (std::size_t i = 0; i < 3; ++i) {
-        SUBCASE("all behind the camera") { q.view.camera.translation = glm::dvec3(0, 0, -9); }
-        SUBCASE("all transparent") { q.parameters[3].assign(3, -20.0); }
-        SUBCASE("no Gaussians") {
-            for (auto& p : q.parameters) p.clear();
-        }
+    SUBCASE("all behind the camera") { q.view.camera.translation = glm::dvec3(0, 0, -9); }
+    SUBCASE("all transparent") { q.parameters[3].assign(3, -20.0); }
+    SUBCASE("no Gaussians") {
+        for (auto& p : q.parameters) p.clear();
     }
     for (const answer& a : {probe::ask_reference(q), probe::ask_lanes(q)}) {
         for (std::size_t i = 0; i < a.picture.size(); ++i)

@@ -321,14 +321,18 @@ TEST_CASE("exp2 of a float errs by less than 2 ulp") {
     CHECK(worst <= 2.0);
 }
 
-TEST_CASE("exp2 where it is exact, and below its range") {
+TEST_CASE("exp2 where it is exact, and out of its range") {
     for (int n = -126; n < 128; ++n)
         CHECK(exp2(vector<float>(static_cast<float>(n)))[n & 31] == std::ldexp(1.0f, n));
     const float least = std::ldexp(1.0f, -126);
     for (const float x : {-126.0f, -126.25f, -127.0f, -150.0f, -1e10f, -1e38f})
         CHECK(exp2(vector<float>(x))[13] == least);
     CHECK(exp2(vector<float>(-std::numeric_limits<float>::infinity()))[0] == least);
-    CHECK(std::isfinite(exp2(vector<float>(std::nextafter(128.0f, 0.0f)))[31]));
+    const float most = exp2(vector<float>(std::nextafter(128.0f, 0.0f)))[31];
+    CHECK(most > std::ldexp(1.0f, 127));
+    CHECK(std::isfinite(most));
+    for (const float x : {128.0f, 1e10f, std::numeric_limits<float>::infinity()})
+        CHECK(exp2(vector<float>(x))[5] == most);
 }
 
 TEST_CASE("exp2 of a double") {

@@ -665,6 +665,18 @@ TEST_CASE("the extent of a single camera is how far the points are") {
     CHECK(scene.extent() == 1);
     for (const double x : {1.0, 2.0, 90.0}) scene.points.push_back({{0, x, 0}, {}});
     CHECK(scene.extent() == 2);
+
+    // On a tripod: several cameras, in one place but for rounding.
+    scene.train.clear();
+    const glm::dvec3 tripod(0.1, 0.2, 0.3);
+    for (const double turn : {0.1, 1.3, 2.9}) {
+        scene.train.emplace_back();
+        gs::camera& camera = scene.train.back().camera;
+        camera.rotation =
+            glm::dmat3({std::cos(turn), std::sin(turn), 0}, {-std::sin(turn), std::cos(turn), 0}, {0, 0, 1});
+        camera.translation = -camera.rotation * tripod;
+    }
+    CHECK(scene.extent() == doctest::Approx(glm::distance(tripod, {0, 2, 0})));
 }
 
 TEST_CASE("synthetic:NAME is made, not read") {

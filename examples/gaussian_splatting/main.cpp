@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include "cli/settings.hpp"
@@ -21,6 +22,9 @@ int main(int argc, char** argv) {
         return 0;
     } catch (const gs::error& e) {
         std::fprintf(stderr, "error: %s\n", e.what());
+        return 2;
+    } catch (const std::filesystem::filesystem_error& e) {
+        std::fprintf(stderr, "error: cannot use %s: %s\n", e.path1().c_str(), e.code().message().c_str());
         return 2;
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "error: out of memory: lower --resolution or --max-cap\n");

@@ -15,14 +15,14 @@ namespace gs {
 inline void write_aside(const std::filesystem::path& file, const std::function<void(std::ostream&)>& fill) {
     const std::filesystem::path aside = file.string() + ".part";
     std::error_code ignored;
-    {
+    try {
         std::ofstream out(aside, std::ios::binary);
         if (out) fill(out);
         out.close();
-        if (!out) {
-            std::filesystem::remove(aside, ignored);
-            throw error("cannot write " + file.string());
-        }
+        if (!out) throw error("cannot write " + file.string());
+    } catch (...) {
+        std::filesystem::remove(aside, ignored);
+        throw;
     }
     std::error_code failed;
     std::filesystem::rename(aside, file, failed);

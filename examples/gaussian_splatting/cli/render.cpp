@@ -63,13 +63,17 @@ std::vector<named_camera> orbit(const gaussians& model, int views, int size) {
 }
 
 std::vector<named_camera> cameras_of(const scene& scene) {
+    const std::vector<view>& views = scene.test.empty() ? scene.train : scene.test;
+    const auto names = evaluate::picture_names(views);
     std::vector<named_camera> cameras;
-    for (const view& v : scene.test.empty() ? scene.train : scene.test) {
-        std::string name = v.name;
-        std::ranges::replace(name, '/', '_');
-        cameras.push_back({std::filesystem::path(name).replace_extension(".png").string(), v.camera});
-    }
+    for (std::size_t i = 0; i < views.size(); ++i) cameras.push_back({names[i], views[i].camera});
     return cameras;
+}
+
+/// The side of an orbit's pictures: `--resolution` divides 800 pixels or says how many there are.
+int orbit_size(int resolution) {
+    const bool divides = resolution == 1 || resolution == 2 || resolution == 4 || resolution == 8;
+    return divides ? 800 / resolution : resolution;
 }
 
 }  // namespace
@@ -83,8 +87,7 @@ void render(const settings& s) {
     bool alpha = false;
     std::vector<named_camera> cameras;
     if (orbits) {
-        cameras = orbit(model, s.orbit_views,
-                        s.scene.resolution > 8 ? s.scene.resolution : 800 / s.scene.resolution);
+        cameras = orbit(model, s.orbit_views, orbit_size(s.scene.resolution));
     } else {
         const scene scene = session.load();
         alpha = scene.has_alpha;

@@ -44,7 +44,7 @@ output_folder::output_folder(const fs::path& path) : path_(path) {
     fs::create_directories(path, failed);
     if (failed) throw error("cannot make the folder " + path.string() + ": " + failed.message());
     const fs::path probe = path / ".writable";
-    const bool writable = std::ofstream(probe).put('\n').good();
+    const bool writable = std::ofstream(probe).put('\n').flush().good();
     fs::remove(probe, failed);
     if (!writable) throw error("cannot write to the folder " + path.string());
 }
@@ -71,7 +71,9 @@ nlohmann::ordered_json to_json(const evaluate::test_report& report) {
 }
 
 void write_json(const fs::path& file, const nlohmann::ordered_json& json) {
-    write_aside(file, [&](std::ostream& out) { out << json.dump(2) << '\n'; });
+    write_aside(file, [&](std::ostream& out) {
+        out << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    });
 }
 
 }  // namespace gs::cli

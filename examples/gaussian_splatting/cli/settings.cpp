@@ -132,7 +132,7 @@ CLI::App* add_train(CLI::App& app, settings& s) {
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     train->add_option("--max-cap", s.max_cap, "Most Gaussians; by default one for 32 pixels of the photos")
-        ->check(whole_number(1, 1000000000));
+        ->check(whole_number(1, 100000000));
     std::set<std::string> policies(gradient_policy_names.begin(), gradient_policy_names.end());
     train->add_option("--gradient", s.gradient, "How gradients are added up")
         ->check(CLI::IsMember(policies))
@@ -160,6 +160,8 @@ CLI::App* add_render(CLI::App& app, settings& s) {
     add_scene(*render, s, false);
     add_common(*render, s);
     render->add_option("-o,--output", s.output, "Folder for the pictures")->required();
+    render->get_option("--images")->needs("--data");
+    render->get_option("--test-every")->needs("--data");
     render->add_option("--orbit-views", s.orbit_views, "Without --data: pictures of the orbit")
         ->check(whole_number(1, 10000))
         ->excludes(render->get_option("--data"))
@@ -201,6 +203,8 @@ settings parse(int argc, char** argv) {
     }
     s.command = app.get_subcommands().front()->get_name();
     s.scene.seed = s.seed;
+    if (s.command != "train" && s.background == "random")
+        throw error("--background random is for training: " + s.command + " needs one colour");
     refuse_late(s.save_iterations, s.iterations, "--save-iterations");
     refuse_late(s.test_iterations, s.iterations, "--test-iterations");
     if (s.command == "render" && s.scene.data.empty() && s.scene.eval)

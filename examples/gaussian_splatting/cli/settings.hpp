@@ -7,6 +7,7 @@
 #include <string>
 
 #include "../scene/scene.hpp"
+#include "../train/densify_rule.hpp"
 
 namespace gs::cli {
 
@@ -24,7 +25,7 @@ struct settings {
     int iterations = 7000;
     int sh_degree = 3;
     int sh_degree_interval = 1000;
-    float densify_grad_threshold = 1.5e-4f;
+    float densify_grad_threshold = train::densify_rule{}.gradient;
     std::size_t max_cap = 0;  ///< 0: by the photos
     std::string gradient = "scatter";
     std::set<int> save_iterations;

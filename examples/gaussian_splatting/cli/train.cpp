@@ -69,6 +69,8 @@ ordered_json settings_json(const settings& s, const train::train_options& o) {
             {"densify_grad_threshold", o.densify_gradient},
             {"max_cap", o.max_cap},
             {"gradient", s.gradient},
+            {"save_iterations", o.save_iterations},
+            {"test_iterations", o.test_iterations},
             {"background", s.background},
             {"device", s.device},
             {"seed", s.seed}};
@@ -126,7 +128,7 @@ void train(const settings& s) {
                 " views, " + std::to_string(model.count()) + " Gaussians, at most " +
                 std::to_string(options.max_cap));
 
-    ordered_json tested;
+    ordered_json tested = ordered_json::array();
     progress_bar bar(s.quiet);
     train::progress last;
     train::train_events events;

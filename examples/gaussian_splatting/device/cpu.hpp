@@ -41,7 +41,6 @@ class basic_cpu {
         }
         T* data() const { return memory_.get(); }
         std::size_t size() const { return size_; }
-        std::size_t bytes() const { return capacity_ * sizeof(T); }
 
       private:
         std::unique_ptr<T[]> memory_;
@@ -87,10 +86,6 @@ class basic_cpu {
     void upload(T* to, const T* from, std::size_t n) {
         std::copy_n(from, n, to);
     }
-    template <class T>
-    void copy(T* to, const T* from, std::size_t n) {
-        std::copy_n(from, n, to);
-    }
     /// Waits for the device, as does whoever reads a result of it.
     template <class T>
     void download(T* to, const T* from, std::size_t n) {
@@ -125,8 +120,11 @@ class basic_cpu {
         iteration_ = 0;
         times_ = {};
     }
+    /// What follows belongs to no iteration.
+    void pause_times(bool paused) { paused_ = paused; }
     /// Marks where a stage begins.
     void begin(stage s) {
+        if (paused_) return;
         const auto now = clock::now();
         if (running_ != stage::count && iteration_ % sampling_ == 0)
             times_.milliseconds[static_cast<std::size_t>(running_)] +=
@@ -182,6 +180,7 @@ class basic_cpu {
     stage_times times_;
     stage running_ = stage::count;
     int sampling_ = 1, iteration_ = 0;
+    bool paused_ = false;
     clock::time_point since_;
 };
 

@@ -151,10 +151,6 @@ class cuda {
     void upload(T* to, const T* from, std::size_t n) {
         check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyHostToDevice, stream_));
     }
-    template <class T>
-    void copy(T* to, const T* from, std::size_t n) {
-        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToDevice, stream_));
-    }
     /// Waits for the device, as does whoever reads a result of it.
     template <class T>
     void download(T* to, const T* from, std::size_t n) {
@@ -195,9 +191,11 @@ class cuda {
         iteration_ = 0;
         times_ = {};
     }
+    /// What follows belongs to no iteration.
+    void pause_times(bool paused) { paused_ = paused; }
     /// Marks where a stage begins.
     void begin(stage s) {
-        if (iteration_ % sampling_ != 0) return;
+        if (paused_ || iteration_ % sampling_ != 0) return;
         check(cudaEventRecord(marks_[static_cast<std::size_t>(s)], stream_));
         pending_[static_cast<std::size_t>(s)] = true;
     }
@@ -259,6 +257,7 @@ class cuda {
     std::array<cudaEvent_t, static_cast<std::size_t>(stage::count) + 1> marks_{};
     std::array<bool, static_cast<std::size_t>(stage::count) + 1> pending_{};
     stage_times times_;
+    bool paused_ = false;
     int sampling_ = 50, iteration_ = 0;  // the events of every iteration would cost more than they tell
 };
 

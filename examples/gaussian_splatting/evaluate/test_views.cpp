@@ -3,6 +3,7 @@
 #include "test_views.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace gs::evaluate {
 
@@ -15,13 +16,21 @@ double mean(const std::vector<view_quality>& views, Measure measure) {
     return sum / static_cast<double>(views.size());
 }
 
-/// "a/b.jpg" to "a_b.png": one flat folder, whatever the photos' was.
-std::string picture_name(std::string name) {
-    std::ranges::replace(name, '/', '_');
-    return std::filesystem::path(name).replace_extension(".png").string();
-}
-
 }  // namespace
+
+std::vector<std::string> picture_names(const std::vector<view>& views) {
+    std::vector<std::string> names;
+    std::set<std::string> taken;
+    for (const view& v : views) {
+        std::string flat = v.name;
+        std::ranges::replace(flat, '/', '_');
+        std::string name = std::filesystem::path(flat).replace_extension(".png").string();
+        for (int again = 2; !taken.insert(name).second; ++again)
+            name = flat + "_" + std::to_string(again) + ".png";
+        names.push_back(name);
+    }
+    return names;
+}
 
 double test_report::psnr() const {
     return mean(views, [](const train::quality& q) { return q.psnr(); });
@@ -37,11 +46,12 @@ test_report measure_test_views(train::engine& engine, const scene& scene,
         std::filesystem::create_directories(folder / "renders");
         std::filesystem::create_directories(folder / "gt");
     }
+    const auto names = picture_names(scene.test);
     for (std::size_t i = 0; i < scene.test.size(); ++i) {
         const view& v = scene.test[i];
         report.views.push_back({v.name, engine.measure(i, background)});
         if (folder.empty()) continue;
-        const std::string name = picture_name(v.name);
+        const std::string& name = names[i];
         write_png(folder / "renders" / name, v.camera.width, v.camera.height,
                   engine.render(v.camera, background));
         write_png(folder / "gt" / name, v.camera.width, v.camera.height,

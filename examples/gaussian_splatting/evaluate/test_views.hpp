@@ -15,6 +15,10 @@ struct view_quality {
     train::quality quality;
 };
 
+/// The file names of the pictures of views, without a folder: "a/b.jpg" is drawn as "a_b.png". No two are the
+/// same.
+std::vector<std::string> picture_names(const std::vector<view>& views);
+
 /// The test views of a scene, each measured.
 struct test_report {
     std::vector<view_quality> views;
@@ -23,7 +27,7 @@ struct test_report {
 };
 
 /// Measures every test view that `engine` holds. Where `folder` is not empty, writes each picture to
-/// `folder/renders/NAME.png` and its photo to `folder/gt/NAME.png`.
+/// `folder/renders` and its photo to `folder/gt`, by its `picture_names`.
 test_report measure_test_views(train::engine& engine, const scene& scene,
                                const std::array<float, 3>& background, const std::filesystem::path& folder);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <string>
@@ -38,14 +39,16 @@ class renderer {
         return total;
     }
 
-    /// Makes room for that many instances a view. `forward` cuts what does not fit: see `instances`.
-    void reserve_instances(std::uint64_t most) {
-        if (most >= std::uint64_t{1} << 31)
+    /// Makes room for that many instances a view, and for `spare` more as far as 31 bits go. `forward` cuts
+    /// what does not fit: see `instances`.
+    void reserve_instances(std::uint64_t most, std::uint64_t spare = 0) {
+        constexpr std::uint64_t limit = std::uint64_t{1} << 31;
+        if (most >= limit)
             throw error("a view has " + std::to_string(most) +
                         " pairs of Gaussian and tile, more than 2^31: lower --max-cap or --resolution");
-        capacity_ = most;
-        tile_of_.resize(most);
-        gaussian_of_.resize(most);
+        capacity_ = std::min(most + spare, limit - 1);
+        tile_of_.resize(capacity_);
+        gaussian_of_.resize(capacity_);
     }
     std::uint64_t reserved_instances() const { return capacity_; }
 

@@ -208,6 +208,7 @@ std::vector<recorded_view> read_transforms(const std::filesystem::path& data,
         recorded_view view;
         view.file = find_photo(data, one);
         view.name = view.file.lexically_relative(data).lexically_normal().generic_string();
+        if (view.name.empty()) view.name = view.file.generic_string();  // absolute, where the scene's is not
         set_pose(view.camera, one);
         set_intrinsics(view, one);
         recorded.push_back(std::move(view));

@@ -15,11 +15,24 @@ namespace {
 
 constexpr std::string_view synthetic_prefix = "synthetic:";
 
+/// Options that say nothing of this kind of scene are refused, not ignored.
+void refuse_colmap_options(const load_options& options, const std::string& kind) {
+    const load_options defaults;
+    if (options.test_every != defaults.test_every)
+        throw error("--test-every picks views of a COLMAP scene: a " + kind +
+                    " scene has its own test views");
+    if (options.images != defaults.images)
+        throw error("--images is for COLMAP scenes: a " + kind + " scene names its photos itself");
+}
+
 scene load_folder(const load_options& options, const log_function& log) {
     const std::filesystem::path data = options.data;
     if (!std::filesystem::exists(data)) throw error("there is no folder " + data.string());
     if (!std::filesystem::is_directory(data)) throw error(data.string() + " is not a folder");
-    if (std::filesystem::exists(data / "transforms_train.json")) return load_blender_scene(options, log);
+    if (std::filesystem::exists(data / "transforms_train.json")) {
+        refuse_colmap_options(options, "Blender");
+        return load_blender_scene(options, log);
+    }
     if (std::filesystem::is_directory(data / "sparse")) return load_colmap_scene(options, log);
     throw error(
         "the folder " + data.string() +
@@ -42,6 +55,15 @@ void require_views(const scene& loaded, const load_options& options) {
     if (options.eval && loaded.test.empty()) throw error(options.data + " has no test views" + split);
 }
 
+double median_distance(const std::vector<coloured_point>& points, const glm::dvec3& from) {
+    std::vector<double> distances;
+    distances.reserve(points.size());
+    for (const coloured_point& point : points) distances.push_back(glm::distance(from, point.position));
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    return *middle;
+}
+
 bool any_has_alpha(const std::vector<view>& views) {
     return std::ranges::any_of(views, [](const view& one) { return one.pixels.has_alpha; });
 }
@@ -54,13 +76,8 @@ double scene::extent() const {
     for (const view& one : train) mean += one.camera.centre() / static_cast<double>(train.size());
     double farthest = 0;
     for (const view& one : train) farthest = std::max(farthest, glm::distance(mean, one.camera.centre()));
-    if (farthest > 0) return 1.1 * farthest;
-    if (points.empty()) return 1;
-    std::vector<double> distances;
-    for (const coloured_point& point : points) distances.push_back(glm::distance(mean, point.position));
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    return *middle;
+    const double depth = points.empty() ? 1 : median_distance(points, mean);
+    return farthest > 1e-6 * depth ? 1.1 * farthest : depth;
 }
 
 scene load_scene(const load_options& options, const log_function& log) {
@@ -68,6 +85,7 @@ scene load_scene(const load_options& options, const log_function& log) {
         throw error("the resolution must be positive, not " + std::to_string(options.resolution));
     const log_function say = log ? log : [](const std::string&) {};
     if (options.data.starts_with(synthetic_prefix)) {
+        refuse_colmap_options(options, "synthetic");
         scene made = make_synthetic_scene(options.data.substr(synthetic_prefix.size()), options, say);
         require_views(made, options);
         return made;

@@ -47,7 +47,8 @@ struct scene {
 
     /// 1.1 times the largest distance of a training camera from their mean: the unit of the learning rate of
     /// positions and of densification (Kerbl et al. 2023, reference implementation). Where all cameras are in
-    /// one place, the median distance of the points from it, or 1 without points.
+    /// one place, to a millionth of what follows, the median distance of the points from it, or 1 without
+    /// points.
     double extent() const;
 };
 

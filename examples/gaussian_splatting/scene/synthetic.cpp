@@ -21,6 +21,7 @@ namespace gs {
 namespace {
 
 constexpr int native_size = 128;
+constexpr int largest_size = 2048;  // 48 pictures of it are 0.8 GB
 constexpr int view_count = 48;
 constexpr int views_per_test_view = 6;
 constexpr int samples_per_side = 4;
@@ -315,6 +316,9 @@ int size_at(int resolution) {
     if (resolution < 1) {
         throw error("the resolution must be at least 1, but is " + std::to_string(resolution));
     }
+    if (resolution > largest_size)
+        throw error("a synthetic scene is drawn at up to " + std::to_string(largest_size) + " pixels, not " +
+                    std::to_string(resolution));
     const bool divides = resolution == 1 || resolution == 2 || resolution == 4 || resolution == 8;
     return divides ? native_size / resolution : resolution;
 }

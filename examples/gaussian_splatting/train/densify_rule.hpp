@@ -11,8 +11,8 @@ namespace gs::train {
 /// lego 35.44 dB at 30,000 iterations, 1.5e-4 gives 35.71 and 1e-4 gives 35.90 for 1.3 and 1.8 times the
 /// time).
 struct densify_rule {
-    float gradient = 2e-4f;  ///< grows at this mean gradient of its centre, in halves of the picture
-    float dense_scale = 0;   ///< world units: a growing Gaussian up to this is copied, a larger one split
+    float gradient = 1.5e-4f;  ///< grows at this mean gradient of its centre, in halves of the picture
+    float dense_scale = 0;     ///< world units: a growing Gaussian up to this is copied, a larger one split
     float least_opacity = 0.005f;  ///< drops below it
     float most_scale = 0;          ///< world units: drops above it; 0 for never
     std::size_t cap = 0;           ///< no growth past this many

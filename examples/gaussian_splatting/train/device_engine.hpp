@@ -167,11 +167,10 @@ class device_engine final : public engine {
                                                      std::log(most / (1 - most))});
     }
 
-    void reserve(int sh_degree) override {
+    void reserve() override {
         std::uint64_t most = 0;
-        for (const photo& p : train_)
-            most = std::max(most, renderer_.count_instances(read(values_), count_, p.camera, sh_degree));
-        renderer_.reserve_instances(most + most / 2 + 4096);
+        for (const photo& p : train_) most = std::max(most, count_instances(p.camera));
+        renderer_.reserve_instances(most, most / 2 + 4096);
     }
 
     quality take_training_quality() override { return photometric_.take(); }
@@ -191,6 +190,7 @@ class device_engine final : public engine {
 
     quality measure(std::size_t test_view, const std::array<float, 3>& background) override {
         const photo& shot = test_[test_view];
+        photometric_.take();  // what steps added
         draw(shot.camera, background);
         const std::size_t n = values_of(shot.camera);
         shown_.resize(n);
@@ -203,11 +203,7 @@ class device_engine final : public engine {
 
     void sample_times(int every) override { device_.sample_times(every); }
     device::stage_times times() override { return device_.times(); }
-    std::uint64_t pairs() override {
-        unsigned long long n = 0;
-        device_.download(&n, renderer_.pairs(), 1);
-        return n;
-    }
+    std::uint64_t pairs() override { return all_pairs() - drawn_pairs_; }
     std::size_t peak_device_bytes() const override { return device_.peak_bytes(); }
     void wait() override { device_.wait(); }
 
@@ -282,12 +278,26 @@ class device_engine final : public engine {
             1, count_skipped{renderer_.instances(), renderer_.reserved_instances(), skipped_.data()});
     }
 
-    /// A picture of the whole model, whatever room it takes.
+    std::uint64_t all_pairs() {
+        unsigned long long n = 0;
+        device_.download(&n, renderer_.pairs(), 1);
+        return n;
+    }
+
+    /// How long the lists are does not depend on colours: the least degree will do.
+    std::uint64_t count_instances(const camera& camera) {
+        return renderer_.count_instances(read(values_), count_, camera, 0);
+    }
+
+    /// A picture of the whole model, whatever room it takes. Neither timed nor counted: it is no step.
     void draw(const camera& camera, const std::array<float, 3>& background) {
         const std::uint64_t reserved = renderer_.reserved_instances();
-        const std::uint64_t needed = renderer_.count_instances(read(values_), count_, camera, sh_degree_);
-        renderer_.reserve_instances(std::max(reserved, needed));
+        renderer_.reserve_instances(std::max(reserved, count_instances(camera)));
+        const std::uint64_t before = all_pairs();
+        device_.pause_times(true);
         renderer_.forward(read(values_), count_, camera, sh_degree_, background);
+        device_.pause_times(false);
+        drawn_pairs_ += all_pairs() - before;
     }
 
     Device device_;
@@ -299,6 +309,7 @@ class device_engine final : public engine {
     int sh_degree_ = 0;
     std::size_t count_ = 0;
     int steps_ = 0;
+    std::uint64_t drawn_pairs_ = 0;
     arrays values_, first_, second_, gradients_;
     buffer<raster::visibility> seen_;
     buffer<std::uint64_t> skipped_;

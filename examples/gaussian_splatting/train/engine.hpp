@@ -47,12 +47,12 @@ class engine {
     /// Copies, splits and drops Gaussians by what `step`s have seen since the last call.
     virtual void densify(const densify_rule& rule) = 0;
     virtual void reset_opacity(float most) = 0;
-    /// Makes room for the longest lists of the training views at this degree, and half as much again for what
-    /// they grow to. To be called after `set_model` and `densify`.
-    virtual void reserve(int sh_degree) = 0;
-    /// The means over the `step`s since the last call.
+    /// Makes room for the longest lists of the training views, and half as much again for what they grow to.
+    /// To be called after `set_model` and `densify`, and now and then.
+    virtual void reserve() = 0;
+    /// The means over the `step`s since the last call, or since the last `measure`.
     virtual quality take_training_quality() = 0;
-    /// Steps that changed nothing since their lists did not fit.
+    /// Steps that changed no parameter, since their lists did not fit.
     virtual std::uint64_t skipped_steps() = 0;
 
     /// Three planes, not clamped.
@@ -64,7 +64,7 @@ class engine {
     /// GPU.
     virtual void sample_times(int every) = 0;
     virtual device::stage_times times() = 0;            ///< since `sample_times`, or ever
-    virtual std::uint64_t pairs() = 0;                  ///< pixel-Gaussian pairs evaluated forward so far
+    virtual std::uint64_t pairs() = 0;                  ///< pixel-Gaussian pairs that steps evaluated forward
     virtual std::size_t peak_device_bytes() const = 0;  ///< zero where that is the host's
     virtual void wait() = 0;
 };

@@ -29,7 +29,7 @@ struct schedule {
     bool densifies(int iteration) const;
     bool resets_opacity(int iteration) const;
     /// Gaussians that are large in the world are dropped once opacities have been reset. Those that are large
-    /// on the screen are not: that costs lego 2 dB.
+    /// on the screen are not: that costs lego 1.7 dB.
     bool drops_large(int iteration) const { return iteration > opacity_reset_every; }
 };
 

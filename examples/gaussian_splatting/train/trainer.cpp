@@ -74,10 +74,11 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     schedule.white = scene.has_alpha && options.background.colour == std::array<float, 3>{1, 1, 1};
 
     constexpr int report_every = 100;
+    constexpr int reserve_every = 500;  // between densifications lists grow slowly
     view_order order(scene.train.size(), options.seed);
     std::mt19937_64 colours(options.seed + 1);
     train_result result;
-    engine.reserve(0);
+    engine.reserve();
     engine.wait();
     const auto start = clock::now();
     double outside = 0;  // in callbacks
@@ -93,25 +94,30 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
         plan.watch = schedule.watches(iteration);
         engine.step(plan);
 
-        if (iteration % schedule::densify_every == 0) {
+        if (schedule.densifies(iteration) || iteration % reserve_every == 0) {
             engine.wait();
             const auto from = clock::now();
             if (schedule.densifies(iteration)) engine.densify(rule_at(iteration, schedule, options));
-            engine.reserve(plan.sh_degree);
+            engine.reserve();
             result.densify_seconds += seconds_since(from);
         }
         if (schedule.resets_opacity(iteration)) engine.reset_opacity(schedule::reset_opacity);
 
         const bool last = iteration == options.iterations;
-        if (iteration % report_every == 0 || last) {
+        const bool tests = options.test_iterations.contains(iteration);
+        const bool saves = options.save_iterations.contains(iteration);
+        if (iteration % report_every == 0 || last || tests) {
             const quality q = engine.take_training_quality();
             events.report({iteration, options.iterations, q.loss(schedule::ssim_weight), q.psnr(),
                            engine.count(), seconds_since(start) - outside});
         }
-        const auto aside = clock::now();
-        if (options.test_iterations.contains(iteration)) events.test(iteration);
-        if (options.save_iterations.contains(iteration)) events.save(iteration);
-        outside += seconds_since(aside);
+        if (tests || saves) {
+            engine.wait();
+            const auto aside = clock::now();
+            if (tests) events.test(iteration);
+            if (saves) events.save(iteration);
+            outside += seconds_since(aside);
+        }
     }
     engine.wait();
     result.seconds = seconds_since(start) - outside;

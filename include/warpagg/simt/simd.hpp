@@ -263,14 +263,14 @@ WARPAGG_HD lanes<To, L> convert(const lanes<From, L>& a) {
     return r;
 }
 
-/// 2^a, relative error below 2 ulp for a in [-126, 128); smaller exponents give 2^-126, as no caller needs
-/// denormals and they make x86 several times slower.
-/// 2^a = 2^n 2^f with n = round(a), f in [-1/2, 1/2]; 2^f by its Taylor series (terms ln2^k/k!) to degree 7.
+/// 2^a, relative error below 2 ulp for a in [-126, 128); beyond, the nearest of these counts, as no caller
+/// needs denormals and they make x86 several times slower. 2^a = 2^n 2^f with n = round(a), f in [-1/2, 1/2];
+/// 2^f by its Taylor series (terms ln2^k/k!) to degree 7.
 template <int L>
 WARPAGG_HD lanes<float, L> exp2(const lanes<float, L>& x) {
     using real = lanes<float, L>;
     using integer = lanes<std::uint32_t, L>;  // shifting a negative exponent is defined
-    const real a = max(x, -126.0f);
+    const real a = min(max(x, -126.0f), 0x1.fffffep6f);
     constexpr float round = 0x1.8p23f;  // adding it leaves the nearest integer in the low bits
     const real shifted = a + real(round);
     const real f = a - (shifted - real(round));

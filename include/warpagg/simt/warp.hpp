@@ -52,9 +52,9 @@ using mask_t = value_t<W, bool>;
 /// | `shfl_xor(v, d)` | v of the lane whose number differs in the bits of d |
 /// | `load(p, i, active)` | `p[i]` per active lane; inactive lanes read nothing and get T{}; i < 2^31 |
 /// | `store(p, i, v, active)` | `p[i] = v` per active lane |
-/// | `load_row(p, i, active)` | `p[i + lane]` per active lane; `i` is the same in every lane and may be
-/// negative | | `store_row(p, i, v, active)` | `p[i + lane] = v` per active lane | | `atomic_add(dst, i, v,
-/// active)` | per active lane, `*dst(i) += v`, atomically, relaxed |
+/// | `load_row(p, i, active)` | `p[i + lane]` per active lane; `i` is uniform and may be negative |
+/// | `store_row(p, i, v, active)` | `p[i + lane] = v` per active lane |
+/// | `atomic_add(dst, i, v, active)` | per active lane, `*dst(i) += v`, atomically, relaxed |
 template <class W>
 concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i, mask_t<W> p, float* m,
                         float* (*dst)(unsigned)) {
