@@ -618,6 +618,8 @@ TEST_CASE("smaller copies of the photos take their cameras along; other sizes ar
     CHECK(says(error_of_loading(options), {"b.png", "wrong size", "400x304", "40x30"}));
     write_photo(folder / "images_3/b.png", 400, 302);  // 0.7 % off
     CHECK(error_of_loading(options).empty());
+    write_photo(folder / "images_3/b.png", 200, 150);  // a smaller copy, but the only one
+    CHECK(says(error_of_loading(options), {"b.png", "wrong size", "200x150", "40x30"}));
 }
 
 TEST_CASE("every n-th view by name is held out, from the first") {

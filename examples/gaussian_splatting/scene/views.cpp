@@ -35,16 +35,41 @@ camera at_size(camera pinhole, int width, int height) {
     return pinhole;
 }
 
+[[noreturn]] void refuse_size(const recorded_view& recorded, int width, int height) {
+    throw error("the image " + recorded.file.string() + " is of the wrong size: it has " +
+                size_text(width, height) + " pixels, its camera " +
+                size_text(recorded.camera.width, recorded.camera.height));
+}
+
 /// Photos are often replaced by smaller copies of themselves (`images_4`): then the camera follows.
 camera fitted_to_photo(const recorded_view& recorded) {
     int width = 0, height = 0;
     read_image_size(recorded.file, width, height);
     const camera& was = recorded.camera;
     const double x = static_cast<double>(width) / was.width, y = static_cast<double>(height) / was.height;
-    if (std::abs(x / y - 1) > 0.01)
-        throw error("the image " + recorded.file.string() + " is of the wrong size: it has " +
-                    size_text(width, height) + " pixels, its camera " + size_text(was.width, was.height));
+    if (std::abs(x / y - 1) > 0.01) refuse_size(recorded, width, height);
     return at_size(was, width, height);
+}
+
+/// But all copies are made alike: a photo that is scaled otherwise than most of its camera's size is a wrong
+/// one.
+void require_one_scale(const std::vector<recorded_view>& recorded, const std::vector<camera>& fitted) {
+    const auto scale = [&](std::size_t i) {
+        return static_cast<double>(fitted[i].width) / recorded[i].camera.width;
+    };
+    std::map<std::pair<int, int>, std::vector<double>> scales;
+    const auto size = [&](std::size_t i) {
+        return std::pair(recorded[i].camera.width, recorded[i].camera.height);
+    };
+    for (std::size_t i = 0; i < recorded.size(); ++i) scales[size(i)].push_back(scale(i));
+    for (auto& [of, values] : scales)
+        std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                         values.end());
+    for (std::size_t i = 0; i < recorded.size(); ++i) {
+        const auto& values = scales[size(i)];
+        if (std::abs(scale(i) / values[values.size() / 2] - 1) > 0.01)
+            refuse_size(recorded[i], fitted[i].width, fitted[i].height);
+    }
 }
 
 std::vector<camera> fit_to_photos(const std::vector<recorded_view>& recorded, const log_function& log) {
@@ -57,6 +82,7 @@ std::vector<camera> fit_to_photos(const std::vector<recorded_view>& recorded, co
         if (was.width == is.width && was.height == is.height) continue;
         if (others++ == 0) first = i;
     }
+    require_one_scale(recorded, fitted);
     if (others > 0)
         log(count_text(others, "photo") +
             " differ in size from their cameras, whose intrinsics were scaled (" + recorded[first].name +
