@@ -36,4 +36,8 @@ void progress_bar::show(const train::progress& p) {
     std::fflush(stdout);
 }
 
+void progress_bar::clear() const {
+    if (terminal_ && !quiet_) std::printf("\r\x1b[K");
+}
+
 }  // namespace gs::cli

@@ -11,6 +11,8 @@ class progress_bar {
   public:
     explicit progress_bar(bool quiet);
     void show(const train::progress& p);
+    /// Makes room for a line of another's.
+    void clear() const;
 
   private:
     bool quiet_, terminal_;

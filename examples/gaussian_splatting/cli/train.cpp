@@ -144,6 +144,7 @@ void train(const settings& s) {
     events.test = [&](int iteration) {
         const auto report = evaluate::measure_test_views(*engine, scene, background.colour, {});
         tested.push_back({{"iteration", iteration}, {"psnr", report.psnr()}, {"ssim", report.ssim()}});
+        bar.clear();
         session.say("iteration " + std::to_string(iteration) + ": held-out PSNR " +
                     number("%.2f dB", report.psnr()));
     };
@@ -183,7 +184,9 @@ void train(const settings& s) {
         session.say("held-out PSNR " + number("%.2f dB", report.psnr()) + ", SSIM " +
                     number("%.4f", report.ssim()) + " over " + std::to_string(report.views.size()) +
                     " views");
-        session.say("pictures  " + (pictures / "renders").string());
+        session.say(
+            "picture   " + (pictures / "renders" / evaluate::picture_names(scene.test).front()).string() +
+            (report.views.size() > 1 ? " and " + std::to_string(report.views.size() - 1) + " more" : ""));
     }
     session.say("model     " + ply_of(output.path(), options.iterations).string());
     session.say("metrics   " + (output.path() / "metrics.json").string());
