@@ -24,8 +24,10 @@
 #endif
 
 // A short loop over registers: rolled up, its arrays would live in memory.
-#if defined(__CUDACC__) || defined(__clang__)
+#if defined(__CUDA_ARCH__) || defined(__clang__)
 #define WARPAGG_UNROLL _Pragma("unroll")
+#elif defined(__CUDACC__)  // nvcc's pass over host code, whose compiler does not know the pragma
+#define WARPAGG_UNROLL
 #else
 #define WARPAGG_UNROLL _Pragma("GCC unroll 64")
 #endif
