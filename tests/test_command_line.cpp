@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "bytes.hpp"
 #include "model/ply.hpp"
 #include "scene/image.hpp"
 #include "temporary_folder.hpp"
@@ -22,6 +23,7 @@
 namespace {
 
 namespace fs = std::filesystem;
+using gs_test::bytes;
 using gs_test::read_file;
 using gs_test::says;
 using gs_test::temporary_folder;
@@ -122,23 +124,6 @@ void check_refusal_without_trace(const words& arguments, const words& culprits) 
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-class bytes {
-  public:
-    template <class T>
-    bytes& put(const T& value) {
-        data_.append(reinterpret_cast<const char*>(&value), sizeof(T));
-        return *this;
-    }
-    bytes& put_name(const std::string& name) {
-        data_.append(name.c_str(), name.size() + 1);
-        return *this;
-    }
-    const std::string& data() const { return data_; }
-
-  private:
-    std::string data_;
-};
-
 constexpr int width = 24, height = 16;
 
 struct small_scene {
@@ -164,7 +149,7 @@ struct small_scene {
         out.put(static_cast<std::uint64_t>(photos));
         for (int i = 0; i < photos; ++i) {
             out.put(static_cast<std::uint32_t>(i + 1)).put(rotation).put(0.1 * i).put(0.0).put(depth);
-            out.put(std::uint32_t{1}).put_name(photo(i)).put(std::uint64_t{0});
+            out.put(std::uint32_t{1}).put_text(photo(i)).put(std::uint64_t{0});
         }
         return out.data();
     }

@@ -12,12 +12,14 @@
 #include <limits>
 #include <utility>
 
+#include "bytes.hpp"
 #include "scene/colmap.hpp"
 #include "scene/scene.hpp"
 #include "temporary_folder.hpp"
 
 namespace {
 
+using gs_test::bytes;
 using gs_test::error_of;
 using gs_test::says;
 using gs_test::temporary_folder;
@@ -55,23 +57,6 @@ struct model_record {
     std::vector<camera_record> cameras;
     std::vector<image_record> images;
     std::vector<point_record> points;
-};
-
-class bytes {
-  public:
-    template <class T>
-    bytes& put(const T& value) {
-        data_.append(reinterpret_cast<const char*>(&value), sizeof(T));
-        return *this;
-    }
-    bytes& put_text(const std::string& text) {
-        data_.append(text.c_str(), text.size() + 1);
-        return *this;
-    }
-    const std::string& data() const { return data_; }
-
-  private:
-    std::string data_;
 };
 
 std::string cameras_bin(const model_record& model) {

@@ -71,10 +71,7 @@ std::vector<named_camera> cameras_of(const scene& scene) {
 }
 
 /// The side of an orbit's pictures: `--resolution` divides 800 pixels or says how many there are.
-int orbit_size(int resolution) {
-    const bool divides = resolution == 1 || resolution == 2 || resolution == 4 || resolution == 8;
-    return divides ? 800 / resolution : resolution;
-}
+int orbit_size(int resolution) { return divides_size(resolution) ? 800 / resolution : resolution; }
 
 }  // namespace
 

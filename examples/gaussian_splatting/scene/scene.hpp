@@ -52,6 +52,11 @@ struct scene {
     double extent() const;
 };
 
+/// What a resolution means: 1, 2, 4 and 8 divide the size, any other number is the longer side in pixels.
+constexpr bool divides_size(int resolution) {
+    return resolution == 1 || resolution == 2 || resolution == 4 || resolution == 8;
+}
+
 struct load_options {
     std::string data;               ///< a folder, or "synthetic:NAME"
     std::string images = "images";  ///< COLMAP: the folder of photos, relative to `data`

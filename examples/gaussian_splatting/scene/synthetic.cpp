@@ -319,8 +319,7 @@ int size_at(int resolution) {
     if (resolution > largest_size)
         throw error("a synthetic scene is drawn at up to " + std::to_string(largest_size) + " pixels, not " +
                     std::to_string(resolution));
-    const bool divides = resolution == 1 || resolution == 2 || resolution == 4 || resolution == 8;
-    return divides ? native_size / resolution : resolution;
+    return divides_size(resolution) ? native_size / resolution : resolution;
 }
 
 }  // namespace

@@ -124,14 +124,10 @@ std::vector<camera> straighten(const std::vector<recorded_view>& recorded, const
     return straight;
 }
 
-bool is_divisor(int resolution) {
-    return resolution == 1 || resolution == 2 || resolution == 4 || resolution == 8;
-}
-
 int divided(int side, int divisor) { return std::max(1, (2 * side + divisor) / (2 * divisor)); }
 
 camera at_resolution(const camera& full, int resolution) {
-    if (is_divisor(resolution))
+    if (divides_size(resolution))
         return at_size(full, divided(full.width, resolution), divided(full.height, resolution));
     const int longer = std::max(full.width, full.height);
     if (resolution >= longer) return full;
@@ -150,7 +146,7 @@ std::vector<camera> scale_to_resolution(const std::vector<camera>& full,
     std::size_t shrunk = 0, kept = 0, first = 0;
     for (std::size_t i = 0; i < full.size(); ++i) {
         scaled.push_back(at_resolution(full[i], resolution));
-        if (!is_divisor(resolution) && resolution > std::max(full[i].width, full[i].height)) ++kept;
+        if (!divides_size(resolution) && resolution > std::max(full[i].width, full[i].height)) ++kept;
         if (scaled[i].width == full[i].width && scaled[i].height == full[i].height) continue;
         if (shrunk++ == 0) first = i;
     }
