@@ -1,13 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
-# find_package(warpagg): the headers, one target, and a version that refuses another major.
+# The headers; for find_package(warpagg) one target, and a version that refuses another major; for pkg-config the
+# include path.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/warpagg)
 install(DIRECTORY include/warpagg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(TARGETS warpagg EXPORT warpagg-targets)
+install(TARGETS warpagg EXPORT warpagg-targets INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT warpagg-targets NAMESPACE warpagg:: FILE warpagg-config.cmake DESTINATION ${package_dir})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/warpagg-config-version.cmake
     COMPATIBILITY SameMajorVersion ARCH_INDEPENDENT)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/warpagg-config-version.cmake DESTINATION ${package_dir})
+
+# Relative to the file itself, so that the installed folder may be moved.
+set(pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
+file(RELATIVE_PATH pkgconfig_to_include
+    ${CMAKE_INSTALL_PREFIX}/${pkgconfig_dir} ${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR})
+configure_file(cmake/warpagg.pc.in warpagg.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/warpagg.pc DESTINATION ${pkgconfig_dir})

@@ -406,7 +406,7 @@ TEST_CASE_TEMPLATE("active lanes add, in their order", T, float, double, std::in
             asked_far_away = asked_far_away || i == far_away;
             return memory.data() + i % 32;
         };
-        warp.atomic_add(address, vector_of(index), vector_of(a), lanes_of(mask));
+        warp.atomic(warpagg::operation::sum{}, address, vector_of(index), vector_of(a), lanes_of(mask));
         CHECK(memory == expected);
         CHECK_FALSE(asked_far_away);
     }

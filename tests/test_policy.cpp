@@ -7,11 +7,12 @@
 
 #include <cstdint>
 #include <type_traits>
-#include <warpagg/policy.hpp>
+#include <warpagg/default_policy.hpp>
 
 namespace {
 
 using warpagg::policy;
+namespace operation = warpagg::operation;
 namespace reduce = warpagg::reduce;
 namespace commit = warpagg::commit;
 namespace idle = warpagg::idle;
@@ -51,6 +52,10 @@ int orders_that_choose() {
     return right;
 }
 
+template <class T, int N, class Gate>
+constexpr bool scatters =
+    chooses<warpagg::default_policy<T, N>, reduce::scatter, commit::contiguous, idle::skip, Gate>;
+
 }  // namespace
 
 TEST_SUITE_BEGIN("policy");
@@ -63,17 +68,48 @@ TEST_CASE("tags choose the same in any order") {
     CHECK(orders_that_choose<reduce::scatter, commit::contiguous, idle::skip, gate::at_least<33>>() == 24);
 }
 
-TEST_CASE("what no tag names") {
-    CHECK(chooses<policy<>, reduce::scatter, commit::contiguous, idle::skip, gate::always>);
-    CHECK(chooses<policy<reduce::shfl_down>, reduce::shfl_down, commit::scalar, idle::skip, gate::always>);
-    CHECK(chooses<policy<reduce::butterfly>, reduce::butterfly, commit::scalar, idle::skip, gate::always>);
-    CHECK(chooses<policy<reduce::per_lane>, reduce::per_lane, commit::scalar, idle::skip, gate::always>);
-    CHECK(chooses<policy<reduce::scatter>, reduce::scatter, commit::contiguous, idle::skip, gate::always>);
-    CHECK(chooses<policy<commit::contiguous>, reduce::scatter, commit::contiguous, idle::skip, gate::always>);
-    CHECK(
-        chooses<policy<idle::add_zeros>, reduce::scatter, commit::contiguous, idle::add_zeros, gate::always>);
-    CHECK(chooses<policy<gate::at_least<5>>, reduce::scatter, commit::contiguous, idle::skip,
-                  gate::at_least<5>>);
+TEST_CASE("the tags of an axis are found, or none is") {
+    using nothing = warpagg::detail::unnamed;
+    CHECK(chooses<policy<>, nothing, nothing, nothing, nothing>);
+    CHECK(chooses<policy<commit::packed<2>>, nothing, commit::packed<2>, nothing, nothing>);
+    CHECK(chooses<policy<gate::at_least<2, 5>, reduce::redux>, reduce::redux, nothing, nothing,
+                  gate::at_least<2, 5>>);
+    CHECK(std::is_same_v<policy<>::operation, nothing>);
+    CHECK(std::is_same_v<policy<reduce::redux, operation::bit_or>::operation, operation::bit_or>);
+}
+
+TEST_CASE("what no tag names follows from what one names") {
+    using measured = gate::at_least<2, 4>;  // as measured for nine floats
+    const auto floats = []<class Policy>(Policy) { return warpagg::detail::choice<float, 9, Policy>{}; };
+    using scattered = decltype(floats(policy<>{}));
+    CHECK(chooses<scattered, reduce::scatter, commit::contiguous, idle::skip, measured>);
+    CHECK(std::is_same_v<scattered::operation, operation::sum>);
+
+    // A reduction named by the caller is not gated.
+    using per_lane = decltype(floats(policy{warpagg::per_lane}));
+    using down = decltype(floats(policy{warpagg::shfl_down}));
+    using across = decltype(floats(policy{warpagg::butterfly}));
+    using across_scalar = decltype(floats(policy{warpagg::butterfly, warpagg::scalar}));
+    using spread = decltype(floats(policy{warpagg::scatter}));
+    CHECK(chooses<per_lane, reduce::per_lane, commit::scalar, idle::skip, gate::always>);
+    CHECK(chooses<down, reduce::shfl_down, commit::scalar, idle::skip, gate::always>);
+    CHECK(chooses<across, reduce::butterfly, commit::contiguous, idle::skip, gate::always>);
+    CHECK(chooses<across_scalar, reduce::butterfly, commit::scalar, idle::skip, gate::always>);
+    CHECK(chooses<spread, reduce::scatter, commit::contiguous, idle::skip, gate::always>);
+
+    // A commit takes a reduction that leaves its results where it needs them.
+    using scalar = decltype(floats(policy{warpagg::scalar}));
+    using packed = decltype(floats(policy{warpagg::packed<4>}));
+    using contiguous = decltype(floats(policy{warpagg::contiguous}));
+    CHECK(chooses<scalar, reduce::shfl_down, commit::scalar, idle::skip, measured>);
+    CHECK(chooses<packed, reduce::shfl_down, commit::packed<4>, idle::skip, measured>);
+    CHECK(chooses<contiguous, reduce::scatter, commit::contiguous, idle::skip, measured>);
+
+    // Zeros are added by the whole warp, so nothing is gated; a gate that is named is as named.
+    using zeros = decltype(floats(policy{warpagg::add_zeros}));
+    using gated = decltype(floats(policy{warpagg::at_least<5>}));
+    CHECK(chooses<zeros, reduce::scatter, commit::contiguous, idle::add_zeros, gate::always>);
+    CHECK(chooses<gated, reduce::scatter, commit::contiguous, idle::skip, gate::at_least<5, 5>>);
 }
 
 TEST_CASE("tag objects spell the same types") {
@@ -90,13 +126,35 @@ TEST_CASE("tag objects spell the same types") {
     CHECK(std::is_empty_v<written>);
 }
 
-TEST_CASE_TEMPLATE("the default per number of values", T, float, double, std::int32_t, std::uint32_t) {
-    using one = warpagg::default_policy<T, 1>;
-    using few = warpagg::default_policy<T, 2>;
-    using many = warpagg::default_policy<T, 40>;
-    CHECK(chooses<one, reduce::shfl_down, commit::scalar, idle::skip, gate::always>);
-    CHECK(chooses<few, reduce::scatter, commit::contiguous, idle::skip, gate::always>);
-    CHECK(chooses<many, reduce::scatter, commit::contiguous, idle::skip, gate::always>);
+TEST_CASE("the default for floats, as docs/policies.md has it") {
+    CHECK(chooses<warpagg::default_policy<float, 1>, reduce::shfl_down, commit::scalar, idle::skip,
+                  gate::always>);
+    CHECK(scatters<float, 2, gate::at_least<3, 5>>);
+    CHECK(scatters<float, 3, gate::at_least<2, 3>>);
+    CHECK(scatters<float, 4, gate::at_least<2, 4>>);
+    CHECK(scatters<float, 11, gate::at_least<2, 4>>);
+    CHECK(scatters<float, 12, gate::at_least<1, 4>>);
+    CHECK(scatters<float, 23, gate::at_least<1, 4>>);
+    CHECK(scatters<float, 24, gate::at_least<1, 3>>);
+    CHECK(scatters<float, 40, gate::at_least<1, 3>>);
+}
+
+TEST_CASE_TEMPLATE("the default for 64 bits", T, double, std::int64_t, std::uint64_t, long long) {
+    CHECK(chooses<warpagg::default_policy<T, 1>, reduce::shfl_down, commit::scalar, idle::skip,
+                  gate::at_least<4>>);
+    CHECK(scatters<T, 2, gate::at_least<3>>);
+    CHECK(scatters<T, 4, gate::at_least<3>>);
+    CHECK(scatters<T, 5, gate::at_least<2>>);
+    CHECK(scatters<T, 16, gate::at_least<2>>);
+    CHECK(scatters<T, 17, gate::always>);
+}
+
+TEST_CASE_TEMPLATE("the default for integers of 32 bits", T, std::int32_t, std::uint32_t) {
+    CHECK(
+        chooses<warpagg::default_policy<T, 1>, reduce::redux, commit::contiguous, idle::skip, gate::always>);
+    CHECK(
+        chooses<warpagg::default_policy<T, 32>, reduce::redux, commit::contiguous, idle::skip, gate::always>);
+    CHECK(scatters<T, 33, gate::always>);
 }
 
 TEST_SUITE_END();

@@ -9,11 +9,30 @@
 
 namespace {
 
+/// Notes each lane's answer of `skip_if_warp_idle` for every case.
+struct ask_all {
+    const unsigned* active;
+    unsigned* answer;
+    unsigned cases;
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W>
+    WARPAGG_HD void operator()(const W& w) const {
+        const mask_t<W> everyone(true);
+        const auto lane = w.lane();
+        for (unsigned c = 0; c < cases; ++c) {
+            const mask_t<W> adds = w.load(active + c * W::size, lane, everyone) != 0u;
+            const bool idle = warpagg::skip_if_warp_idle(w, adds);
+            w.store(answer + c * W::size, lane, value_t<W, unsigned>(idle ? 1u : 0u), everyone);
+        }
+    }
+};
+
 /// More values than lanes, or nearly so: a lane holds several sums, or none.
 template <int N>
 void check_many() {
     const problem<float> p(N, records, 3);
-    check<without_policy, N>(p, "no policy", {});
+    check<without_policy, N>(p, "no policy", as_chosen<float, N, policy<>>);
     check<with<policy<reduce::per_lane>>, N>(p, "per_lane", always_alone);
     check<with<policy<reduce::butterfly, commit::contiguous>>, N>(p, "butterfly contiguous", {});
     check<with<policy<reduce::scatter>>, N>(p, "scatter", {});

@@ -2,55 +2,95 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+/// @file
 /// warpagg: a warp sums the values its lanes hold and touches memory once, instead of once per lane; and not
 /// even that when no lane has anything to add. This is the one header to include: under nvcc it brings
-/// `cuda::warp`, and `simt/lanes.hpp` and `simt/serial.hpp` bring the emulators.
+/// `cuda::warp`, and `simt/lanes.hpp`, `simt/checked.hpp` and `simt/serial.hpp` bring the emulators.
 
 #include "commit/commit.hpp"
-#include "commit/destination.hpp"
+#include "commit/stage.hpp"
+#include "components.hpp"
+#include "default_policy.hpp"
 #include "policy.hpp"
 #include "reduce/scatter.hpp"
 #include "reduce/tree.hpp"
+#include "simt/call_site.hpp"
 #include "simt/warp.hpp"
 #if defined(__CUDACC__)
 #include "simt/cuda.hpp"
 #endif
 
+/// Warp-aggregated atomics.
 namespace warpagg {
 
 /// True if no lane of the warp is active, in every lane alike; so that a whole warp can `continue` together.
-/// All lanes call it. Cost: one vote. Source: the paper, Figure 8, lines 18 to 22.
+/// All lanes call it. Cost: one vote, no memory. Source: the paper, Figure 8, lines 18 to 22.
+///
+/// @snippet warp_reduce_atomic.cpp skip_if_warp_idle
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W>
-WARPAGG_HD bool skip_if_warp_idle(const W& w, const mask_t<W>& active) {
+WARPAGG_HD bool skip_if_warp_idle(const W& w, const mask_t<W>& active,
+                                  call_site at = call_site::here("skip_if_warp_idle")) {
+    const detail::library_call<W> call(w, at);
     return !w.any(active);
 }
 
 namespace detail {
 
+/// The flag, as something that the compiler cannot split a loop on.
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Policy, warp W, class Dst, class V, int N>
-WARPAGG_HD void reduce_and_commit(const W& w, Dst dst, const V (&v)[N], const mask_t<W>& active) {
-    using math::select;  // and by its arguments, that of SIMD lanes
-    V sums[N];
-    WARPAGG_UNROLL
-    for (int i = 0; i < N; ++i) sums[i] = select(active, v[i], V{});  // a NaN of an inactive lane ends here
-    if constexpr (std::is_same_v<typename Policy::reduce, reduce::scatter>) {
-        reduce::sum_scatter(w, sums);
-        for (int k = 0; k < reduce::held_after_scatter<W>(N); ++k) {
-            const auto index = reduce::scattered_index(w, k);
-            w.atomic_add(dst, index, sums[k], index < static_cast<unsigned>(N));
-        }
-    } else if constexpr (std::is_same_v<typename Policy::reduce, reduce::shfl_down>) {
-        reduce::sum_shfl_down(w, sums);
-        commit::first_lane(w, dst, sums);
+template <class W>
+WARPAGG_HD mask_t<W> opaque(const W& w, const mask_t<W>& flag) {
+    if constexpr (requires { w.opaque(flag); }) {
+        return w.opaque(flag);
     } else {
-        reduce::sum_butterfly(w, sums);
-        if constexpr (std::is_same_v<typename Policy::commit, commit::contiguous>) {
-            commit::own_value(w, dst, sums);
-        } else {
-            commit::first_lane(w, dst, sums);
+        return flag;
+    }
+}
+
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Choice, warp W, class Record, class V, int N>
+WARPAGG_HD void reduce_and_commit(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
+    using math::select;  // and by its arguments, that of SIMD lanes
+    using op = typename Choice::operation;
+    using reduction = typename Choice::reduce;
+    const V nothing(op::template identity<typename scalar_of<V>::type>());
+    V results[N];
+    WARPAGG_UNROLL
+    for (int i = 0; i < N; ++i) results[i] = select(active, values[i], nothing);  // a NaN ends here
+    over_warp<op>(reduction{}, w, results);
+    commit::results<op, reduction, typename Choice::commit>(w, record, results);
+}
+
+/// `warp_reduce_atomic`, once its destination is an accessor and its policy is complete.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Choice, warp W, class Record, class V, int N>
+WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
+    using op = typename Choice::operation;
+    using commit_rule = typename Choice::commit;
+    using T = typename scalar_of<V>::type;
+    static_assert(
+        op::template suits<T>,
+        "memory has minimum, maximum, bit_and, bit_or and bit_xor for integers of 32 and 64 bits only");
+
+    if constexpr (requires { w.observe(active); }) w.observe(active);
+    if constexpr (requires { w.require_uniform(record(0u)); }) w.require_uniform(record(0u));
+    if constexpr (std::is_same_v<typename Choice::reduce, reduce::per_lane>) {
+        commit::each_lane<op, commit_rule>(w, record, values, active);
+    } else if constexpr (is_gated<typename Choice::gate>) {
+        using alone = commit::packed<4>;
+        const unsigned least =
+            commit::is_packed<op, alone, V>(w, record) ? Choice::gate::lanes_if_packed : Choice::gate::lanes;
+        if (math::popcount(w.ballot(active)) < least) [[unlikely]] {
+            commit::each_lane<op, alone>(w, record, values, active);
+            return;
         }
+        reduce_and_commit<Choice>(w, record, values, active);
+    } else {
+        if constexpr (std::is_same_v<typename Choice::idle, idle::skip>) {
+            if (!w.any(active)) return;
+        }
+        reduce_and_commit<Choice>(w, record, values, active);
     }
 }
 
@@ -59,55 +99,74 @@ WARPAGG_HD void reduce_and_commit(const W& w, Dst dst, const V (&v)[N], const ma
 /// Adds the values of the warp's active lanes to one record in memory: for each i in [0, N),
 /// `dst[i] += sum over the active lanes of values[i]`, atomically and relaxed, component by component.
 ///
-/// ```cpp
-/// float g[9] = {...};
-/// warpagg::warp_reduce_atomic(w, grad + 9 * id, g, active);  // the default policy
-/// warpagg::warp_reduce_atomic(w, grad + 9 * id, g, active, policy{shfl_down});  // the paper
-/// ```
+/// @snippet warp_reduce_atomic.cpp warp_reduce_atomic
+///
+/// With a policy, with another operation than the sum, and into a structure of arrays:
+///
+/// @snippet warp_reduce_atomic.cpp policy
+/// @snippet warp_reduce_atomic.cpp operation
+/// @snippet warp_reduce_atomic.cpp structure of arrays
+/// @snippet warp_reduce_atomic.cpp accessor
 ///
 /// @param w       a model of `warp`; all of its lanes call this together
-/// @param dst     `T*`, a span, or an accessor `dst(i) -> T*`; the same record for every lane
+/// @param dst     `T*`, a span, an accessor `dst(i) -> T*`, or a record of a `stage` (with `policy{staged}`);
+/// the
+///                same record for every lane
 /// @param values  N values per lane; those of inactive lanes are ignored, NaN or not
 /// @param active  whether this lane has something to add
-/// @param Policy  see policy.hpp
+/// @param at      where the call stands, by its default
+/// @tparam Policy see policy.hpp; it may name another operation than the sum
+///
+/// @pre All lanes of the warp call this, with the same `dst`, which holds N values of T, aligned as T.
 ///
 /// The order in which warps add is not fixed; inside a warp the tree is, and it is the same for every
 /// reduction but `per_lane`. Error of the default: (n/32 + 5) u k for n updates of condition k, u = 2^-24 for
 /// float. Cost by default, on 32 lanes: one vote, N - 1 + log2(32/N) shuffles, one atomic instruction per 32
 /// components.
 WARPAGG_EXEC_CHECK_DISABLE
-template <class T, int N, warp W, class Dst, class Policy = default_policy<T, N>>
+template <class T, int N, warp W, class Dst, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&values)[N],
-                                   const mask_t<W>& active, Policy = {}) {
-    using idle_rule = typename Policy::idle;
-    constexpr bool lanes_alone = std::is_same_v<typename Policy::reduce, reduce::per_lane>;
-    constexpr unsigned least = detail::least_lanes<typename Policy::gate>;
-    const auto record = commit::destination(dst);
-
-    if constexpr (requires { w.observe(active); }) w.observe(active);
-    if constexpr (lanes_alone) {
-        commit::each_lane(w, record, values, active);
-    } else {
-        if constexpr (least > 0) {
-            if (detail::popcount(w.ballot(active)) < least) {
-                commit::each_lane(w, record, values, active);
-                return;
-            }
-        } else if constexpr (std::is_same_v<idle_rule, idle::skip>) {
-            if (skip_if_warp_idle(w, active)) return;
-        }
-        detail::reduce_and_commit<Policy>(w, record, values, active);
+                                   const mask_t<W>& active, Policy = {},
+                                   call_site at = call_site::here("warp_reduce_atomic")) {
+    static_assert(detail::is_policy<Policy>,
+                  "warp_reduce_atomic takes one policy: put the tags into policy{...}");
+    using choice = detail::choice<T, N, Policy>;
+    const detail::library_call<W> call(w, at);
+    if constexpr (std::is_same_v<typename choice::idle, idle::assume_busy>) {
+        if constexpr (requires { w.require_busy(true); }) w.require_busy(w.any(active));
     }
+    detail::aggregate<choice>(w, commit::record_of<typename choice::commit>(dst), values,
+                              detail::opaque(w, active));
 }
 
 /// The same with T and N deduced from `values`.
 WARPAGG_EXEC_CHECK_DISABLE
-template <warp W, class Dst, class V, int N, class... Policy>
+template <warp W, class Dst, class V, int N, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const V (&values)[N], const mask_t<W>& active,
-                                   Policy... policy) {
-    static_assert(sizeof...(Policy) <= 1,
+                                   Policy how = {}, call_site at = call_site::here("warp_reduce_atomic")) {
+    warp_reduce_atomic<typename detail::scalar_of<V>::type, N>(w, dst, values, active, how, at);
+}
+
+/// The same for a type of yours that consists of numbers: see components.hpp. On models whose lane values are
+/// scalars, not on `emulator::lanes`.
+///
+/// @snippet warp_reduce_atomic.cpp a type of yours
+WARPAGG_EXEC_CHECK_DISABLE
+template <warp W, class Dst, composite R, class Policy = policy<>>
+WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const R& value, const mask_t<W>& active,
+                                   Policy how = {}, call_site at = call_site::here("warp_reduce_atomic")) {
+    const detail::numbers_of<R> numbers(value);
+    warp_reduce_atomic(w, detail::destination_of_numbers(dst), numbers.number, active, how, at);
+}
+
+/// Does not compile: several tags go into one policy.
+template <warp W, class Dst, class V, class Tag, class Next, class... More>
+requires(!std::is_same_v<Next, call_site>)
+    WARPAGG_HD void warp_reduce_atomic(const W&, Dst, const V&, const mask_t<W>&, Tag, Next, More...) {
+    static_assert(std::is_same_v<Next, call_site>,
                   "warp_reduce_atomic takes one policy: put the tags into policy{...}");
-    warp_reduce_atomic<typename detail::scalar_of<V>::type, N>(w, dst, values, active, policy...);
 }
 
 }  // namespace warpagg
+
+#include "match.hpp"

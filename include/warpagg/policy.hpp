@@ -2,160 +2,245 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// How `warp_reduce_atomic` works: one tag per axis, in any order, e.g. `policy{shfl_down, skip}`.
+/// @file
+/// How `warp_reduce_atomic` works: one tag per axis, in any order, e.g. `policy{shfl_down, skip}`. What no
+/// tag names is chosen for the values' type and number: see default_policy.hpp.
 
-#include <type_traits>
-
+#include "operation.hpp"
 #include "simt/warp.hpp"
-
-#if defined(__CUDA_ARCH__)
-#define WARPAGG_TAG static __device__ constexpr
-#else
-#define WARPAGG_TAG inline constexpr
-#endif
+#include "tag.hpp"
 
 namespace warpagg {
 
-enum class axis { reduce, commit, idle, gate };
-
 /// How the lanes' values become one. W is the warp's width, N the number of values.
 namespace reduce {
-/// No reduction: N atomics per active lane. The baseline.
+
+/// Which lanes have the results afterwards.
+enum class results_in {
+    own_lane,    ///< each lane its own values: nothing was combined
+    first_lane,  ///< lane 0 all of them
+    every_lane,  ///< every lane all of them
+    spread,      ///< each lane some of them: see `scattered_index`
+};
+
+/// No reduction, the baseline. Cost: no shuffle, and N atomics per active lane.
 struct per_lane {
     static constexpr auto of = axis::reduce;
+    static constexpr auto leaves = results_in::own_lane;
 };
-/// log2(W) shuffles per value; lane 0 ends with the sums. The paper's Figure 1.
+/// Lane 0 ends with the results. The paper's Figure 1. Cost: N log2(W) shuffles (N = 9 on 32 lanes: 45).
 struct shfl_down {
     static constexpr auto of = axis::reduce;
+    static constexpr auto leaves = results_in::first_lane;
 };
-/// log2(W) shuffles per value; every lane ends with the sums.
+/// Every lane ends with the results. Cost: N log2(W) shuffles.
 struct butterfly {
     static constexpr auto of = axis::reduce;
+    static constexpr auto leaves = results_in::every_lane;
 };
 /// Reduce-scatter: at each of the log2(W) steps a lane hands half of the values it still holds to its
-/// partner. About N - 1 + log2(W / N) shuffles for all values together; each lane ends with at most ceil(N /
-/// W) sums.
+/// partner, and ends with at most ceil(N / W) results. Cost: about N - 1 + log2(W / N) shuffles (N = 9 on 32
+/// lanes: 12).
 struct scatter {
     static constexpr auto of = axis::reduce;
+    static constexpr auto leaves = results_in::spread;
 };
+/// The hardware's own reduction, `redux.sync`: one instruction per value, for integers of 32 bits. A model
+/// without it, as the emulators are, takes `butterfly`.
+struct redux {
+    static constexpr auto of = axis::reduce;
+    static constexpr auto leaves = results_in::every_lane;
+};
+
 }  // namespace reduce
 
-/// How the sums reach memory.
+/// How the results reach memory.
 namespace commit {
-/// Lane 0 makes N atomics. The paper.
+
+/// Lane 0 makes them. The paper. Cost: N atomics, one instruction each.
 struct scalar {
     static constexpr auto of = axis::commit;
 };
-/// One atomic instruction, in which N lanes add to N neighbouring addresses.
+/// N lanes make them, at N neighbouring addresses. Cost: N atomics by one instruction, or by ceil(N / W).
 struct contiguous {
     static constexpr auto of = axis::commit;
 };
+/// K neighbouring floats by one atomic instruction (`red.global.add.v2.f32`, `.v4.f32`), what is left by
+/// smaller groups. It applies to sums of float in a contiguous record whose first component is aligned to K
+/// floats; below compute capability 9.0 and for all else, each component takes an instruction, as with
+/// `scalar`. The record lies in global memory. Each component is atomic by itself.
+template <unsigned K>
+struct packed {
+    static_assert(K == 2 || K == 4, "packed<K> takes K = 2 or 4 neighbours");
+    static constexpr auto of = axis::commit;
+    static constexpr unsigned neighbours = K;  ///< components by one instruction
+};
+/// Into a block's copy of the destination in shared memory, which is added to memory once: see
+/// commit/stage.hpp. The destination is a stage's record.
+struct staged {
+    static constexpr auto of = axis::commit;
+};
+
 }  // namespace commit
 
 /// What happens when no lane is active.
 namespace idle {
-/// Nothing: a ballot asks first. The paper's Figure 8.
+
+/// Nothing: a vote asks first. The paper's Figure 8. Cost: one vote.
 struct skip {
     static constexpr auto of = axis::idle;
 };
-/// The caller has asked already: there is an active lane.
+/// The caller has asked already. Precondition: there is an active lane; `emulator::checked` verifies it, and
+/// CUDA with WARPAGG_CHECKS. Cost: nothing.
 struct assume_busy {
     static constexpr auto of = axis::idle;
 };
-/// Zeros are reduced and added all the same. The paper's Figure 7, for comparison.
+/// Zeros are reduced and added all the same. The paper's Figure 7, for comparison. Cost: no vote, but an idle
+/// warp pays for shuffles and atomics.
 struct add_zeros {
     static constexpr auto of = axis::idle;
 };
+
 }  // namespace idle
 
 /// When the reduction is worth it.
 namespace gate {
+
+/// Always. Cost: nothing.
 struct always {
     static constexpr auto of = axis::gate;
+    static constexpr unsigned lanes = 0;            ///< the fewest active lanes that reduce
+    static constexpr unsigned lanes_if_packed = 0;  ///< the same where `packed<4>` applies
 };
-/// With fewer than K active lanes, each makes its own atomics.
-template <unsigned K>
+/// With fewer than K active lanes, each makes its own atomics, by `packed<4>` where that applies; and where
+/// it does, with fewer than Packed active lanes. Cost: one vote, in place of that of `skip`.
+template <unsigned K, unsigned Packed = K>
 struct at_least {
     static constexpr auto of = axis::gate;
-    static constexpr unsigned lanes = K;
+    static constexpr unsigned lanes = K;                 ///< the fewest active lanes that reduce
+    static constexpr unsigned lanes_if_packed = Packed;  ///< the same where `packed<4>` applies
 };
+
 }  // namespace gate
 
+/// The tag as an object, for `policy{...}`.
+/// @{
 WARPAGG_TAG reduce::per_lane per_lane{};
 WARPAGG_TAG reduce::shfl_down shfl_down{};
 WARPAGG_TAG reduce::butterfly butterfly{};
 WARPAGG_TAG reduce::scatter scatter{};
+WARPAGG_TAG reduce::redux redux{};
 WARPAGG_TAG commit::scalar scalar{};
 WARPAGG_TAG commit::contiguous contiguous{};
+template <unsigned K>
+WARPAGG_TAG commit::packed<K> packed{};
+WARPAGG_TAG commit::staged staged{};
 WARPAGG_TAG idle::skip skip{};
 WARPAGG_TAG idle::assume_busy assume_busy{};
 WARPAGG_TAG idle::add_zeros add_zeros{};
 WARPAGG_TAG gate::always always{};
-template <unsigned K>
-WARPAGG_TAG gate::at_least<K> at_least{};
+template <unsigned K, unsigned Packed = K>
+WARPAGG_TAG gate::at_least<K, Packed> at_least{};
+/// @}
 
 namespace detail {
 
-template <axis A, class Default, class... Tags>
-struct choose {
-    using type = Default;
+struct unnamed {};
+
+/// The tag among Tags that is of axis A.
+template <axis A, class... Tags>
+struct named {
+    using type = unnamed;
 };
-template <axis A, class Default, class Tag, class... Tags>
-struct choose<A, Default, Tag, Tags...> {
-    using type = std::conditional_t<Tag::of == A, Tag, typename choose<A, Default, Tags...>::type>;
+template <axis A, class Tag, class... Tags>
+struct named<A, Tag, Tags...> {
+    using type = std::conditional_t<Tag::of == A, Tag, typename named<A, Tags...>::type>;
 };
+template <axis A, class... Tags>
+using named_t = typename named<A, Tags...>::type;
+
+template <class Tag, class Default>
+using or_default = std::conditional_t<std::is_same_v<Tag, unnamed>, Default, Tag>;
 
 template <class Reduce>
-using commit_after =
-    std::conditional_t<std::is_same_v<Reduce, reduce::scatter>, commit::contiguous, commit::scalar>;
+inline constexpr auto leaves = Reduce::leaves;
+template <>
+inline constexpr auto leaves<unnamed> = reduce::results_in::every_lane;  // whatever suits the commit
 
-template <class Gate>
-inline constexpr unsigned least_lanes = 0;
+template <class Reduce, class Commit>
+inline constexpr bool spreads_own_values =
+    leaves<Reduce> == reduce::results_in::own_lane&& std::is_same_v<Commit, commit::contiguous>;
+template <class Reduce, class Commit>
+inline constexpr bool spreads_first_lane =
+    leaves<Reduce> == reduce::results_in::first_lane&& std::is_same_v<Commit, commit::contiguous>;
+template <class Commit>
+inline constexpr bool by_one_lane = std::is_same_v<Commit, commit::scalar>;
 template <unsigned K>
-inline constexpr unsigned least_lanes<gate::at_least<K>> = K;
+inline constexpr bool by_one_lane<commit::packed<K>> = true;
+template <class Reduce, class Commit>
+inline constexpr bool gathers_spread = leaves<Reduce> == reduce::results_in::spread&& by_one_lane<Commit>;
+template <class Gate>
+inline constexpr bool is_gated = Gate::lanes > 0;
+template <>
+inline constexpr bool is_gated<unnamed> = false;
 
 }  // namespace detail
 
-/// A choice on every axis. What no tag names is `scatter`, the commit that suits the reduction, `skip`,
-/// `always`.
+namespace detail {
+template <class P>
+concept is_policy = requires {
+    typename P::reduce;
+    typename P::gate;
+};
+}  // namespace detail
+
+/// A set of tags, at most one per axis, in any order. Two of one axis, or a pair that cannot work, does not
+/// compile.
+///
+/// @snippet warp_reduce_atomic.cpp policy
 template <class... Tags>
 struct policy {
+    /// How many of the tags are of axis A.
     template <axis A>
-    static constexpr int named = (0 + ... + (Tags::of == A ? 1 : 0));
-    static_assert(named<axis::reduce> <= 1,
-                  "a policy takes one reduce tag: per_lane, shfl_down, butterfly or scatter");
-    static_assert(named<axis::commit> <= 1, "a policy takes one commit tag: scalar or contiguous");
-    static_assert(named<axis::idle> <= 1, "a policy takes one idle tag: skip, assume_busy or add_zeros");
-    static_assert(named<axis::gate> <= 1, "a policy takes one gate tag: always or at_least<K>");
+    static constexpr int count = (0 + ... + (Tags::of == A ? 1 : 0));
+    static_assert(count<axis::operation> <= 1,
+                  "a policy takes one operation: minimum, maximum, bit_and, bit_or or bit_xor");
+    static_assert(count<axis::reduce> <= 1,
+                  "a policy takes one reduce tag: per_lane, shfl_down, butterfly, scatter or redux");
+    static_assert(count<axis::commit> <= 1,
+                  "a policy takes one commit tag: scalar, contiguous, packed<K> or staged");
+    static_assert(count<axis::idle> <= 1, "a policy takes one idle tag: skip, assume_busy or add_zeros");
+    static_assert(count<axis::gate> <= 1, "a policy takes one gate tag: always or at_least<K>");
 
-    using reduce = typename detail::choose<axis::reduce, warpagg::reduce::scatter, Tags...>::type;
-    using commit = typename detail::choose<axis::commit, detail::commit_after<reduce>, Tags...>::type;
-    using idle = typename detail::choose<axis::idle, warpagg::idle::skip, Tags...>::type;
-    using gate = typename detail::choose<axis::gate, warpagg::gate::always, Tags...>::type;
+    /// The tag of this axis; a type of no meaning where none is named.
+    /// @{
+    using operation = detail::named_t<axis::operation, Tags...>;
+    using reduce = detail::named_t<axis::reduce, Tags...>;
+    using commit = detail::named_t<axis::commit, Tags...>;
+    using idle = detail::named_t<axis::idle, Tags...>;
+    using gate = detail::named_t<axis::gate, Tags...>;
+    /// @}
 
-    template <class R, class C>
-    static constexpr bool pairs = std::is_same_v<reduce, R>&& std::is_same_v<commit, C>;
-    static_assert(!pairs<warpagg::reduce::per_lane, warpagg::commit::contiguous>,
+    static_assert(!detail::spreads_own_values<reduce, commit>,
                   "per_lane commits each lane's own values: contiguous has no sums to spread over the lanes");
-    static_assert(!pairs<warpagg::reduce::shfl_down, warpagg::commit::contiguous>,
-                  "shfl_down leaves the sums in lane 0: contiguous needs butterfly or scatter");
-    static_assert(!pairs<warpagg::reduce::scatter, warpagg::commit::scalar>,
-                  "scatter leaves the sums spread over the lanes: scalar needs shfl_down or butterfly");
+    static_assert(!detail::spreads_first_lane<reduce, commit>,
+                  "shfl_down and cub leave the sums in lane 0: contiguous needs butterfly or scatter");
+    static_assert(
+        !detail::gathers_spread<reduce, commit>,
+        "scatter leaves the sums spread over the lanes: scalar and packed need shfl_down or butterfly");
     static_assert(!(std::is_same_v<idle, warpagg::idle::add_zeros> &&
                     std::is_same_v<reduce, warpagg::reduce::per_lane>),
                   "per_lane has no sums, so an idle warp has no zeros to add: take skip");
-    static_assert(!(std::is_same_v<idle, warpagg::idle::add_zeros> && detail::least_lanes<gate> > 0),
+    static_assert(!(std::is_same_v<idle, warpagg::idle::add_zeros> && detail::is_gated<gate>),
                   "at_least<K> sends an idle warp to per-lane atomics, so it never adds zeros: take skip");
 
+    /// From types: `policy<reduce::scatter>`.
     policy() = default;
+    /// From objects: `policy{scatter}`.
     constexpr WARPAGG_HD explicit policy(Tags...) requires(sizeof...(Tags) > 0) {}
 };
+/// `policy{scatter, skip}` is a `policy<reduce::scatter, idle::skip>`.
 template <class... Tags>
 policy(Tags...) -> policy<Tags...>;
-
-/// What `warp_reduce_atomic<T, N>` does unless told otherwise: one value is cheapest by `shfl_down`, several
-/// are by `scatter` (docs/policies.md has the measurement).
-template <class T, int N>
-using default_policy = std::conditional_t<N == 1, policy<reduce::shfl_down>, policy<reduce::scatter>>;
 
 }  // namespace warpagg

@@ -66,11 +66,26 @@ struct backend {
     using warp = warpagg::cuda::warp;
     static constexpr const char* name = "cuda";
     static constexpr bool commits_in_lane_order = false;
+    template <class T>
+    static constexpr bool packs() {
+        return std::is_same_v<T, float>;
+    }
 
     template <class T>
     using memory = device_memory<T>;
     template <class T>
     using span = device_span<T>;
+
+    template <class T>
+    __device__ static T* shared(const warp&, unsigned size) {
+        __shared__ T memory[32 * 1024 / sizeof(T)];
+        if (size > 32 * 1024 / sizeof(T)) __trap();
+        return memory;
+    }
+    template <class W>
+    __device__ static void barrier(const W&) {
+        __syncthreads();
+    }
 
     template <class F>
     static void launch(const F& f) {

@@ -15,11 +15,28 @@ struct backend {
     using warp = warpagg::emulator::lanes;
     static constexpr const char* name = "lanes";
     static constexpr bool commits_in_lane_order = true;
+    /// Whether `commit::packed` applies to aligned records of T.
+    template <class T>
+    static constexpr bool packs() {
+        return false;
+    }
 
     template <class T>
     using memory = host_memory<T>;
     template <class T>
     using span = std::span<T>;
+
+    /// The block's memory of `size` values, and the block's barrier.
+    /// @{
+    template <class T, class W>
+    static T* shared(const W&, unsigned size) {
+        static thread_local std::vector<T> memory;
+        memory.assign(size, T{});
+        return memory.data();
+    }
+    template <class W>
+    static void barrier(const W&) {}
+    /// @}
 
     template <class F>
     static void launch(const F& f) {

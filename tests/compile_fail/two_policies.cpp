@@ -5,5 +5,6 @@
 #include <warpagg/simt/serial.hpp>
 
 void wrong(float* to, const float (&v)[3]) {
-    warpagg::warp_reduce_atomic(warpagg::emulator::serial{}, to, v, true, warpagg::shfl_down, warpagg::skip);
+    warpagg::warp_reduce_atomic(warpagg::emulator::serial{}, to, v, true, warpagg::policy{warpagg::shfl_down},
+                                warpagg::policy{warpagg::skip});
 }

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
 #
-# Passes if strangers' projects can use the library, found as a package and included as a folder:
-#   cmake -DSOURCE_DIR=. -DWORK_DIR=scratch -P run.cmake
+# Passes if strangers' projects can use the library: found as a package by CMake or pkg-config, included as a
+# folder, or fetched; and, where NVCC is given, in CUDA:
+#   cmake -DSOURCE_DIR=. -DWORK_DIR=scratch [-DCXX=g++] [-DNVCC=nvcc] -P run.cmake
 
 foreach(variable SOURCE_DIR WORK_DIR)
     if(NOT ${variable})
@@ -10,6 +11,10 @@ foreach(variable SOURCE_DIR WORK_DIR)
     endif()
     get_filename_component(${variable} "${${variable}}" ABSOLUTE)
 endforeach()
+if(NOT CXX)
+    set(CXX c++)
+endif()
+include("${SOURCE_DIR}/cmake/version.cmake")
 set(consumers_dir "${CMAKE_CURRENT_LIST_DIR}")
 set(prefix "${WORK_DIR}/prefix")
 
@@ -46,7 +51,8 @@ function(run what)
 endfunction()
 
 function(configure source)
-    run("configuring ${source}" ${offline} "${CMAKE_COMMAND}" ${generator} -S "${source}" ${ARGN})
+    run("configuring ${source}" ${offline} "${CMAKE_COMMAND}" ${generator} -S "${source}"
+        "-DCMAKE_CXX_COMPILER=${CXX}" ${ARGN})
 endfunction()
 
 function(build_and_run dir)
@@ -62,28 +68,94 @@ run("installing" "${CMAKE_COMMAND}" --install "${WORK_DIR}/warpagg" --prefix "${
 configure("${consumers_dir}/find_package" -B "${WORK_DIR}/find_package" "-DCMAKE_PREFIX_PATH=${prefix}"
     ${strict} ${without})
 build_and_run("${WORK_DIR}/find_package")
+include("${consumers_dir}/unit_testing.cmake")
 
-# Another major version is refused.
-file(WRITE "${WORK_DIR}/version_99/CMakeLists.txt"
-    "cmake_minimum_required(VERSION 3.25)\nproject(stranger LANGUAGES CXX)\nfind_package(warpagg 99 REQUIRED)\n")
-execute_process(
-    COMMAND "${CMAKE_COMMAND}" ${generator} -S "${WORK_DIR}/version_99" -B "${WORK_DIR}/version_99/build"
-        "-DCMAKE_PREFIX_PATH=${prefix}"
-    RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+# The one version number is everywhere the same, and another major version is refused.
+warpagg_version("${prefix}/include" version)
+function(find_version requested)
+    set(source "${WORK_DIR}/version ${requested}")
+    file(WRITE "${source}/CMakeLists.txt"
+        "cmake_minimum_required(VERSION 3.25)\nproject(stranger LANGUAGES CXX)\n"
+        "find_package(warpagg ${requested} REQUIRED)\n")
+    execute_process(
+        COMMAND "${CMAKE_COMMAND}" ${generator} -S "${source}" -B "${source}/build"
+            "-DCMAKE_CXX_COMPILER=${CXX}" "-DCMAKE_PREFIX_PATH=${prefix}"
+        RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+    set(result ${result} PARENT_SCOPE)
+    set(output "${output}" PARENT_SCOPE)
+endfunction()
+find_version("${version} EXACT")
+if(NOT result EQUAL 0)
+    message(FATAL_ERROR "find_package(warpagg ${version} EXACT) fails:\n${output}")
+endif()
+find_version(99)
 if(result EQUAL 0 OR NOT output MATCHES "requested[ \n]+version[ \n]+\"99\"")
     message(FATAL_ERROR "find_package(warpagg 99) is not refused for its version:\n${output}")
 endif()
+file(STRINGS "${SOURCE_DIR}/CHANGELOG.md" newest REGEX "^## \\[[0-9]" LIMIT_COUNT 1)
+if(NOT newest MATCHES "^## \\[${version}\\]")
+    message(FATAL_ERROR "CHANGELOG.md's newest version is '${newest}', but the headers say ${version}")
+endif()
 
-# Included as a folder: nothing is built but the stranger's own.
-configure("${consumers_dir}/add_subdirectory" -B "${WORK_DIR}/add_subdirectory"
-    "-DWARPAGG_SOURCE_DIR=${SOURCE_DIR}" ${strict} ${without})
-build_and_run("${WORK_DIR}/add_subdirectory")
-run("listing the targets" "${CMAKE_COMMAND}" --build "${WORK_DIR}/add_subdirectory" --target help)
-foreach(ours gaussian_splatting test_library)
-    if(output MATCHES "${ours}")
-        message(FATAL_ERROR "add_subdirectory brings the target ${ours}:\n${output}")
+# By pkg-config, after the installed folder has been moved.
+find_program(pkg_config NAMES pkgconf pkg-config)
+if(pkg_config)
+    set(moved "${WORK_DIR}/moved")
+    file(COPY "${prefix}/" DESTINATION "${moved}")
+    set(ENV{PKG_CONFIG_PATH} "${moved}/share/pkgconfig")
+    run("pkg-config --modversion" "${pkg_config}" --modversion warpagg)
+    if(NOT output STREQUAL "${version}\n")
+        message(FATAL_ERROR "pkg-config says version ${output}, the headers ${version}")
     endif()
+    run("pkg-config --cflags" "${pkg_config}" --cflags warpagg)
+    separate_arguments(cflags UNIX_COMMAND "${output}")
+    run("compiling by pkg-config" "${CXX}" -std=c++20 ${cflags}
+        "${consumers_dir}/stranger.cpp" -o "${moved}/stranger")
+    run("running ${moved}/stranger" "${moved}/stranger")
+else()
+    message("skipped: the consumer by pkg-config, as there is no pkg-config")
+endif()
+
+# Included as a folder or fetched: nothing is built and nothing is installed but the stranger's own, unless asked.
+foreach(way add_subdirectory fetch_content)
+    set(build "${WORK_DIR}/${way}")
+    configure("${consumers_dir}/${way}" -B "${build}" "-DWARPAGG_SOURCE_DIR=${SOURCE_DIR}" ${strict} ${without})
+    build_and_run("${build}")
+    run("listing the targets" "${CMAKE_COMMAND}" --build "${build}" --target help)
+    foreach(ours gaussian_splatting test_library)
+        if(output MATCHES "${ours}")
+            message(FATAL_ERROR "${way} brings the target ${ours}:\n${output}")
+        endif()
+    endforeach()
+    file(GLOB_RECURSE theirs "${build}/*/examples/CTestTestfile.cmake" "${build}/*/tests/CTestTestfile.cmake"
+        "${build}/*/examples/cmake_install.cmake" "${build}/*/tests/cmake_install.cmake")
+    if(theirs)
+        message(FATAL_ERROR "${way} configures examples or tests: ${theirs}")
+    endif()
+    foreach(asked OFF ON)
+        if(asked)
+            configure("${consumers_dir}/${way}" -B "${build}" -DWARPAGG_INSTALL=ON)
+        endif()
+        set(into "${build}/installed ${asked}")
+        run("installing ${way}" "${CMAKE_COMMAND}" --install "${build}" --prefix "${into}")
+        if((EXISTS "${into}/include/warpagg/atomic.hpp" AND NOT asked)
+            OR (asked AND NOT EXISTS "${into}/include/warpagg/atomic.hpp"))
+            message(FATAL_ERROR "${way} with WARPAGG_INSTALL ${asked}: wrong files in ${into}")
+        endif()
+    endforeach()
 endforeach()
-if(EXISTS "${WORK_DIR}/add_subdirectory/warpagg/examples" OR EXISTS "${WORK_DIR}/add_subdirectory/warpagg/tests")
-    message(FATAL_ERROR "add_subdirectory configures examples or tests")
+
+# In CUDA. It is compiled; whether it runs depends on a GPU.
+if(NVCC)
+    set(build "${WORK_DIR}/cuda")
+    configure("${consumers_dir}/cuda" -B "${build}" "-DCMAKE_PREFIX_PATH=${prefix}" "-DCMAKE_CUDA_COMPILER=${NVCC}"
+        -DCMAKE_CUDA_ARCHITECTURES=80)
+    run("building ${build}" ${offline} "${CMAKE_COMMAND}" --build "${build}")
+    execute_process(COMMAND "${build}/stranger" RESULT_VARIABLE result OUTPUT_VARIABLE output)
+    if(NOT result EQUAL 0 AND NOT result EQUAL 77)
+        message(FATAL_ERROR "running ${build}/stranger fails:\n${output}")
+    endif()
+    message("consumer in CUDA: ${output}")
+else()
+    message("skipped: the consumer in CUDA, as there is no nvcc")
 endif()

@@ -9,12 +9,14 @@ namespace warpagg::commit {
 /// Where component i of a record lies, for a record that is contiguous in memory.
 template <class T>
 struct contiguous_record {
-    T* first;
+    T* first;  ///< component 0
+    /// Component i.
     WARPAGG_HD T* operator()(unsigned i) const { return first + i; }
 };
 
 /// Any destination as an accessor: a pointer, something with `data()` (a span), or an accessor already,
 /// called with the component's number for its address (structure-of-arrays gradients).
+/// @{
 template <class T>
 WARPAGG_HD contiguous_record<T> destination(T* p) {
     return {p};
@@ -25,5 +27,6 @@ WARPAGG_HD auto destination(S s) { return destination(s.data()); }
 template <class A>
 requires requires(A a) { *a(0u); }
 WARPAGG_HD A destination(A a) { return a; }
+/// @}
 
 }  // namespace warpagg::commit

@@ -2,41 +2,62 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "../simt/warp.hpp"
+#include "../policy.hpp"
 
 namespace warpagg::reduce {
 
-/// Sums each of the N values over the warp by `__shfl_down_sync` with halved distances (the paper, Figure 1).
-/// Lane 0 holds the sums afterwards. Cost: N log2(W) shuffles.
+namespace detail {
+
 WARPAGG_EXEC_CHECK_DISABLE
-template <unsigned Distance, warp W, class V, int N>
-WARPAGG_HD void sum_shfl_down_from(const W& w, V (&v)[N]) {
+template <class Op, unsigned Distance, warp W, class V, int N>
+WARPAGG_HD void down_from(const W& w, V (&v)[N]) {
     if constexpr (Distance > 0) {
         WARPAGG_UNROLL
-        for (int i = 0; i < N; ++i) v[i] += w.shfl_down(v[i], Distance);
-        sum_shfl_down_from<Distance / 2>(w, v);
+        for (int i = 0; i < N; ++i) v[i] = Op::combine(v[i], w.shfl_down(v[i], Distance));
+        down_from<Op, Distance / 2>(w, v);
     }
 }
+
 WARPAGG_EXEC_CHECK_DISABLE
-template <warp W, class V, int N>
-WARPAGG_HD void sum_shfl_down(const W& w, V (&v)[N]) {
-    sum_shfl_down_from<W::size / 2>(w, v);
+template <class Op, unsigned Distance, warp W, class V, int N>
+WARPAGG_HD void across_from(const W& w, V (&v)[N]) {
+    if constexpr (Distance > 0) {
+        WARPAGG_UNROLL
+        for (int i = 0; i < N; ++i) v[i] = Op::combine(v[i], w.shfl_xor(v[i], Distance));
+        across_from<Op, Distance / 2>(w, v);
+    }
+}
+
+}  // namespace detail
+
+/// Combines each of the N values over the warp by shuffles down with halved distances (the paper, Figure 1).
+/// Lane 0 holds the results afterwards. Cost: N log2(W) shuffles.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, warp W, class V, int N>
+WARPAGG_HD void over_warp(shfl_down, const W& w, V (&v)[N]) {
+    detail::down_from<Op, W::size / 2>(w, v);
 }
 
 /// The same tree, to every lane. Cost: N log2(W) shuffles.
 WARPAGG_EXEC_CHECK_DISABLE
-template <unsigned Distance, warp W, class V, int N>
-WARPAGG_HD void sum_butterfly_from(const W& w, V (&v)[N]) {
-    if constexpr (Distance > 0) {
-        WARPAGG_UNROLL
-        for (int i = 0; i < N; ++i) v[i] += w.shfl_xor(v[i], Distance);
-        sum_butterfly_from<Distance / 2>(w, v);
-    }
+template <class Op, warp W, class V, int N>
+WARPAGG_HD void over_warp(butterfly, const W& w, V (&v)[N]) {
+    detail::across_from<Op, W::size / 2>(w, v);
 }
+
+/// By `redux.sync` to every lane. Cost: N instructions, or those of `butterfly` on a model that lacks it.
 WARPAGG_EXEC_CHECK_DISABLE
-template <warp W, class V, int N>
-WARPAGG_HD void sum_butterfly(const W& w, V (&v)[N]) {
-    sum_butterfly_from<W::size / 2>(w, v);
+template <class Op, warp W, class V, int N>
+WARPAGG_HD void over_warp(redux, const W& w, V (&v)[N]) {
+    using T = typename warpagg::detail::scalar_of<V>::type;
+    static_assert(std::is_integral_v<T> && sizeof(T) == 4,
+                  "redux is for integers of 32 bits: take butterfly or scatter");
+    if constexpr (requires { w.redux(Op{}, v[0]); }) {
+        WARPAGG_UNROLL
+        for (int i = 0; i < N; ++i) v[i] = w.redux(Op{}, v[i]);
+    } else {
+        over_warp<Op>(butterfly{}, w, v);
+    }
 }
 
 }  // namespace warpagg::reduce

@@ -4,11 +4,20 @@
 
 #include <atomic>
 
+#include "../operation.hpp"
+
 namespace warpagg::emulator::detail {
 
-/// What the emulators' atomics do to memory: warps may run on several threads.
+/// What the emulators' atomics do to memory, relaxed: warps may run on several threads.
+template <class Op, class T>
+inline void atomic(Op, T* to, T v) {
+    std::atomic_ref<T> memory(*to);
+    T before = memory.load(std::memory_order_relaxed);
+    while (!memory.compare_exchange_weak(before, Op::combine(before, v), std::memory_order_relaxed)) {
+    }
+}
 template <class T>
-inline void atomic_add(T* to, T v) {
+inline void atomic(operation::sum, T* to, T v) {
     std::atomic_ref<T>(*to).fetch_add(v, std::memory_order_relaxed);
 }
 

@@ -13,13 +13,13 @@ namespace warpagg::emulator {
 
 /// Counts nothing and costs nothing.
 struct uncounted {
-    static constexpr bool counts = false;
+    static constexpr bool counts = false;  ///< whether there is something to add to
 };
 
 /// Adds what the warp does to `*to`. One thread at a time.
 struct counted {
-    static constexpr bool counts = true;
-    counters* to;
+    static constexpr bool counts = true;  ///< whether there is something to add to
+    counters* to;                         ///< what is added to
 };
 
 /// The fast emulator: one thread runs a warp of 32 lanes, all of them in SIMD registers. Lane values are
@@ -27,6 +27,8 @@ struct counted {
 /// their number.
 template <class Counting>
 struct basic_lanes : Counting {
+    /// The operation of this name of the concept `warp`.
+    /// @{
     static constexpr unsigned size = 32;
     template <class T>
     using value = warpagg::lanes<T, 32>;
@@ -52,6 +54,21 @@ struct basic_lanes : Counting {
     WARPAGG_HD value<T> shfl(const value<T>& v, unsigned from) const {
         count_shuffle<T>();
         return value<T>(v[static_cast<int>(from)]);
+    }
+    template <class T>
+    WARPAGG_HD value<T> shfl(const value<T>& v, const value<unsigned>& from) const {
+        count_shuffle<T>();
+        value<T> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < 32; ++i) r.set(i, v[static_cast<int>(from[i] % size)]);
+        return r;
+    }
+    WARPAGG_HD value<std::uint32_t> match(const value<unsigned>& key) const {
+        count([](counters& c) { ++c.votes; });
+        value<std::uint32_t> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < 32; ++i) r.set(i, bits(key == value<unsigned>(key[i])));
+        return r;
     }
     template <class T>
     WARPAGG_HD value<T> shfl_down(const value<T>& v, unsigned distance) const {
@@ -157,16 +174,18 @@ struct basic_lanes : Counting {
                 if (active[i * v.width + k]) p[k] = v[i * v.width + k];
         }
     }
-    template <class Dst, class T>
-    WARPAGG_HD void atomic_add(Dst dst, const value<unsigned>& index, const value<T>& v,
-                               const mask& active) const {
+    template <class Op, class Dst, class T>
+    WARPAGG_HD void atomic(Op op, Dst dst, const value<unsigned>& index, const value<T>& v,
+                           const mask& active) const {
         const std::uint32_t who = bits(active);
         count([&](counters& c) { count_commit(c, dst, index, who); });
-        for_each_lane(who, [&](int lane) { detail::atomic_add(dst(index[lane]), v[lane]); });
+        for_each_lane(who, [&](int lane) { detail::atomic(op, dst(index[lane]), v[lane]); });
     }
 
+    /// @}
+
     /// `warp_reduce_atomic` tells how many lanes it was called with.
-    WARPAGG_HD void observe(const mask& active) const requires Counting::counts {
+    WARPAGG_HD void observe(const mask& active) const requires(Counting::counts) {
         ++this->to->active[static_cast<std::size_t>(std::popcount(bits(active)))];
     }
 
@@ -261,7 +280,9 @@ struct basic_lanes : Counting {
     }
 };
 
+/// The fast emulator, for work.
 using lanes = basic_lanes<uncounted>;
+/// The same, which counts what it does: `counted_lanes{{&counters}}`.
 using counted_lanes = basic_lanes<counted>;
 
 static_assert(warpagg::warp<lanes> && warpagg::warp<counted_lanes>);

@@ -5,10 +5,13 @@
 #include "atomic_memory.hpp"
 #include "warp.hpp"
 
+/// Models of the concept `warp` for a CPU.
 namespace warpagg::emulator {
 
 /// A warp of one lane: the oracle. What a kernel computes on it has no lanes to get wrong.
 struct serial {
+    /// The operation of this name of the concept `warp`.
+    /// @{
     static constexpr unsigned size = 1;
     template <class T>
     using value = T;
@@ -16,6 +19,8 @@ struct serial {
     unsigned lane() const { return 0; }
     std::uint32_t ballot(bool p) const { return p ? 1u : 0u; }
     bool any(bool p) const { return p; }
+
+    std::uint32_t match(unsigned) const { return 1u; }
 
     template <class T>
     T shfl(T v, unsigned) const {
@@ -46,10 +51,11 @@ struct serial {
     void store_row(T* to, std::ptrdiff_t first, T v, bool active) const {
         if (active) to[first] = v;
     }
-    template <class Dst, class T>
-    void atomic_add(Dst dst, unsigned index, T v, bool active) const {
-        if (active) detail::atomic_add(dst(index), v);
+    template <class Op, class Dst, class T>
+    void atomic(Op op, Dst dst, unsigned index, T v, bool active) const {
+        if (active) detail::atomic(op, dst(index), v);
     }
+    /// @}
 };
 
 static_assert(warpagg::warp<serial>);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+/// @file
 /// `lanes<T, L>`: L values of T in SIMD registers, by the GCC and Clang vector extension, in chunks of 256
 /// bits. Arrays that one hopes will vectorise were measured 1.7 times slower (and at -O2 no faster than
 /// scalar code). Not for nvcc, which rejects vector types in host-device templates: keep such code in `.cpp`
@@ -44,8 +45,13 @@ using chunk_t = typename chunk<T>::type;
 
 }  // namespace detail
 
+/// L values of T, one per lane: `float`, `double`, integers of 32 and 64 bits, `bool`. Has T's arithmetic and
+/// bitwise operators, and comparisons, which give `lanes<bool, L>`; all work lane by lane, and a plain T
+/// stands for the same value in every lane.
 template <class T, int L>
 struct lanes {
+    /// What a lane holds, and how chunks of lanes are laid out.
+    /// @{
     using scalar = T;
     using element = detail::element_t<T>;
     using chunk = detail::chunk_t<T>;
@@ -55,7 +61,9 @@ struct lanes {
     static_assert(L % width == 0);
 
     chunk part[chunks];
+    /// @}
 
+    /// Of no particular value.
     lanes() = default;
     /// The same value in every lane.
     WARPAGG_HD lanes(T value) {  // NOLINT: implicit, so that uniform values mix with lane values
@@ -69,7 +77,9 @@ struct lanes {
         for (auto& p : part) p = e - chunk{};
     }
 
+    /// The value of one lane, as it is stored: of a flag, -1 or 0.
     WARPAGG_HD element raw(int lane) const { return part[lane / width][lane % width]; }
+    /// The value of one lane, 0 <= lane < L.
     WARPAGG_HD T operator[](int lane) const {
         if constexpr (std::is_same_v<T, bool>) {
             return raw(lane) != 0;
@@ -77,6 +87,7 @@ struct lanes {
             return raw(lane);
         }
     }
+    /// Gives one lane a value.
     WARPAGG_HD void set(int lane, T value) {
         if constexpr (std::is_same_v<T, bool>) {
             part[lane / width][lane % width] = value ? -1 : 0;
@@ -85,6 +96,7 @@ struct lanes {
         }
     }
 
+/// Defines an operator, lane by lane.
 #define WARPAGG_LANES_OPERATOR(op)                                           \
     friend WARPAGG_HD lanes operator op(const lanes& a, const lanes& b) {    \
         lanes r;                                                             \
@@ -105,6 +117,8 @@ struct lanes {
     WARPAGG_LANES_OPERATOR(>>)
 #undef WARPAGG_LANES_OPERATOR
 
+    /// Lane by lane; flags are all looked at, without short-circuit.
+    /// @{
     friend WARPAGG_HD lanes operator-(const lanes& a) {
         lanes r;
         WARPAGG_UNROLL
@@ -123,7 +137,9 @@ struct lanes {
     friend WARPAGG_HD lanes operator||(const lanes& a, const lanes& b) requires std::is_same_v<T, bool> {
         return a | b;
     }
+    /// @}
 
+/// Defines a comparison, lane by lane, where `allowed`.
 #define WARPAGG_LANES_COMPARISON(op, allowed)                                                        \
     friend WARPAGG_HD lanes<bool, L> operator op(const lanes& a, const lanes& b) requires(allowed) { \
         lanes<bool, L> r;                                                                            \
@@ -162,6 +178,8 @@ struct lanes {
     }
 };
 
+/// What `math` has for scalars, lane by lane.
+/// @{
 template <class T, int L>
 WARPAGG_HD lanes<T, L> select(const lanes<bool, L>& mask, const lanes<T, L>& yes, const lanes<T, L>& no) {
     lanes<T, L> r;
@@ -298,16 +316,39 @@ WARPAGG_HD lanes<double, L> exp2(const lanes<double, L>& a) {
     return r;
 }
 
+template <int L>
+WARPAGG_HD lanes<std::uint32_t, L> popcount(const lanes<std::uint32_t, L>& a) {
+    lanes<std::uint32_t, L> r;
+    WARPAGG_UNROLL
+    for (int k = 0; k < L; ++k) r.set(k, math::popcount(a[k]));
+    return r;
+}
+template <int L>
+WARPAGG_HD lanes<std::uint32_t, L> countr_zero(const lanes<std::uint32_t, L>& a) {
+    lanes<std::uint32_t, L> r;
+    WARPAGG_UNROLL
+    for (int k = 0; k < L; ++k) r.set(k, math::countr_zero(a[k]));
+    return r;
+}
+template <class T, int L>
+WARPAGG_HD T uniform(const lanes<T, L>& a) {
+    return a[0];
+}
+/// @}
+
 /// Beside the scalar ones, for masked code that names them in full. Unqualified calls find them by their
 /// arguments.
 namespace math {
 using warpagg::convert;
+using warpagg::countr_zero;
 using warpagg::exp2;
 using warpagg::fma;
 using warpagg::max;
 using warpagg::min;
+using warpagg::popcount;
 using warpagg::select;
 using warpagg::sqrt;
+using warpagg::uniform;
 }  // namespace math
 
 }  // namespace warpagg

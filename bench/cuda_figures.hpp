@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// What the benches of kernels share: time by events, and where figures come from.
+
+#include <cuda_runtime.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+inline void check(cudaError_t status) {
+    if (status != cudaSuccess) throw std::runtime_error(cudaGetErrorString(status));
+}
+
+class stopwatch {
+  public:
+    stopwatch() {
+        check(cudaEventCreate(&from_));
+        check(cudaEventCreate(&to_));
+    }
+    /// How long the GPU takes for what `f` launches.
+    template <class F>
+    double milliseconds(const F& f) {
+        check(cudaEventRecord(from_));
+        f();
+        check(cudaGetLastError());
+        check(cudaEventRecord(to_));
+        check(cudaEventSynchronize(to_));
+        float ms = 0;
+        check(cudaEventElapsedTime(&ms, from_, to_));
+        return static_cast<double>(ms);
+    }
+
+  private:
+    cudaEvent_t from_{}, to_{};
+};
+
+/// GPU, driver, compiler and commit.
+inline nlohmann::ordered_json figures_of_this_gpu(const char* bench) {
+    cudaDeviceProp gpu{};
+    check(cudaGetDeviceProperties(&gpu, 0));
+    int driver_api = 0;
+    check(cudaDriverGetVersion(&driver_api));
+    std::string driver;
+    std::ifstream version("/proc/driver/nvidia/version");
+    std::getline(version, driver);
+    return {{"bench", bench},           {"gpu", gpu.name},      {"driver", driver},
+            {"driver_api", driver_api}, {"nvcc", WARPAGG_NVCC}, {"commit", WARPAGG_COMMIT}};
+}

@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The warpagg authors
+# SPDX-License-Identifier: MIT
+"""Writes the tables of the documentation from bench/results.
+
+A table stands between the lines "<!-- table NAME -->" and "<!-- end of table -->" of a file in docs/.
+With --check nothing is written, and a table that differs from its figures is an error.
+"""
+import argparse
+import json
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+TABLE = re.compile(r"(<!-- table (\w+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
+MAIN_N = (1, 2, 3, 4, 8, 9, 16, 24, 32)
+
+
+def results(name):
+    return json.loads((ROOT / "bench" / "results" / f"{name}.json").read_text())
+
+
+def markdown(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+    lines += ["| " + " | ".join(row) + " |" for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+def origin(figures, what):
+    return (
+        f"\n{what}: {figures['gpu']}, driver {driver(figures)}, nvcc {figures['nvcc']}, commit {figures['commit']}, "
+        f"seed {figures['seed']}; median of {figures['rounds']} rounds in which the variants take turns; "
+        f"largest spread {spread(figures['rows'])}.\n"
+    )
+
+
+def driver(figures):
+    found = re.search(r"\d+\.\d+(\.\d+)?", figures["driver"])
+    return found.group(0) if found else figures["driver_api"]
+
+
+def spread(rows):
+    of = [(r["ms_most"] - r["ms_least"]) / r["ms"] for r in rows if r.get("ms", 0) > 0.3 and "ms_most" in r]
+    return f"{100 * max(of):.0f} %" if of else "not noted"
+
+
+class Atomics:
+    """Milliseconds by type, number of values, active lanes and policy."""
+
+    def __init__(self):
+        self.figures = results("atomics")
+        self.ms = {
+            (r["type"], r["n"], r["active"], r["policy"], r["aligned"]): r["ms"] for r in self.figures["rows"]
+        }
+
+    def numbers(self, kind):
+        return sorted({key[1] for key in self.ms if key[0] == kind})
+
+    def cell(self, kind, n, active, policy, aligned=True):
+        ms = self.ms.get((kind, n, active, policy, aligned))
+        return "" if ms is None else f"{ms:.2f}"
+
+
+def by_share(active):
+    atomics = Atomics()
+    policies = ["per_lane", "shfl_down", "butterfly", "scatter", "cub", "cooperative, scalar", "default"]
+    rows = [[str(n)] + [atomics.cell("float", n, active, p) for p in policies] for n in MAIN_N]
+    rows = [row for row in rows if any(row[1:])]
+    return markdown(["N"] + policies, rows)
+
+
+def atomics_dense():
+    return by_share("32") + origin(Atomics().figures, "Milliseconds for 17.3 million warp steps")
+
+
+def atomics_sparse():
+    return by_share("3 %")
+
+
+def gates():
+    atomics = Atomics()
+    counts = ["1", "2", "3", "4", "6", "8", "12", "32"]
+    rows = []
+    for n in (2, 4, 9, 16, 32):
+        for policy in ("per_lane", "per_lane, packed<4>", "scatter", "default"):
+            rows.append([str(n), policy] + [atomics.cell("float", n, c, policy) for c in counts])
+    return markdown(["N", "policy"] + counts, rows)
+
+
+def types():
+    atomics = Atomics()
+    policies = ["per_lane", "shfl_down", "butterfly", "scatter", "redux", "default"]
+    rows = []
+    for kind in ("double", "unsigned", "int64", "half2"):
+        for n in (1, 4, 9, 32):
+            rows.append([kind, str(n)] + [atomics.cell(kind, n, "32", p) for p in policies])
+    return markdown(["type", "N"] + policies, rows)
+
+
+def default_against_best():
+    """The default's time over that of the best of per_lane, shfl_down and scatter, for every N."""
+    atomics = Atomics()
+    rows = []
+    for active in ("32", "3 %"):
+        ratios = []
+        for n in atomics.numbers("float"):
+            best = min(atomics.ms["float", n, active, p, True] for p in ("per_lane", "shfl_down", "scatter"))
+            ratios.append((n, atomics.ms["float", n, active, "default", True] / best))
+        slower = ", ".join(f"N = {n}: {r:.2f}" for n, r in ratios if r > 1.05)
+        rows.append([active, f"{min(r for _, r in ratios):.2f} to {max(r for _, r in ratios):.2f}", slower or "none"])
+    return markdown(["active lanes", "default / best of three, N = 1 to 32", "above 1.05"], rows)
+
+
+def ideas():
+    figures = results("ideas")
+    rows = [[r["idea"], f"{r['ms_all']:.2f}", f"{r['ms_3_percent']:.2f}"] for r in figures["rows"]]
+    return markdown(["N = 9, float", "all lanes active", "3 % of lanes active"], rows)
+
+
+def match():
+    figures = results("match")
+    rows = [
+        [r["type"], str(r["n"]), r["keys"], f"{r['ms_plain']:.2f}", f"{r['ms_matched']:.2f}", f"{r['ratio']:.2f}"]
+        for r in figures["rows"]
+    ]
+    return markdown(["type", "N", "keys of a warp", "plain atomics, ms", "matched, ms", "ratio"], rows)
+
+
+TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match)}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--check", action="store_true")
+    check = parser.parse_args().check
+    stale = []
+    for page in sorted((ROOT / "docs").glob("*.md")):
+        text = page.read_text()
+        new = TABLE.sub(lambda m: m.group(1) + TABLES[m.group(2)]() + m.group(3), text)
+        if new != text:
+            stale.append(page.relative_to(ROOT))
+            if not check:
+                page.write_text(new)
+    for page in stale:
+        print(f"{page}: {'is not what bench/results says; run bench/tables.py' if check else 'written'}")
+    return 1 if check and stale else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// What a policy leaves open, chosen from measurement: docs/policies.md has the table.
+
+#include "policy.hpp"
+
+namespace warpagg {
+
+namespace detail {
+
+/// The reduction that was fastest for N values of T, and with how few active lanes plain atomics were faster
+/// still. Measured on compute capability 9.0; 8.0 takes the same, without `packed`.
+template <class T, int N>
+struct measured {
+    // Pairs of halves, and whatever else 32 bits hold.
+    using reduce = std::conditional_t<N == 1, warpagg::reduce::shfl_down, warpagg::reduce::scatter>;
+    using gate = std::conditional_t<(N > 1 && N <= 4), gate::at_least<2>, gate::always>;
+};
+
+template <int N>
+struct measured<float, N> : measured<void, N> {
+    static constexpr unsigned lanes = N == 2 ? 3 : N < 12 ? 2 : 1;
+    static constexpr unsigned lanes_if_packed = N == 2 ? 5 : N == 3 ? 3 : N < 24 ? 4 : 3;
+    using gate = std::conditional_t<N == 1, gate::always, gate::at_least<lanes, lanes_if_packed>>;
+};
+
+template <class T, int N>
+requires(std::is_integral_v<T> && sizeof(T) == 4) struct measured<T, N> {
+    using reduce = std::conditional_t<N <= 32, warpagg::reduce::redux, warpagg::reduce::scatter>;
+    using gate = gate::always;
+};
+
+template <class T, int N>
+requires(sizeof(T) == 8 && std::is_arithmetic_v<T>) struct measured<T, N> : measured<void, N> {
+    using gate = std::conditional_t<N <= 16, gate::at_least<N == 1 ? 4 : N <= 4 ? 3 : 2>, gate::always>;
+};
+
+/// A reduction whose results are where the commit takes them from.
+template <class Commit, class Measured>
+struct reduce_for {
+    using type = Measured;
+};
+template <class Measured>
+struct reduce_for<commit::scalar, Measured> {
+    using type = reduce::shfl_down;
+};
+template <unsigned K, class Measured>
+struct reduce_for<commit::packed<K>, Measured> {
+    using type = reduce::shfl_down;
+};
+template <class Measured>
+struct reduce_for<commit::contiguous, Measured> {
+    using type = reduce::scatter;
+};
+
+/// The commit whose instructions are fewest where a reduction leaves its results.
+template <class Reduce>
+using commit_after = std::conditional_t<Reduce::leaves == reduce::results_in::spread ||
+                                            Reduce::leaves == reduce::results_in::every_lane,
+                                        commit::contiguous, commit::scalar>;
+
+/// A policy with all that it leaves open filled in. A reduction named by the caller is not gated unless the
+/// caller says so.
+template <class T, int N, class Policy>
+struct choice {
+    using operation = or_default<typename Policy::operation, warpagg::operation::sum>;
+    using reduce =
+        or_default<typename Policy::reduce,
+                   typename reduce_for<typename Policy::commit, typename measured<T, N>::reduce>::type>;
+    using commit = or_default<typename Policy::commit, commit_after<reduce>>;
+    using idle = or_default<typename Policy::idle, warpagg::idle::skip>;
+    static constexpr bool measured_gate =
+        std::is_same_v<typename Policy::reduce, unnamed> && !std::is_same_v<idle, warpagg::idle::add_zeros>;
+    using gate =
+        or_default<typename Policy::gate,
+                   std::conditional_t<measured_gate, typename measured<T, N>::gate, warpagg::gate::always>>;
+};
+
+}  // namespace detail
+
+/// What `warp_reduce_atomic` does with N values of T where no policy is given, spelt out.
+template <class T, int N, class Choice = detail::choice<T, N, policy<>>>
+using default_policy =
+    policy<typename Choice::reduce, typename Choice::commit, typename Choice::idle, typename Choice::gate>;
+
+}  // namespace warpagg

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// For lanes whose destinations differ: histograms, graph scatter, particle deposit.
+
+#include "atomic.hpp"
+
+namespace warpagg {
+namespace detail {
+
+/// Component i of the record that a key names, as an accessor by key.
+template <class Base, int N>
+struct component_by_key {
+    Base base;
+    unsigned i;
+    WARPAGG_HD auto operator()(unsigned key) const {
+        if constexpr (requires { base(key, i); }) {
+            return base(key, i);
+        } else {
+            return base + (std::size_t{key} * N + i);
+        }
+    }
+};
+
+/// The components of one key's record, as an accessor by component.
+template <class Base, int N>
+struct record_of_key {
+    Base base;
+    unsigned key;
+    WARPAGG_HD auto operator()(unsigned i) const { return component_by_key<Base, N>{base, i}(key); }
+};
+
+/// Combines the values of lanes with equal keys, in a tree over each key's lanes in their order; the first of
+/// them ends with the result. `peers`: the active lanes with this lane's key, none for an inactive lane.
+/// Cost: for the largest group of g lanes, ceil(log2 g) times N shuffles and two votes.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, warp W, class V, int N>
+WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint32_t>& peers) {
+    using math::countr_zero;
+    using math::popcount;
+    using math::select;
+    using bits = value_t<W, std::uint32_t>;
+    const bits beyond_me = bits(0xfffffffeu) << w.lane();
+    bits next = peers & beyond_me;  // of the lanes that still hold a part of the result
+    bits place = popcount(peers & (beyond_me ^ bits(0xffffffffu))) - bits(1u);
+    while (w.any(next != 0u)) {
+        const auto has_next = next != 0u;
+        const auto from = countr_zero(next);
+        WARPAGG_UNROLL
+        for (int i = 0; i < N; ++i) v[i] = select(has_next, Op::combine(v[i], w.shfl(v[i], from)), v[i]);
+        next &= bits(w.ballot((place & 1u) == 0u));  // those at odd places have handed theirs on
+        place = place >> 1u;
+    }
+}
+
+}  // namespace detail
+
+/// Adds the values of each active lane to the record that its key names, equal keys first among themselves:
+/// for each i in [0, N), `base[key * N + i] += values[i]`, atomically and relaxed, component by component.
+///
+/// @snippet warp_match_reduce_atomic.cpp warp_match_reduce_atomic
+///
+/// @param w       a model of `warp`; all of its lanes call this together
+/// @param base    `T*` to the record of key 0, or an accessor `base(key, i) -> T*`
+/// @param key     this lane's record; any for an inactive lane
+/// @param values  N values per lane; those of inactive lanes are ignored, NaN or not
+/// @param active  whether this lane has something to add
+/// @param at      where the call stands, by its default
+/// @tparam Policy see policy.hpp. `reduce` and `commit` say what happens where all active lanes have one key,
+///                `per_lane` that nothing is combined, the gate below how many active lanes it is not
+///
+/// @pre All lanes of the warp call this, with the same `base`, which holds N values of T for each key in use.
+///
+/// Lanes of one key combine in a fixed tree in the order of their numbers. Cost: one `match`, two votes, and
+/// one atomic per key and component where all keys differ; beyond that, for the most frequent key's g lanes,
+/// ceil(log2 g) times N shuffles and two votes. With one key for all: as `warp_reduce_atomic`.
+WARPAGG_EXEC_CHECK_DISABLE
+template <warp W, class Base, class V, int N, class Policy = policy<>>
+WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W, unsigned>& key,
+                                         const V (&values)[N], const mask_t<W>& active, Policy = {},
+                                         call_site at = call_site::here("warp_match_reduce_atomic")) {
+    using math::countr_zero;
+    using math::popcount;
+    using math::select;
+    using math::uniform;
+    static_assert(detail::is_policy<Policy>,
+                  "warp_match_reduce_atomic takes one policy: put the tags into policy{...}");
+    using T = typename detail::scalar_of<V>::type;
+    using choice = detail::choice<T, N, Policy>;
+    using operation = typename choice::operation;
+    using bits = value_t<W, std::uint32_t>;
+    static_assert(
+        operation::template suits<T>,
+        "memory has minimum, maximum, bit_and, bit_or and bit_xor for integers of 32 and 64 bits only");
+    static_assert(!std::is_same_v<typename choice::commit, commit::staged>,
+                  "warp_match_reduce_atomic takes the stage's copy as its base: staged says nothing here");
+
+    const detail::library_call<W> call(w, at);
+    if constexpr (requires { w.observe(active); }) w.observe(active);
+    const mask_t<W> adds = detail::opaque(w, active);
+    mask_t<W> commits = adds;
+    V results[N];
+    WARPAGG_UNROLL
+    for (int i = 0; i < N; ++i) results[i] = values[i];
+
+    if constexpr (!std::is_same_v<typename choice::reduce, reduce::per_lane>) {
+        const std::uint32_t everyone = w.ballot(adds);
+        if (everyone == 0) return;
+        bool dense = true;
+        if constexpr (detail::is_gated<typename choice::gate>)
+            dense = popcount(everyone) >= choice::gate::lanes;
+        if (dense) {
+            const bits peers = select(adds, w.match(key) & everyone, bits(0u));
+            if (!w.any(adds && peers != everyone)) {
+                const unsigned only = uniform(w.shfl(key, countr_zero(everyone)));
+                const detail::record_of_key<Base, N> record{base, only};
+                detail::reduce_and_commit<choice>(w, record, values, adds);
+                return;
+            }
+            detail::combine_peers<operation>(w, results, peers);
+            commits = adds && countr_zero(peers) == w.lane();
+        }
+    }
+    WARPAGG_UNROLL
+    for (int i = 0; i < N; ++i)
+        w.atomic(operation{}, detail::component_by_key<Base, N>{base, static_cast<unsigned>(i)}, key,
+                 results[i], commits);
+}
+
+/// Does not compile: several tags go into one policy.
+template <warp W, class Base, class V, class Tag, class Next, class... More>
+requires(!std::is_same_v<Next, call_site>)
+    WARPAGG_HD void warp_match_reduce_atomic(const W&, Base, const value_t<W, unsigned>&, const V&,
+                                             const mask_t<W>&, Tag, Next, More...) {
+    static_assert(std::is_same_v<Next, call_site>,
+                  "warp_match_reduce_atomic takes one policy: put the tags into policy{...}");
+}
+
+}  // namespace warpagg

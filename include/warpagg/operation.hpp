@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// What values are combined by: the associative operations that memory has an atomic for. The default is
+/// `operation::sum`; the others are tags of a policy, e.g. `policy{maximum}`.
+
+#include "simt/math.hpp"
+#include "tag.hpp"
+
+namespace warpagg {
+
+/// Each has `combine(a, b)`, which works lane by lane too; `identity<T>()`, which an inactive lane
+/// contributes; and `suits<T>`, whether memory has the operation for T.
+namespace operation {
+
+/// Addition: of floats, of integers (modulo 2^bits), of pairs of halves.
+struct sum {
+    static constexpr auto of = axis::operation;
+    template <class T>
+    static constexpr bool suits = true;
+    template <class V>
+    WARPAGG_HD static V combine(const V& a, const V& b) {
+        return a + b;
+    }
+    template <class T>
+    WARPAGG_HD static T identity() {
+        return T{};
+    }
+};
+
+/// Of integers of 32 or 64 bits.
+struct for_integers {
+    static constexpr auto of = axis::operation;
+    template <class T>
+    static constexpr bool suits = std::is_integral_v<T> && sizeof(T) >= 4;
+    /// The sign bit of a signed T alone, zero if T is unsigned: T's least value.
+    template <class T>
+    static constexpr T least = std::is_signed_v<T> ? static_cast<T>(T{1} << (8 * sizeof(T) - 1)) : T{};
+};
+
+/// The least value.
+struct minimum : for_integers {
+    template <class V>
+    WARPAGG_HD static V combine(const V& a, const V& b) {
+        using math::min;
+        return min(a, b);
+    }
+    template <class T>
+    WARPAGG_HD static T identity() {
+        return static_cast<T>(~least<T>);
+    }
+};
+
+/// The largest value.
+struct maximum : for_integers {
+    template <class V>
+    WARPAGG_HD static V combine(const V& a, const V& b) {
+        using math::max;
+        return max(a, b);
+    }
+    template <class T>
+    WARPAGG_HD static T identity() {
+        return least<T>;
+    }
+};
+
+/// The bits that all values have.
+struct bit_and : for_integers {
+    template <class V>
+    WARPAGG_HD static V combine(const V& a, const V& b) {
+        return a & b;
+    }
+    template <class T>
+    WARPAGG_HD static T identity() {
+        return static_cast<T>(~T{});
+    }
+};
+
+/// The bits that some value has.
+struct bit_or : for_integers {
+    template <class V>
+    WARPAGG_HD static V combine(const V& a, const V& b) {
+        return a | b;
+    }
+    template <class T>
+    WARPAGG_HD static T identity() {
+        return T{};
+    }
+};
+
+/// The bits that an odd number of values have.
+struct bit_xor : for_integers {
+    template <class V>
+    WARPAGG_HD static V combine(const V& a, const V& b) {
+        return a ^ b;
+    }
+    template <class T>
+    WARPAGG_HD static T identity() {
+        return T{};
+    }
+};
+
+}  // namespace operation
+
+/// The tag as an object, for `policy{...}`.
+/// @{
+WARPAGG_TAG operation::minimum minimum{};
+WARPAGG_TAG operation::maximum maximum{};
+WARPAGG_TAG operation::bit_and bit_and{};
+WARPAGG_TAG operation::bit_or bit_or{};
+WARPAGG_TAG operation::bit_xor bit_xor{};
+/// @}
+
+}  // namespace warpagg

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// The reduction `reduce::cooperative`, for comparison: that of cooperative groups. Include it beside
+/// atomic.hpp, in CUDA code.
+
+#include <cooperative_groups.h>
+#include <cooperative_groups/reduce.h>
+
+#include "../policy.hpp"
+#include "../simt/cuda.hpp"
+
+namespace warpagg {
+namespace reduce {
+
+/// `cooperative_groups::reduce`, value by value; every lane ends with the results. Only on `cuda::warp`.
+struct cooperative {
+    static constexpr auto of = axis::reduce;
+    static constexpr auto leaves = results_in::every_lane;
+};
+
+/// Cost: N log2(W) shuffles.
+template <class Op, class T, int N>
+__device__ __forceinline__ void over_warp(cooperative, const cuda::warp&, T (&v)[N]) {
+    namespace groups = ::cooperative_groups;
+    const auto warp = groups::tiled_partition<32>(groups::this_thread_block());
+    WARPAGG_UNROLL
+    for (int i = 0; i < N; ++i)
+        v[i] = groups::reduce(warp, v[i], [](const T& a, const T& b) { return Op::combine(a, b); });
+}
+
+}  // namespace reduce
+
+/// The tag as an object, for `policy{...}`.
+WARPAGG_TAG reduce::cooperative cooperative{};
+
+}  // namespace warpagg

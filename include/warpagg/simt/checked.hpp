@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// The unit-test machine: runs a kernel's lanes as fibers on the CPU, in an order that a seed draws, and
+/// diagnoses misuse. For tests; POSIX, GCC 12 or clang 14 and later.
+///
+/// @snippet checked.cpp kernel
+/// @snippet checked.cpp launch
+/// @snippet checked.cpp diagnosis
+
+#include "checked/diagnosis.hpp"  // `report`, what `try_launch` returns
+#include "checked/launch.hpp"     // `launch`, `try_launch`, `grid`
+#include "checked/model.hpp"      // `checked`
+#include "checked/seeds.hpp"      // `for_each_seed`
+#include "checked/watched.hpp"    // `watched`, arrays whose accesses are seen

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// One stack of execution, and how to go from one to another: by a few instructions on x86-64, by ucontext
+/// elsewhere, which asks the kernel for the signal mask at every switch. Both sanitizers that follow stacks
+/// are told. Floating-point modes are the thread's, not the fiber's.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "sanitizers.hpp"
+
+#if defined(__x86_64__) && !defined(WARPAGG_UCONTEXT)
+#define WARPAGG_FIBER_SWITCH_X86_64 1
+#else
+#include <ucontext.h>
+#endif
+
+namespace warpagg::emulator::detail {
+
+#if defined(WARPAGG_FIBER_SWITCH_X86_64)
+/// Pushes what the ABI asks a function to keep, leaves the stack pointer in *from and goes on from `to`.
+__attribute__((naked, noinline)) WARPAGG_NO_SANITIZE inline void switch_stack(void** /*from*/, void* /*to*/) {
+    asm volatile(
+        "pushq %rbp\n pushq %rbx\n pushq %r12\n pushq %r13\n pushq %r14\n pushq %r15\n"
+        "movq %rsp, (%rdi)\n movq %rsi, %rsp\n"
+        "popq %r15\n popq %r14\n popq %r13\n popq %r12\n popq %rbx\n popq %rbp\n ret\n");
+}
+#endif
+
+/// Either a fiber, after `start_at`, or the thread's own stack.
+class context {
+  public:
+    context() = default;
+    context(const context&) = delete;
+    context& operator=(const context&) = delete;
+    ~context() { forget_fiber(); }
+
+    /// The next switch to this context calls `entry` on the given stack, whose former content is lost.
+    /// `entry` must not return.
+    void start_at(char* stack, std::size_t size, void (*entry)()) {
+        forget_fiber();
+        bottom_ = stack;
+        size_ = size;
+        unpoison(stack, size);
+        tsan_fiber_ = sanitizers::create_fiber();
+        owns_fiber_ = true;
+#if defined(WARPAGG_FIBER_SWITCH_X86_64)
+        constexpr std::size_t kept = 6;
+        auto** top = reinterpret_cast<void**>((reinterpret_cast<std::uintptr_t>(stack) + size) / 16 * 16);
+        *--top = nullptr;  // who unwinds stops here
+        *--top = reinterpret_cast<void*>(entry);
+        for (std::size_t i = 0; i < kept; ++i) *--top = nullptr;
+        pointer_ = top;
+#else
+        getcontext(&registers_);
+        registers_.uc_stack.ss_sp = stack;
+        registers_.uc_stack.ss_size = size;
+        registers_.uc_link = nullptr;
+        makecontext(&registers_, entry, 0);
+#endif
+    }
+
+    /// Leaves this context, which must be the running one, for `to`, and comes back when somebody switches
+    /// here.
+    void switch_to(context& to) {
+        if (tsan_fiber_ == nullptr) tsan_fiber_ = sanitizers::current_fiber();
+        to.came_from_ = this;
+        void* fake_stack = nullptr;
+        sanitizers::start_switch(&fake_stack, to.bottom_, to.size_, to.tsan_fiber_);
+#if defined(WARPAGG_FIBER_SWITCH_X86_64)
+        switch_stack(&pointer_, to.pointer_);
+#else
+        swapcontext(&registers_, &to.registers_);
+#endif
+        arrived(fake_stack);
+    }
+
+    /// To be called first of all by an `entry`, on its own context.
+    void arrived(void* fake_stack = nullptr) {
+        const void* bottom = nullptr;
+        std::size_t size = 0;
+        sanitizers::finish_switch(fake_stack, &bottom, &size);
+        if (came_from_->bottom_ == nullptr) {  // the thread's own stack, seen for the first time
+            came_from_->bottom_ = bottom;
+            came_from_->size_ = size;
+        }
+    }
+
+  private:
+    void forget_fiber() {
+        if (owns_fiber_) sanitizers::destroy_fiber(tsan_fiber_);
+        owns_fiber_ = false;
+    }
+
+#if defined(WARPAGG_FIBER_SWITCH_X86_64)
+    void* pointer_ = nullptr;
+#else
+    ucontext_t registers_{};
+#endif
+    context* came_from_ = nullptr;
+    const void* bottom_ = nullptr;
+    std::size_t size_ = 0;
+    void* tsan_fiber_ = nullptr;
+    bool owns_fiber_ = false;
+};
+
+}  // namespace warpagg::emulator::detail

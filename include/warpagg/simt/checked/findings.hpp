@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// What the machine says when it finds something, in words.
+
+#include <bit>
+#include <cstdint>
+#include <string>
+
+#include "diagnosis.hpp"
+#include "lane.hpp"
+#include "shadow_memory.hpp"
+#include "undefined.hpp"
+
+namespace warpagg::emulator::detail {
+
+struct finding {
+    diagnosis what;
+    call_site at, other;
+    std::uint32_t lanes;
+    std::string sentence;
+};
+
+inline finding not_in_mask(const lane_state& self, const arrival& a, std::uint32_t lane) {
+    return {diagnosis::lane_not_in_mask,
+            self.kernel_site(a.at),
+            {},
+            lane,
+            lanes_sentence(lane) + " calls " + a.at.function + " with the mask " + hex_text(a.mask) +
+                ", which lacks its own bit."};
+}
+
+inline finding out_of_step(const call_site& at, std::uint32_t lanes, std::uint32_t others) {
+    return {diagnosis::different_iterations,
+            at,
+            {},
+            lanes,
+            lanes_sentence(lanes) + " and " + lanes_text(others) + " meet in " + at.function +
+                " in different iterations of a loop."};
+}
+
+/// No lane of the warp can go on, and some wait for others.
+inline finding stuck(const warp_state& w) {
+    const lane_state& first = w.lane[first_of(w.waiting)];
+    std::uint32_t here = 0;
+    for_each_lane(w.waiting, [&](unsigned lane) { here |= first.meets(w.lane[lane]) ? 1u << lane : 0u; });
+    const std::uint32_t missing = (first.at.all_lanes ? first.at.mask : first.at.mask & ~w.returned) & ~here;
+    const call_site& at = first.site();
+    const std::string waiting =
+        lanes_sentence(here) + (std::popcount(here) == 1 ? " waits for " : " wait for ");
+
+    if (const std::uint32_t never = missing & ~w.waiting; never != 0) {
+        const std::uint32_t returned = never & w.returned, in_barrier = never & w.in_barrier;
+        std::string why;
+        if (returned != 0) why += lanes_text(returned) + " returned";
+        if (returned != 0 && in_barrier != 0) why += ", and ";
+        if (in_barrier != 0) why += lanes_text(in_barrier) + " went to the barrier";
+        return {diagnosis::collective_not_reached,
+                at,
+                {},
+                never,
+                waiting + lanes_text(never) + " in " + at.function + ", but " + why + "."};
+    }
+    const lane_state& other = w.lane[first_of(missing)];
+    if (same(first.at.at, other.at.at) && same(at, other.site()) && first.at.mask != other.at.mask)
+        return {diagnosis::different_masks,
+                at,
+                {},
+                missing,
+                lanes_sentence(here) + " and " + lanes_text(missing) + " meet in " + at.function +
+                    " with different masks, " + hex_text(first.at.mask) + " and " + hex_text(other.at.mask) +
+                    "."};
+    return {diagnosis::different_call_sites, at, other.site(), missing,
+            waiting + lanes_text(missing) + " in " + at.function + ", but " +
+                (std::popcount(missing) == 1 ? "that is in " : "those are in ") + other.site().function +
+                " at another place."};
+}
+
+inline finding not_uniform(const call_site& at, std::uint32_t lanes, unsigned first) {
+    return {diagnosis::destination_not_uniform,
+            at,
+            {},
+            lanes,
+            "All lanes must name one record, but that of " + lanes_text(lanes) + " is not that of lane " +
+                std::to_string(first) + "."};
+}
+
+inline finding idle_warp(const call_site& at, std::uint32_t lanes) {
+    return {diagnosis::idle_warp, at, {}, lanes, "The policy says assume_busy, but no lane is active."};
+}
+
+inline finding barrier_not_reached(const call_site& at, std::uint32_t returned, unsigned in_barrier,
+                                   unsigned threads) {
+    return {diagnosis::barrier_not_reached,
+            at,
+            {},
+            returned,
+            std::to_string(in_barrier) + " of the block's " + std::to_string(threads) +
+                " threads wait at the barrier, but " + lanes_text(returned) +
+                " of this warp returned without it."};
+}
+
+inline finding another_barrier(const call_site& at, const call_site& other, std::uint32_t lanes) {
+    return {diagnosis::different_call_sites, at, other, lanes,
+            lanes_sentence(lanes) + " of this warp went to the barrier at another place."};
+}
+
+inline finding conflict(const access& before, const access& now) {
+    constexpr unsigned width = warp_state::size;
+    constexpr const char* does[] = {"reads", "writes", "updates atomically"};
+    constexpr const char* did[] = {"read", "wrote", "updated atomically"};
+    const bool mixed = (before.kind == access_kind::atomic) != (now.kind == access_kind::atomic);
+    const bool same_warp = before.block == now.block && before.thread / width == now.thread / width;
+    std::string other = "lane " + std::to_string(before.thread % width);
+    if (!same_warp) other += " of warp " + std::to_string(before.thread / width);
+    if (before.block != now.block) other += " of block " + std::to_string(before.block);
+    return {mixed ? diagnosis::mixed_access : diagnosis::data_race, now.at, before.at,
+            1u << now.thread % width | (same_warp ? 1u << before.thread % width : 0u),
+            "Lane " + std::to_string(now.thread % width) + " " + does[static_cast<unsigned>(now.kind)] +
+                " what " + other + " " + did[static_cast<unsigned>(before.kind)] +
+                (before.block == now.block ? ", with no barrier or sync between."
+                                           : ", and nothing orders blocks of one launch.")};
+}
+
+/// `at` writes what it had from `read`.
+inline finding inactive_lane_read(const undefined_read& read, const call_site& at) {
+    const unsigned lane = read.thread % warp_state::size;
+    return {diagnosis::inactive_lane_read, at, read.at, 1u << lane,
+            "What is written depends on what lane " + std::to_string(lane) + " read from lane " +
+                std::to_string(read.from) + ", which took no part."};
+}
+
+}  // namespace warpagg::emulator::detail

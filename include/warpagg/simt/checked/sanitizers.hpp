@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// What AddressSanitizer and ThreadSanitizer want to know of fibers; nothing without them.
+
+#include <cstddef>
+
+#if defined(__SANITIZE_ADDRESS__)
+#define WARPAGG_ASAN 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define WARPAGG_ASAN 1
+#endif
+#endif
+#if defined(__SANITIZE_THREAD__)
+#define WARPAGG_TSAN 1
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define WARPAGG_TSAN 1
+#endif
+#endif
+
+#if defined(WARPAGG_ASAN)
+#include <sanitizer/asan_interface.h>
+#include <sanitizer/common_interface_defs.h>
+#endif
+#if defined(WARPAGG_TSAN)
+#include <sanitizer/tsan_interface.h>
+extern "C" {
+void AnnotateIgnoreReadsBegin(const char* file, int line);
+void AnnotateIgnoreWritesBegin(const char* file, int line);
+}
+#endif
+
+/// Before a function: no sanitizer looks at what it does.
+#define WARPAGG_NO_SANITIZE __attribute__((no_sanitize("address", "thread", "undefined")))
+
+namespace warpagg::emulator::detail {
+
+/// Forgets what frames a stack had.
+inline void unpoison([[maybe_unused]] const void* stack, [[maybe_unused]] std::size_t size) {
+#if defined(WARPAGG_ASAN)
+    __asan_unpoison_memory_region(stack, size);
+#endif
+}
+
+namespace sanitizers {
+
+inline void* create_fiber() {
+#if defined(WARPAGG_TSAN)
+    return __tsan_create_fiber(0);
+#else
+    return nullptr;
+#endif
+}
+inline void* current_fiber() {
+#if defined(WARPAGG_TSAN)
+    return __tsan_get_current_fiber();
+#else
+    return nullptr;
+#endif
+}
+inline void destroy_fiber([[maybe_unused]] void* fiber) {
+#if defined(WARPAGG_TSAN)
+    __tsan_destroy_fiber(fiber);
+#endif
+}
+
+/// To be set in a child process. There ThreadSanitizer sees nothing but races, as it ignores what orders
+/// accesses after a fork, and it takes fibers for threads.
+inline bool& forked() {
+    static bool yes = false;
+    return yes;
+}
+
+/// Right before the switch.
+WARPAGG_NO_SANITIZE inline void start_switch([[maybe_unused]] void** fake_stack,
+                                             [[maybe_unused]] const void* bottom,
+                                             [[maybe_unused]] std::size_t size,
+                                             [[maybe_unused]] void* fiber) {
+#if defined(WARPAGG_ASAN)
+    __sanitizer_start_switch_fiber(fake_stack, bottom, size);
+#endif
+#if defined(WARPAGG_TSAN)
+    __tsan_switch_to_fiber(fiber, 0);
+#endif
+}
+/// Right after it; tells the stack that was left.
+WARPAGG_NO_SANITIZE inline void finish_switch([[maybe_unused]] void* fake_stack,
+                                              [[maybe_unused]] const void** bottom,
+                                              [[maybe_unused]] std::size_t* size) {
+#if defined(WARPAGG_ASAN)
+    __sanitizer_finish_switch_fiber(fake_stack, bottom, size);
+#endif
+#if defined(WARPAGG_TSAN)
+    if (forked()) {
+        AnnotateIgnoreReadsBegin(__FILE__, __LINE__);
+        AnnotateIgnoreWritesBegin(__FILE__, __LINE__);
+    }
+#endif
+}
+
+}  // namespace sanitizers
+}  // namespace warpagg::emulator::detail

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "fibers.hpp"
+#include "seeds.hpp"
+
+namespace warpagg::emulator::detail {
+
+/// Runs the threads of a block, each a fiber, one at a time; which goes on next is drawn at random.
+class scheduler {
+  public:
+    explicit scheduler(random_source& random) : random_(random) {}
+    scheduler(const scheduler&) = delete;
+    scheduler& operator=(const scheduler&) = delete;
+    ~scheduler() {
+        while (!fibers_.empty()) {  // so that the next launch gets them in the same order
+            fiber_pool::of_this_thread().give_back(std::move(fibers_.back()));
+            fibers_.pop_back();
+        }
+    }
+
+    /// Each of `threads` fibers runs `loop`, which must call `begin` once and then `finish` after each round.
+    /// Returns when all have finished or one has called `abandon`.
+    void run(unsigned threads, void (*loop)()) {
+        while (fibers_.size() < threads) fibers_.push_back(fiber_pool::of_this_thread().take());
+        runnable_.clear();
+        for (unsigned t = 0; t < threads; ++t) {
+            fibers_[t]->prepare(loop);
+            runnable_.push_back(t);
+        }
+        take_next();
+        own_.switch_to(fibers_[current_]->own_context());
+    }
+
+    unsigned current() const { return current_; }
+    void begin() { fibers_[current_]->own_context().arrived(); }
+    /// Whether it lies on the running fiber's stack.
+    bool on_stack(const void* address) const { return fibers_[current_]->has(address); }
+
+    /// The running fiber sleeps until it is woken. Another one must be runnable.
+    void sleep() {
+        context& me = fibers_[current_]->own_context();
+        take_next();
+        context& next = fibers_[current_]->own_context();
+        if (&next != &me) me.switch_to(next);
+    }
+    void wake(unsigned thread) { runnable_.push_back(thread); }
+    /// Others may go first.
+    void let_others_run() {
+        wake(current_);
+        sleep();
+    }
+
+    /// The running fiber is done with its round; it comes back from here in another one, or another launch.
+    void finish() {
+        fiber& me = *fibers_[current_];
+        me.park();
+        if (runnable_.empty()) {
+            me.own_context().switch_to(own_);
+        } else {
+            take_next();
+            me.own_context().switch_to(fibers_[current_]->own_context());
+        }
+    }
+    /// Back to the caller of `run`; no fiber goes on.
+    [[noreturn]] void abandon() {
+        fibers_[current_]->own_context().switch_to(own_);
+        __builtin_unreachable();
+    }
+
+  private:
+    void take_next() {
+        const unsigned i = random_.below(static_cast<std::uint32_t>(runnable_.size()));
+        current_ = runnable_[i];
+        runnable_[i] = runnable_.back();
+        runnable_.pop_back();
+    }
+
+    random_source& random_;
+    context own_;
+    std::vector<std::unique_ptr<fiber>> fibers_;
+    std::vector<unsigned> runnable_;
+    unsigned current_ = 0;
+};
+
+}  // namespace warpagg::emulator::detail

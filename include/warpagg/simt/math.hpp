@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "standard.hpp"
+#include "target.hpp"
+
+namespace warpagg {
+
+/// Lane-wise operations, so that masked code reads the same on every model: here for models whose lane values
+/// are scalars. A namespace of its own, since nvcc's own headers stumble over other overloads of sqrt and the
+/// like.
+namespace math {
+
+/// `yes` where the flag is set, `no` elsewhere.
+template <class T>
+WARPAGG_HD T select(bool mask, T yes, T no) {
+    return mask ? yes : no;
+}
+/// a b + c, rounded once.
+/// @{
+WARPAGG_HD float fma(float a, float b, float c) { return ::fmaf(a, b, c); }
+WARPAGG_HD double fma(double a, double b, double c) { return ::fma(a, b, c); }
+/// @}
+/// The square root, rounded to nearest (on CUDA as the compiler's -prec-sqrt says).
+/// @{
+WARPAGG_HD float sqrt(float a) { return ::sqrtf(a); }
+WARPAGG_HD double sqrt(double a) { return ::sqrt(a); }
+/// @}
+/// The lesser or the greater of two; the first if either is NaN.
+/// @{
+template <class T>
+requires std::is_arithmetic_v<T> WARPAGG_HD T min(T a, T b) { return b < a ? b : a; }
+template <class T>
+requires std::is_arithmetic_v<T> WARPAGG_HD T max(T a, T b) { return a < b ? b : a; }
+/// @}
+
+/// 2^a. On CUDA the float version is the hardware's approximation: 2 ulp, denormal results flushed to zero.
+WARPAGG_HD float exp2(float a) {
+#if defined(__CUDA_ARCH__)
+    float r;
+    asm("ex2.approx.ftz.f32 %0, %1;" : "=f"(r) : "f"(a));
+    return r;
+#else
+    return ::exp2f(a);
+#endif
+}
+/// 2^a.
+WARPAGG_HD double exp2(double a) { return ::exp2(a); }
+
+/// Lane-wise conversion.
+template <class To, class From>
+requires std::is_arithmetic_v<From> WARPAGG_HD To convert(From a) { return static_cast<To>(a); }
+
+/// How many bits are set.
+constexpr WARPAGG_HD std::uint32_t popcount(std::uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+    if (!__builtin_is_constant_evaluated()) return static_cast<std::uint32_t>(__popc(bits));
+    std::uint32_t n = 0;  // NVRTC lacks the builtin
+    for (; bits != 0; bits &= bits - 1) ++n;
+    return n;
+#else
+    return static_cast<std::uint32_t>(__builtin_popcount(bits));
+#endif
+}
+
+/// The number of the lowest bit that is set; some number below 32 if none is.
+WARPAGG_HD std::uint32_t countr_zero(std::uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+    return static_cast<std::uint32_t>(__clz(__brev(bits))) & 31u;
+#else
+    return static_cast<std::uint32_t>(__builtin_ctz(bits | 0x80000000u));
+#endif
+}
+
+/// The bits of an unsigned of 32 bits in reverse order.
+template <class V>
+WARPAGG_HD V bit_reverse(V bits) {
+    const auto swap = [&](unsigned distance, unsigned lower) {
+        bits = ((bits >> distance) & lower) | ((bits & lower) << distance);
+    };
+    swap(1, 0x55555555u);
+    swap(2, 0x33333333u);
+    swap(4, 0x0f0f0f0fu);
+    swap(8, 0x00ff00ffu);
+    swap(16, 0x0000ffffu);
+    return bits;
+}
+#if defined(__CUDA_ARCH__)
+WARPAGG_HD std::uint32_t bit_reverse(std::uint32_t bits) { return __brev(bits); }
+#endif
+
+/// A lane value that is the same in every lane, as a scalar.
+template <class T>
+requires std::is_arithmetic_v<T> WARPAGG_HD T uniform(T a) { return a; }
+
+}  // namespace math
+
+}  // namespace warpagg

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// What the library needs of the standard library. NVRTC has none, so there a namespace `std` of its own,
+/// which inside `warpagg` goes before the global one, holds the few names in use: nothing but warpagg's
+/// include path is needed, and what others put into the global one is left alone.
+
+#if !defined(__CUDACC_RTC__)
+
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#else
+
+namespace warpagg::std {
+
+using size_t = decltype(sizeof 0);
+using ptrdiff_t = decltype(static_cast<char*>(nullptr) - static_cast<char*>(nullptr));
+using uint32_t = unsigned;
+using uintptr_t = size_t;
+
+using ::memcpy;
+
+template <bool C, class Yes, class No>
+struct conditional {
+    using type = Yes;
+};
+template <class Yes, class No>
+struct conditional<false, Yes, No> {
+    using type = No;
+};
+template <bool C, class Yes, class No>
+using conditional_t = typename conditional<C, Yes, No>::type;
+
+template <class A, class B>
+inline constexpr bool is_same_v = false;
+template <class A>
+inline constexpr bool is_same_v<A, A> = true;
+
+template <class T, class... Any>
+inline constexpr bool is_one_of = (... || is_same_v<T, Any>);
+
+template <class T>
+inline constexpr bool is_integral_v =
+    is_one_of<T, bool, char, signed char, unsigned char, short, unsigned short, int, unsigned, long,
+              unsigned long, long long, unsigned long long>;
+template <class T>
+inline constexpr bool is_arithmetic_v = is_integral_v<T> || is_one_of<T, float, double>;
+template <class T>
+inline constexpr bool is_signed_v = false;
+template <class T>
+requires is_arithmetic_v<T>
+inline constexpr bool is_signed_v<T> = static_cast<T>(-1) < static_cast<T>(0);
+
+template <class A, class B>
+concept same_as = is_same_v<A, B> && is_same_v<B, A>;
+template <class From, class To>
+concept convertible_to = requires(From from, void (&take)(To)) {
+    take(static_cast<From&&>(from));
+};
+
+}  // namespace warpagg::std
+
+#endif

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// What compilers call the same thing by different names.
+
+#if defined(__CUDACC__)
+/// Before a function: it runs on host and device, and is always inlined.
+#define WARPAGG_HD __host__ __device__ __forceinline__
+/// A host-device template that calls a device-only member is no fault until somebody calls it from the host.
+#define WARPAGG_EXEC_CHECK_DISABLE _Pragma("nv_exec_check_disable")
+#else
+#define WARPAGG_HD inline __attribute__((always_inline))
+#define WARPAGG_EXEC_CHECK_DISABLE
+#endif
+
+/// Before a short loop over registers: rolled up, its arrays would live in memory.
+#if defined(__CUDA_ARCH__) || defined(__clang__)
+#define WARPAGG_UNROLL _Pragma("unroll")
+#elif defined(__CUDACC__)  // nvcc's pass over host code, whose compiler does not know the pragma
+#define WARPAGG_UNROLL
+#else
+#define WARPAGG_UNROLL _Pragma("GCC unroll 64")
+#endif

@@ -1,0 +1,15 @@
+// expect: components<R> must tell of all that R consists of
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <warpagg/atomic.hpp>
+#include <warpagg/simt/serial.hpp>
+
+struct particle {
+    float position[3], charge;
+};
+template <>
+struct warpagg::components<particle> : warpagg::consists_of<float, 3> {};
+
+void wrong(particle* to, const particle& v) {
+    warpagg::warp_reduce_atomic(warpagg::emulator::serial{}, to, v, true);
+}

@@ -1,0 +1,10 @@
+// expect: warp_match_reduce_atomic takes the stage's copy as its base: staged says nothing here
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <warpagg/atomic.hpp>
+#include <warpagg/simt/serial.hpp>
+
+void wrong(float* to, const float (&v)[3]) {
+    warpagg::warp_match_reduce_atomic(warpagg::emulator::serial{}, to, 7u, v, true,
+                                      warpagg::policy{warpagg::staged});
+}

@@ -1,0 +1,38 @@
+# SPDX-FileCopyrightText: 2026 The warpagg authors
+# SPDX-License-Identifier: MIT
+#
+# Part of run.cmake. The project of docs/unit_testing.md, which is examples/unit_testing: its tests pass, and the page
+# shows its files and its output as they are.
+set(project "${SOURCE_DIR}/examples/unit_testing")
+set(build "${WORK_DIR}/unit_testing")
+file(READ "${SOURCE_DIR}/docs/unit_testing.md" page)
+
+function(must_be_on_page what text)
+    string(FIND "${page}" "${text}" at)
+    if(at EQUAL -1)
+        message(FATAL_ERROR "docs/unit_testing.md does not show ${what} as it is:\n${text}")
+    endif()
+endfunction()
+
+configure("${project}" -B "${build}" "-DCMAKE_PREFIX_PATH=${prefix}" ${strict} ${without})
+run("building ${build}" ${offline} "${CMAKE_COMMAND}" --build "${build}")
+set(ENV{WARPAGG_SEED} "")
+run("testing ${build}" "${CMAKE_CTEST_COMMAND}" --test-dir "${build}" --output-on-failure --no-tests=error)
+
+foreach(file CMakeLists.txt moments.hpp moments.cu test_moments.cpp first_try.hpp)
+    file(READ "${project}/${file}" text)
+    string(REGEX REPLACE "^((//|#) SPDX[^\n]*\n)+" "" text "${text}")
+    must_be_on_page("${file}" "${text}")
+endforeach()
+
+execute_process(COMMAND "${build}/test_first_try" ERROR_VARIABLE output RESULT_VARIABLE result)
+if(result EQUAL 0)
+    message(FATAL_ERROR "${build}/test_first_try passes")
+endif()
+string(REPLACE "${project}/" "" output "${output}")
+must_be_on_page("the output of test_first_try" "${output}")
+
+if(NVCC)
+    run("compiling moments.cu" "${NVCC}" -std=c++20 -arch=sm_80 "-I${prefix}/include" -c "${project}/moments.cu"
+        -o "${build}/moments.o")
+endif()

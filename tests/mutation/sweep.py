@@ -1,0 +1,180 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The warpagg authors
+# SPDX-License-Identifier: MIT
+"""Puts one fault at a time into a copy of the headers and demands that the suite notices it.
+
+mutations.toml lists the faults, each with the one test program that must fail. A test of a policy that must not
+compile (compile_fail/) fails by compiling; test_ptx.cpp needs nvcc and is skipped without. Every program must
+first pass with the headers as they are. The compiler is $CXX, else g++. Ends with 0 if every fault was caught.
+"""
+
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import platform
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+
+here = pathlib.Path(__file__).resolve().parent
+repository = here.parent.parent
+
+compiler = os.environ.get("CXX", "g++")
+nvcc = shutil.which(os.environ.get("CUDACXX", "nvcc")) or shutil.which("/usr/local/cuda/bin/nvcc")
+architectures = (80, 90)
+
+flags = ["-std=c++20", "-O1", "-w"]
+if platform.machine() == "x86_64":
+    flags.append("-march=x86-64-v3")  # as the suite is built
+
+compile_limit, run_limit = 300, 120  # seconds
+
+
+class DoesNotBuild(Exception):
+    """What the compiler says."""
+
+
+def build(*command):
+    done = subprocess.run(command, capture_output=True, text=True, timeout=compile_limit)
+    if done.returncode != 0:
+        errors = [line for line in done.stderr.splitlines() if "error" in line] or [done.stderr]
+        raise DoesNotBuild(errors[0])
+
+
+def failure(command, cwd):
+    """How the command fails; None if it passes."""
+    environment = {k: v for k, v in os.environ.items() if k != "WARPAGG_SEED"}
+    try:
+        done = subprocess.run(command, cwd=cwd, env=environment, timeout=run_limit,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    except subprocess.TimeoutExpired:
+        return "hangs"
+    if done.returncode < 0:
+        return signal.Signals(-done.returncode).name
+    return "fails" if done.returncode != 0 else None
+
+
+def mutated(mutation, include):
+    """The file's text with the fault in it."""
+    text = (include / "warpagg" / mutation["file"]).read_text()
+    found = text.count(mutation["old"])
+    if found != 1:
+        raise ValueError(f"{mutation['name']}: {mutation['file']} has the old text {found} times, not once")
+    return text.replace(mutation["old"], mutation["new"])
+
+
+class Sweep:
+    """Works on a copy of the tests and the headers, so that both may be edited meanwhile."""
+
+    def __init__(self, scratch):
+        self.scratch = scratch
+        self.tests = shutil.copytree(repository / "tests", scratch / "tests")
+        self.include = shutil.copytree(repository / "include", scratch / "include")
+        self.main_object = scratch / "main.o"
+        build(compiler, *flags, "-c", str(self.tests / "main.cpp"), "-o", str(self.main_object))
+
+    def failure_of(self, test, headers, folder):
+        """How a test program, named by its path in tests/, fails with these headers; None if it passes."""
+        source = self.tests / test
+        if source.parent.name == "compile_fail":
+            return failure(["cmake", f"-DCOMPILER={compiler}", f"-DINCLUDE={headers}", f"-DSOURCE={source}",
+                            "-P", str(source.parent / "run.cmake")], folder)
+        definitions = []
+        if test == "test_ptx.cpp":
+            definitions = [self.compile_ptx(headers, folder)]
+        build(compiler, *flags, *definitions, f"-I{headers}", str(source), str(self.main_object),
+              "-o", str(folder / "program"))
+        return failure([str(folder / "program")], folder)
+
+    def compile_ptx(self, headers, folder):
+        files = []
+        for architecture in architectures:
+            files.append(f'"{folder}/{architecture}.ptx"')
+            build(nvcc, "-std=c++20", "-w", "-ptx", f"-arch=sm_{architecture}", f"-I{headers}",
+                  str(self.tests / "ptx/kernels.cu"), "-o", files[-1].strip('"'))
+        return f"-DWARPAGG_PTX_FILES={','.join(files)}"
+
+    def without_fault(self, test):
+        """How the program fails as things are; None if it passes."""
+        folder = self.scratch / "without" / test
+        folder.mkdir(parents=True)
+        try:
+            return self.failure_of(test, self.include, folder)
+        except DoesNotBuild as error:
+            return f"does not compile: {error}"
+
+    def with_fault(self, mutation):
+        """(caught, what happened, seconds)"""
+        start = time.monotonic()
+        folder = self.scratch / "with" / mutation["name"]
+        headers = folder / "include"
+        shutil.copytree(self.include, headers)
+        (headers / "warpagg" / mutation["file"]).write_text(mutated(mutation, self.include))
+        try:
+            how = self.failure_of(mutation["caught_by"], headers, folder)
+            caught, what = how is not None, how or "SURVIVES"
+        except DoesNotBuild as error:
+            caught, what = False, f"DOES NOT COMPILE: {error}"
+        shutil.rmtree(folder)
+        return caught, what, time.monotonic() - start
+
+    def run(self, mutations, jobs):
+        """Whether all of them are caught; says so as it goes."""
+        start = time.monotonic()
+        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+            programs = sorted({m["caught_by"] for m in mutations})
+            broken = {test: how for test, how in zip(programs, pool.map(self.without_fault, programs)) if how}
+            for test, how in broken.items():
+                print(f"without any fault, {test} {how}", file=sys.stderr)
+            if broken:
+                return False
+            print(f"without any fault, all {len(programs)} programs pass ({time.monotonic() - start:.0f} s)", flush=True)
+
+            survivors = 0
+            for m, (caught, what, seconds) in zip(mutations, pool.map(self.with_fault, mutations)):
+                survivors += not caught
+                print(f"{m['name']:34} {m['caught_by']:46} {seconds:4.0f} s  {what}", flush=True)
+        print(f"{len(mutations) - survivors} of {len(mutations)} caught, {time.monotonic() - start:.0f} s in all")
+        return survivors == 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--only", metavar="NAME", action="append", help="this one alone; may be repeated")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many at a time")
+    parser.add_argument("--list", action="store_true", help="name them and stop")
+    arguments = parser.parse_args()
+
+    mutations = tomllib.loads((here / "mutations.toml").read_text())["mutation"]
+    names = [m["name"] for m in mutations]
+    if len(set(names)) < len(names):
+        sys.exit("two mutations have one name")
+    if arguments.only:
+        if unknown := set(arguments.only) - set(names):
+            sys.exit(f"no mutation is named {', '.join(unknown)}")
+        mutations = [m for m in mutations if m["name"] in arguments.only]
+    try:
+        for m in mutations:
+            mutated(m, repository / "include")
+    except ValueError as error:
+        sys.exit(str(error))
+    if arguments.list:
+        for m in mutations:
+            print(f"{m['name']:34} {m['file']:34} {m['caught_by']}")
+        return
+    if nvcc is None:
+        for m in mutations:
+            if m["caught_by"] == "test_ptx.cpp":
+                print(f"{m['name']}: skipped, there is no nvcc")
+        mutations = [m for m in mutations if m["caught_by"] != "test_ptx.cpp"]
+    with tempfile.TemporaryDirectory(prefix="warpagg-mutation-") as scratch:
+        sys.exit(0 if Sweep(pathlib.Path(scratch)).run(mutations, arguments.jobs) else 1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <warpagg/atomic.hpp>
+#include <warpagg/simt/lanes.hpp>
+#include <warpagg/simt/serial.hpp>
+
+namespace {
+
+using warpagg::lanes;
+using warpagg::emulator::counted_lanes;
+using warpagg::emulator::counters;
+
+//! [structure of arrays]
+struct separate {  // component i of the record lies in an array of its own
+    float* array[3];
+    unsigned record;
+    float* operator()(unsigned i) const { return array[i] + record; }
+};
+//! [structure of arrays]
+
+}  // namespace
+
+//! [a type of yours]
+struct gradient {
+    float mean[2], opacity;
+};
+template <>
+struct warpagg::components<gradient> : warpagg::consists_of<float, 3> {};
+
+template <warpagg::warp W>
+void add(const W& w, gradient* gradients, unsigned id, const gradient& mine, bool active) {
+    warpagg::warp_reduce_atomic(w, gradients + id, mine, active);
+}
+//! [a type of yours]
+
+TEST_CASE("warp_reduce_atomic") {
+    counters did;
+    const counted_lanes w{{&did}};
+    //! [warp_reduce_atomic]
+    const lanes<float, 32> x = warpagg::convert<float>(w.lane());  // 0 to 31
+    const lanes<float, 32> values[2] = {x, x * x};
+    float record[2] = {1000, 2000};
+    warpagg::warp_reduce_atomic(w, record, values, x < 10.0f);
+    // record: 1045, 2285, by one atomic instruction
+    //! [warp_reduce_atomic]
+    CHECK(record[0] == 1045);
+    CHECK(record[1] == 2285);
+    CHECK(did.commits == 1);
+}
+
+TEST_CASE("warp_reduce_atomic with a policy") {
+    counters did;
+    const counted_lanes w{{&did}};
+    const auto x = warpagg::convert<float>(w.lane());
+    const lanes<float, 32> values[9] = {x, x, x, x, x, x, x, x, x};
+    float record[9] = {};
+    //! [policy]
+    using namespace warpagg;
+    warp_reduce_atomic(w, record, values, x < 10.0f, policy{shfl_down, scalar});
+    // 45 shuffles, 9 atomics, one vote: the method of the paper
+    //! [policy]
+    CHECK(record[8] == 45);
+    CHECK(did.shuffles == 45);
+    CHECK(did.atomics == 9);
+    CHECK(did.votes == 1);
+}
+
+TEST_CASE("warp_reduce_atomic with another operation") {
+    const warpagg::emulator::lanes w;
+    //! [operation]
+    const lanes<unsigned, 32> lane = w.lane();
+    const lanes<unsigned, 32> values[1] = {lane};
+    unsigned least = 100, most = 3;
+    warpagg::warp_reduce_atomic(w, &least, values, lane > 6u, warpagg::policy{warpagg::minimum});
+    warpagg::warp_reduce_atomic(w, &most, values, lane > 6u, warpagg::policy{warpagg::maximum});
+    // least: 7, most: 31
+    //! [operation]
+    CHECK(least == 7);
+    CHECK(most == 31);
+}
+
+TEST_CASE("warp_reduce_atomic into a structure of arrays") {
+    const warpagg::emulator::lanes w;
+    const lanes<float, 32> values[3] = {1.0f, 2.0f, 3.0f};
+    //! [accessor]
+    float a[8] = {}, b[8] = {}, c[8] = {};
+    warpagg::warp_reduce_atomic(w, separate{{a, b, c}, 5}, values, w.lane() < 4u);
+    // a[5]: 4, b[5]: 8, c[5]: 12
+    //! [accessor]
+    CHECK(a[5] == 4);
+    CHECK(b[5] == 8);
+    CHECK(c[5] == 12);
+    CHECK(a[4] + b[4] + c[6] == 0);
+}
+
+TEST_CASE("warp_reduce_atomic of a type of yours") {
+    gradient sums[2] = {};
+    for (const float x : {1.0f, 2.0f, 3.0f})
+        add(warpagg::emulator::serial{}, sums, 1, gradient{{x, 10 * x}, 100 * x}, x != 2.0f);
+    CHECK(sums[1].mean[0] == 4);
+    CHECK(sums[1].mean[1] == 40);
+    CHECK(sums[1].opacity == 400);
+    CHECK(sums[0].opacity == 0);
+}
+
+TEST_CASE("skip_if_warp_idle") {
+    counters did;
+    const counted_lanes w{{&did}};
+    float sum = 0;
+    //! [skip_if_warp_idle]
+    for (unsigned first = 0; first < 128; first += 32) {
+        const lanes<unsigned, 32> i = w.lane() + first;
+        const auto active = i < 40u;
+        if (warpagg::skip_if_warp_idle(w, active)) continue;  // from i = 64 on
+        const lanes<float, 32> values[1] = {warpagg::convert<float>(i)};
+        warpagg::warp_reduce_atomic(w, &sum, values, active,
+                                    warpagg::policy{warpagg::assume_busy, warpagg::scatter});
+    }
+    // sum: 780 = 0 + 1 + ... + 39, by 2 atomics and 4 votes
+    //! [skip_if_warp_idle]
+    CHECK(sum == 780);
+    CHECK(did.atomics == 2);
+    CHECK(did.votes == 4);
+}
