@@ -21,7 +21,7 @@ constexpr unsigned blocks = 132 * 16, threads = 128, steps = 256, keys = 1u << 2
 constexpr int rounds = 3;
 
 /// How a lane's key is drawn.
-enum class draw { own, among, skewed };
+enum class draw { own, rising, rising_far, among, skewed };
 
 template <class T, int N, class Policy>
 __global__ void add(T* memory, draw how, unsigned among) {
@@ -37,6 +37,10 @@ __global__ void add(T* memory, draw how, unsigned among) {
         unsigned key = 0;
         if (how == draw::own) {
             key = ((ours >> 12) + w.lane() * 7919u) % keys;  // 32 different keys a warp
+        } else if (how == draw::rising) {
+            key = ((ours >> 12) + w.lane()) % keys;  // neighbours
+        } else if (how == draw::rising_far) {
+            key = ((ours >> 17) + w.lane() * (keys / 32)) % keys;
         } else if (how == draw::among) {
             key = (mine >> 12) % among;
         } else {  // as words of a text: the k-th most frequent key has a share of about 1 / k
@@ -52,9 +56,17 @@ struct distribution {
     unsigned among;
 };
 constexpr distribution distributions[] = {
-    {"32 different", draw::own, 0}, {"among 2^20", draw::among, 1u << 20}, {"among 1024", draw::among, 1024},
-    {"among 64", draw::among, 64},  {"among 8", draw::among, 8},           {"among 4", draw::among, 4},
-    {"among 2", draw::among, 2},    {"all the same", draw::among, 1},      {"1 / k", draw::skewed, 0},
+    {"32 neighbours, rising", draw::rising, 0},
+    {"32 apart, rising", draw::rising_far, 0},
+    {"32 different", draw::own, 0},
+    {"among 2^20", draw::among, 1u << 20},
+    {"among 1024", draw::among, 1024},
+    {"among 64", draw::among, 64},
+    {"among 8", draw::among, 8},
+    {"among 4", draw::among, 4},
+    {"among 2", draw::among, 2},
+    {"all the same", draw::among, 1},
+    {"1 / k", draw::skewed, 0},
 };
 
 template <class T, int N>
@@ -104,7 +116,7 @@ int main(int argc, char** argv) {
             "| --- |\n");
         bench<unsigned, 1>("unsigned", memory, json["rows"]);
         bench<float, 1>("float", memory, json["rows"]);
-        bench<float, 3>("float", memory, json["rows"]);
+        bench<float, 4>("float", memory, json["rows"]);
         bench<float, 9>("float", memory, json["rows"]);
         check(cudaFree(memory));
         if (argc > 1) std::ofstream(argv[1]) << json.dump(1) << '\n';

@@ -44,9 +44,10 @@ inline nlohmann::ordered_json figures_of_this_gpu(const char* bench) {
     check(cudaGetDeviceProperties(&gpu, 0));
     int driver_api = 0;
     check(cudaDriverGetVersion(&driver_api));
-    std::string driver;
+    std::string driver, word;  // the first word that has a dot: the version
     std::ifstream version("/proc/driver/nvidia/version");
-    std::getline(version, driver);
+    while (driver.empty() && version >> word)
+        if (word.find('.') != std::string::npos) driver = word;
     return {{"bench", bench},           {"gpu", gpu.name},      {"driver", driver},
             {"driver_api", driver_api}, {"nvcc", WARPAGG_NVCC}, {"commit", WARPAGG_COMMIT}};
 }

@@ -27,38 +27,24 @@ def markdown(head, rows):
     return "\n".join(lines) + "\n"
 
 
-def origin(figures, what):
-    return (
-        f"\n{what}: {figures['gpu']}, driver {driver(figures)}, nvcc {figures['nvcc']}, commit {figures['commit']}, "
-        f"seed {figures['seed']}; median of {figures['rounds']} rounds in which the variants take turns; "
-        f"largest spread {spread(figures['rows'])}.\n"
-    )
-
-
-def driver(figures):
-    found = re.search(r"\d+\.\d+(\.\d+)?", figures["driver"])
-    return found.group(0) if found else figures["driver_api"]
-
-
-def spread(rows):
-    of = [(r["ms_most"] - r["ms_least"]) / r["ms"] for r in rows if r.get("ms", 0) > 0.3 and "ms_most" in r]
-    return f"{100 * max(of):.0f} %" if of else "not noted"
-
-
 class Atomics:
     """Milliseconds by type, number of values, active lanes and policy."""
 
     def __init__(self):
         self.figures = results("atomics")
-        self.ms = {
-            (r["type"], r["n"], r["active"], r["policy"], r["aligned"]): r["ms"] for r in self.figures["rows"]
-        }
+        self.ms, spreads = {}, []
+        for question in self.figures["median_least_most"]:
+            for policy, (median, least, most) in question["ms"].items():
+                self.ms[question["type"], question["n"], question["active"], policy] = median
+                if median > 0.3:
+                    spreads.append((most - least) / median)
+        self.spread = f"spread (largest - least) / median up to {100 * max(spreads):.0f} %"
 
     def numbers(self, kind):
         return sorted({key[1] for key in self.ms if key[0] == kind})
 
-    def cell(self, kind, n, active, policy, aligned=True):
-        ms = self.ms.get((kind, n, active, policy, aligned))
+    def cell(self, kind, n, active, policy):
+        ms = self.ms.get((kind, n, active, policy))
         return "" if ms is None else f"{ms:.2f}"
 
 
@@ -71,7 +57,12 @@ def by_share(active):
 
 
 def atomics_dense():
-    return by_share("32") + origin(Atomics().figures, "Milliseconds for 17.3 million warp steps")
+    f = Atomics().figures
+    return by_share("32") + (
+        f"\n{f['gpu']}, driver {f['driver']}, nvcc {f['nvcc']}, commit {f['commit']}, seed {f['seed']}; "
+        f"{f['warp_steps'] / 1e6:.1f} million warp steps; median of {f['rounds']} rounds in which the policies take turns, "
+        f"{Atomics().spread}.\n"
+    )
 
 
 def atomics_sparse():
@@ -105,8 +96,8 @@ def default_against_best():
     for active in ("32", "3 %"):
         ratios = []
         for n in atomics.numbers("float"):
-            best = min(atomics.ms["float", n, active, p, True] for p in ("per_lane", "shfl_down", "scatter"))
-            ratios.append((n, atomics.ms["float", n, active, "default", True] / best))
+            best = min(atomics.ms["float", n, active, p] for p in ("per_lane", "shfl_down", "scatter"))
+            ratios.append((n, atomics.ms["float", n, active, "default"] / best))
         slower = ", ".join(f"N = {n}: {r:.2f}" for n, r in ratios if r > 1.05)
         rows.append([active, f"{min(r for _, r in ratios):.2f} to {max(r for _, r in ratios):.2f}", slower or "none"])
     return markdown(["active lanes", "default / best of three, N = 1 to 32", "above 1.05"], rows)

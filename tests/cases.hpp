@@ -158,7 +158,7 @@ long double any_order_error(T before, const std::vector<T>& own) {
     if constexpr (std::is_floating_point_v<T>) {
         if (own.size() < 2) return 0;
         long double magnitude = std::fabs(static_cast<long double>(before));
-        for (const T x : own) magnitude += std::fabs(static_cast<long double>(x));
+        for (const T& x : own) magnitude += std::fabs(static_cast<long double>(x));
         const long double u = static_cast<long double>(std::numeric_limits<T>::epsilon()) / 2;
         return 2 * 32 * u * magnitude;
     } else {

@@ -21,8 +21,8 @@ namespace gate = warpagg::gate;
 using warpagg::policy;
 
 /// How a case's keys are drawn, of `keys` that there are.
-enum class spread { equal, different, few, odd_one_out, runs, random };
-constexpr spread spreads[] = {spread::equal,       spread::different, spread::few,
+enum class spread { equal, different, rising, few, odd_one_out, runs, random };
+constexpr spread spreads[] = {spread::equal,       spread::different, spread::rising, spread::few,
                               spread::odd_one_out, spread::runs,      spread::random};
 constexpr unsigned keys = 32;
 
@@ -32,6 +32,8 @@ inline unsigned draw_key(spread s, unsigned lane, unsigned c) {
             return c % keys;
         case spread::different:
             return (lane * 5 + c) % keys;
+        case spread::rising:
+            return lane;
         case spread::few:
             return (lane * lane + c) % 3;
         case spread::odd_one_out:
@@ -97,7 +99,8 @@ struct match_problem {
                 }
             for (const auto& [k, peers] : lanes)
                 for (unsigned i = 0; i < n; ++i)
-                    expect(c, k, i, peers, active_lanes < alone_below, lanes.size() == 1, expected);
+                    expect(c, k, i, peers, active_lanes < alone_below, lanes.size() == 1 && active_lanes > 1,
+                           expected);
         }
         return expected.first_difference(after);
     }
@@ -144,7 +147,7 @@ struct match_problem {
         if (alone) {
             if (!backend::commits_in_lane_order)
                 expected.tolerance[cell] = any_order_error(before[cell], own);
-            for (const T x : own) result = combined(Op{}, result, x);
+            for (const T& x : own) result = combined(Op{}, result, x);
         } else {
             result = combined(Op{}, result, only_key ? over_tree(Op{}, masked) : over_peers(own));
         }
@@ -211,14 +214,18 @@ void check_match(const match_problem<T, Op>& p, const char* what, unsigned alone
     CHECK(p.first_difference(memory.download(), alone_below) == "");
 }
 
-template <int N, class T, class Base = by_accessor>
+template <int N, class Base, class T>
+void check_match_default(const match_problem<T>& p) {
+    check_match<policy<>, N, Base>(p, "no tags", warpagg::detail::choice<T, N, policy<>>::gate::lanes);
+}
+
+template <int N, class T>
 void check_match_policies() {
-    const match_problem<T> p(N, Base::place);
-    constexpr unsigned measured = warpagg::detail::choice<T, N, policy<>>::gate::lanes;
-    check_match<policy<>, N, Base>(p, "no tags", measured);
-    check_match<policy<reduce::per_lane>, N, Base>(p, "per_lane", 33);
-    check_match<policy<reduce::shfl_down>, N, Base>(p, "shfl_down", 0);
-    check_match<policy<reduce::butterfly, gate::at_least<5>>, N, Base>(p, "butterfly at_least<5>", 5);
+    const match_problem<T> p(N, guarded);
+    check_match_default<N, by_accessor>(p);
+    check_match<policy<reduce::per_lane>, N, by_accessor>(p, "per_lane", 33);
+    check_match<policy<reduce::shfl_down>, N, by_accessor>(p, "shfl_down", 0);
+    check_match<policy<reduce::butterfly, gate::at_least<5>>, N, by_accessor>(p, "butterfly at_least<5>", 5);
 }
 
 template <class Op, class T>
@@ -232,18 +239,20 @@ void check_match_operation(const char* what) {
 TEST_SUITE_BEGIN(backend::name);
 
 TEST_CASE_TEMPLATE("lanes with equal keys add as one, in the documented tree", T, TEST_VALUES) {
-    check_match_policies<1, T, by_pointer>();
-    check_match_policies<3, T>();
+    check_match_policies<1, T>();
     check_match_policies<9, T>();
-    check_match_policies<33, T, by_pointer>();
+    check_match_default<3, by_pointer>(match_problem<T>(3, dense));
+    check_match_default<4, by_pointer>(match_problem<T>(4, dense));
+    check_match_default<6, by_pointer>(match_problem<T>(6, dense));
+    check_match_default<33, by_accessor>(match_problem<T>(33, guarded));
 }
 
-TEST_CASE_TEMPLATE("other operations than the sum, by keys", T, std::int32_t, std::uint64_t) {
-    check_match_operation<operation::minimum, T>("minimum");
-    check_match_operation<operation::maximum, T>("maximum");
-    check_match_operation<operation::bit_and, T>("bit_and");
-    check_match_operation<operation::bit_or, T>("bit_or");
-    check_match_operation<operation::bit_xor, T>("bit_xor");
+TEST_CASE("other operations than the sum, by keys") {
+    check_match_operation<operation::minimum, std::int32_t>("minimum");
+    check_match_operation<operation::maximum, std::uint32_t>("maximum");
+    check_match_operation<operation::bit_and, std::int64_t>("bit_and");
+    check_match_operation<operation::bit_or, std::int32_t>("bit_or");
+    check_match_operation<operation::bit_xor, std::uint64_t>("bit_xor");
 }
 
 TEST_SUITE_END();

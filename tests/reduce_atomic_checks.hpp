@@ -97,7 +97,7 @@ struct problem {
             return;
         }
         if (!backend::commits_in_lane_order) expected.tolerance[cell] = any_order_error(before[cell], own);
-        for (const T x : own) result = combined(Op{}, result, x);
+        for (const T& x : own) result = combined(Op{}, result, x);
     }
 };
 

@@ -23,7 +23,7 @@ struct plus {
     }
 };
 
-constexpr unsigned thread_count = 4, rounds = 100'000;
+constexpr unsigned thread_count = 4, rounds = 300'000;
 
 /// What each of four addresses holds after all threads have called `add(address's index)` that often.
 template <class F>

@@ -88,6 +88,13 @@ TEST_CASE("what a sync orders, and what not") {
                          if (w.lane() < 9) w.sync(lanes(0, 8));
                      }));
     }
+    SUBCASE("a sync before both orders nothing") {
+        is_diagnosed(race, {}, [&](const checked& w) {
+            w.sync();
+            kernel([](const checked&) {})(w);
+            w.sync();
+        });
+    }
     SUBCASE("a sync of the two does") {
         is_clean({}, kernel([](const checked& w) {
                      if ((both >> w.lane() & 1u) != 0) w.sync(both);

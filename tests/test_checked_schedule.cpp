@@ -85,7 +85,7 @@ outcome in_another_process(F f) {
     REQUIRE(child >= 0);
     if (child == 0) {
         emulator::detail::sanitizers::forked() = true;
-        std::signal(SIGABRT, SIG_DFL);  // not doctest's
+        for (const int caught_by_doctest : {SIGABRT, SIGSEGV}) std::signal(caught_by_doctest, SIG_DFL);
         dup2(ends[1], STDERR_FILENO);
         f();
         _exit(0);
@@ -112,6 +112,13 @@ struct environment {
 
 void breaks_a_rule(const checked& w) {
     if (w.lane() != 3) w.any(true);
+}
+
+/// Needs 1 KiB of stack for each level.
+unsigned descend(unsigned levels) {
+    volatile char block[1024] = {};
+    block[levels % 1024] = 1;
+    return levels == 0 ? 0 : descend(levels - 1) + static_cast<unsigned>(block[levels % 1024]);
 }
 
 }  // namespace
@@ -250,6 +257,19 @@ TEST_CASE("after a diagnosis lanes stay where they are, and the next launch is a
         CHECK(after == 0);
         CHECK(last_commits(seed) == last_commits(seed));
     }
+}
+
+TEST_CASE("a lane has a stack of 256 KiB, and who needs more does not get on") {
+    const auto go_down = [](unsigned levels) {
+        return in_another_process([levels] {
+            const auto r = try_launch({}, [levels](const checked&) {
+                if (descend(levels) != levels) std::abort();
+            });
+            _exit(r.ok() ? 0 : 1);
+        });
+    };
+    CHECK(go_down(128).status == 0);
+    CHECK(go_down(300).status != 0);
 }
 
 TEST_CASE("an exception that leaves the kernel leaves the launch") {

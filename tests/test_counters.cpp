@@ -200,6 +200,35 @@ TEST_CASE("assume_busy saves the vote and nothing else") {
         check_cost(cost<float, 9, policy<idle::assume_busy, reduce::scatter>>(active), 12, 0, 9, 1, 2);
 }
 
+TEST_CASE("lanes with equal keys commit once") {
+    float memory[32 * 3] = {};
+    const auto cost_by_key = [&](const warpagg::lanes<unsigned, 32>& key) {
+        counters total;
+        const counted_lanes w{{&total}};
+        warpagg::lanes<float, 32> v[3];
+        for (auto& x : v) x = warpagg::lanes<float, 32>(1.0f);
+        warpagg::warp_match_reduce_atomic(w, memory, key, v, first_lanes(32));
+        return total;
+    };
+    const auto lane = counted_lanes{}.lane();
+    CHECK(cost_by_key(lane).atomics == 32 * 3);
+    CHECK(cost_by_key(31u - lane).atomics == 32 * 3);
+    CHECK(cost_by_key(lane & 3u).atomics == 4 * 3);
+    CHECK(cost_by_key(lane / 16u).atomics == 2 * 3);
+    // As many steps as the most frequent key has halvings; rising keys and a key for all need none of them.
+    const auto steps = [&](const warpagg::lanes<unsigned, 32>& key) {
+        return cost_by_key(key).shuffles - cost_by_key(lane).shuffles;
+    };
+    CHECK(steps(lane) == 0);
+    CHECK(steps(31u - lane) == 0);
+    CHECK(steps(lane & 3u) == 3 * 3);
+    CHECK(steps(lane / 16u) == 4 * 3);
+    // And a shuffle of the key itself.
+    const counters one_key = cost_by_key(warpagg::lanes<unsigned, 32>(5u));
+    CHECK(one_key.atomics == 3);
+    CHECK(steps(warpagg::lanes<unsigned, 32>(5u)) == scatter_shuffles(3) + 1);
+}
+
 TEST_CASE("at_least<K> flips at K") {
     check_gate<1>();
     check_gate<2>();

@@ -2,5 +2,5 @@
 // SPDX-License-Identifier: MIT
 #include "backends/lanes.hpp"
 
-#define TEST_VALUES float, std::int32_t
+#define TEST_VALUES float, std::uint64_t
 #include "reduce_atomic_commits.hpp"

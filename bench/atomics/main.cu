@@ -5,11 +5,13 @@
 /// figures behind `default_policy`.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string>
 
 #include "../cuda_figures.hpp"
 #include "variants.hpp"
@@ -43,8 +45,11 @@ bool is_examined(int n) {
     return std::ranges::find(all, n) != std::end(all);
 }
 
+double thousandths(double x) { return std::round(x * 1000) / 1000; }
+
 /// The variants of one question take turns, so that what the machine does meanwhile hits all of them.
-void measure(const std::vector<const variant*>& of, share s, void* memory, nlohmann::ordered_json& rows) {
+void measure(const std::vector<const variant*>& of, share s, void* memory,
+             nlohmann::ordered_json& questions) {
     std::map<const variant*, std::vector<double>> ms;
     stopwatch watch;
     for (int round = -1; round < rounds; ++round)  // the first warms up
@@ -52,20 +57,28 @@ void measure(const std::vector<const variant*>& of, share s, void* memory, nlohm
             const double t = watch.milliseconds([&] { v->launch(memory, s.who); });
             if (round >= 0) ms[v].push_back(t);
         }
+    nlohmann::ordered_json policies;
     for (const variant* v : of) {
         auto& all = ms[v];
         std::ranges::sort(all);
-        std::printf("%s\t%d\t%s\t%s\t%s\t%.3f\n", v->type, v->n, s.lanes, v->policy,
-                    v->aligned ? "aligned" : "unaligned", all[rounds / 2]);
-        rows.push_back({{"type", v->type},
-                        {"n", v->n},
-                        {"active", s.lanes},
-                        {"aligned", v->aligned},
-                        {"policy", v->policy},
-                        {"ms", all[rounds / 2]},
-                        {"ms_least", all.front()},
-                        {"ms_most", all.back()}});
+        const std::string policy = v->policy + std::string(v->aligned ? "" : ", unaligned");
+        std::printf("%s\t%d\t%s\t%s\t%.3f\n", v->type, v->n, s.lanes, policy.c_str(), all[rounds / 2]);
+        policies[policy] = {thousandths(all[rounds / 2]), thousandths(all.front()), thousandths(all.back())};
     }
+    questions.push_back({{"type", of[0]->type}, {"n", of[0]->n}, {"active", s.lanes}, {"ms", policies}});
+}
+
+/// A question a line: whoever compares two runs sees which have changed.
+void write(const char* path, nlohmann::ordered_json json) {
+    const nlohmann::ordered_json questions = json["median_least_most"];
+    json.erase("median_least_most");
+    std::string head = json.dump(1);
+    head.resize(head.rfind('\n'));
+    std::ofstream out(path);
+    out << head << ",\n \"median_least_most\": [";
+    for (std::size_t i = 0; i < questions.size(); ++i)
+        out << (i == 0 ? "\n" : ",\n") << "  " << questions[i].dump();
+    out << "\n ]\n}\n";
 }
 
 }  // namespace
@@ -83,12 +96,13 @@ int main(int argc, char** argv) {
         void* memory = nullptr;
         check(cudaMalloc(&memory, 33 * sizeof(double) * records));
         check(cudaMemset(memory, 0, 33 * sizeof(double) * records));
-        std::printf("type\tN\tactive\tpolicy\trecords\tms\n");
+        std::printf("type\tN\tactive\tpolicy\tms\n");
         for (const auto& [key, of] : questions)
             for (const share s : shares)
-                if (s.for_every_n || is_examined(key.second)) measure(of, s, memory, json["rows"]);
+                if (s.for_every_n || is_examined(key.second))
+                    measure(of, s, memory, json["median_least_most"]);
         check(cudaFree(memory));
-        if (argc > 1) std::ofstream(argv[1]) << json.dump(1) << '\n';
+        if (argc > 1) write(argv[1], json);
     } catch (const std::exception& e) {
         std::fprintf(stderr, "error: %s\n", e.what());
         return 2;

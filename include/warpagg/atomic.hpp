@@ -133,7 +133,7 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
     using choice = detail::choice<T, N, Policy>;
     const detail::library_call<W> call(w, at);
     if constexpr (std::is_same_v<typename choice::idle, idle::assume_busy>) {
-        if constexpr (requires { w.require_busy(true); }) w.require_busy(w.any(active));
+        if constexpr (requires { w.require_busy(active); }) w.require_busy(active);
     }
     detail::aggregate<choice>(w, commit::record_of<typename choice::commit>(dst), values,
                               detail::opaque(w, active));

@@ -55,6 +55,43 @@ WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint3
     }
 }
 
+/// Whether the active lanes' keys rise from lane to lane, and so all differ. A match costs several times what
+/// this does, and more than plain atomics to neighbouring addresses, which rising keys often are.
+WARPAGG_EXEC_CHECK_DISABLE
+template <warp W>
+WARPAGG_HD bool keys_rise(const W& w, const value_t<W, unsigned>& key, const mask_t<W>& active,
+                          std::uint32_t everyone) {
+    using math::countr_zero;
+    using bits = value_t<W, std::uint32_t>;
+    const bits after_me = (bits(0xfffffffeu) << w.lane()) & everyone;
+    const auto next = w.shfl(key, countr_zero(after_me));
+    return !w.any(active && after_me != 0u && key >= next);
+}
+
+/// Every active lane commits its own values to its key's record: by groups of neighbours, as `packed` does,
+/// where all records allow it, unless the policy says `per_lane` and no more.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Choice, warp W, class Base, class V, int N>
+WARPAGG_HD void commit_by_key(const W& w, Base base, const value_t<W, unsigned>& key, const V (&v)[N],
+                              const mask_t<W>& active) {
+    using operation = typename Choice::operation;
+    constexpr bool plain = std::is_same_v<typename Choice::reduce, reduce::per_lane> &&
+                           std::is_same_v<typename Choice::commit, commit::scalar>;
+    constexpr unsigned group = N % 4 == 0 ? 4 : 2;
+    using record = commit::contiguous_record<V>;
+    using commit::detail::packs;
+    if constexpr (!plain && N % 2 == 0 && std::is_same_v<Base, V*> &&
+                  packs<operation, commit::packed<group>, W, record, V>) {
+        if (commit::is_packed<operation, commit::packed<group>, V>(w, record{base})) {
+            commit::detail::by_groups<group, 0>(w, base + std::size_t{key} * N, v, active);
+            return;
+        }
+    }
+    WARPAGG_UNROLL
+    for (int i = 0; i < N; ++i)
+        w.atomic(operation{}, component_by_key<Base, N>{base, static_cast<unsigned>(i)}, key, v[i], active);
+}
+
 }  // namespace detail
 
 /// Adds the values of each active lane to the record that its key names, equal keys first among themselves:
@@ -73,9 +110,11 @@ WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint3
 ///
 /// @pre All lanes of the warp call this, with the same `base`, which holds N values of T for each key in use.
 ///
-/// Lanes of one key combine in a fixed tree in the order of their numbers. Cost: one `match`, two votes, and
-/// one atomic per key and component where all keys differ; beyond that, for the most frequent key's g lanes,
-/// ceil(log2 g) times N shuffles and two votes. With one key for all: as `warp_reduce_atomic`.
+/// Lanes of one key combine in a fixed tree in the order of their numbers. Cost: one shuffle, two votes, and
+/// one atomic per key and component where the active lanes' keys rise from lane to lane; one `match` and two
+/// votes more where they do not; and for the most frequent key's g lanes ceil(log2 g) times N shuffles and
+/// two votes. With one key for all: as `warp_reduce_atomic`. Where N is even and `base` is a pointer to float
+/// aligned to its largest even divisor up to 4, records are committed as by `packed`.
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Base, class V, int N, class Policy = policy<>>
 WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W, unsigned>& key,
@@ -112,21 +151,20 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
         if constexpr (detail::is_gated<typename choice::gate>)
             dense = popcount(everyone) >= choice::gate::lanes;
         if (dense) {
-            const bits peers = select(adds, w.match(key) & everyone, bits(0u));
-            if (!w.any(adds && peers != everyone)) {
-                const unsigned only = uniform(w.shfl(key, countr_zero(everyone)));
-                const detail::record_of_key<Base, N> record{base, only};
-                detail::reduce_and_commit<choice>(w, record, values, adds);
-                return;
+            if (!detail::keys_rise(w, key, adds, everyone)) {
+                const bits peers = select(adds, w.match(key) & everyone, bits(0u));
+                if (!w.any(adds && peers != everyone)) {
+                    const unsigned only = uniform(w.shfl(key, countr_zero(everyone)));
+                    const detail::record_of_key<Base, N> record{base, only};
+                    detail::reduce_and_commit<choice>(w, record, values, adds);
+                    return;
+                }
+                detail::combine_peers<operation>(w, results, peers);
+                commits = adds && countr_zero(peers) == w.lane();
             }
-            detail::combine_peers<operation>(w, results, peers);
-            commits = adds && countr_zero(peers) == w.lane();
         }
     }
-    WARPAGG_UNROLL
-    for (int i = 0; i < N; ++i)
-        w.atomic(operation{}, detail::component_by_key<Base, N>{base, static_cast<unsigned>(i)}, key,
-                 results[i], commits);
+    detail::commit_by_key<choice>(w, base, key, results, commits);
 }
 
 /// Does not compile: several tags go into one policy.

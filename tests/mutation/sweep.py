@@ -40,7 +40,10 @@ class DoesNotBuild(Exception):
 
 
 def build(*command):
-    done = subprocess.run(command, capture_output=True, text=True, timeout=compile_limit)
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=compile_limit)
+    except subprocess.TimeoutExpired:
+        raise DoesNotBuild(f"takes longer than {compile_limit} s") from None
     if done.returncode != 0:
         errors = [line for line in done.stderr.splitlines() if "error" in line] or [done.stderr]
         raise DoesNotBuild(errors[0])
@@ -133,7 +136,8 @@ class Sweep:
                 print(f"without any fault, {test} {how}", file=sys.stderr)
             if broken:
                 return False
-            print(f"without any fault, all {len(programs)} programs pass ({time.monotonic() - start:.0f} s)", flush=True)
+            seconds = time.monotonic() - start
+            print(f"without any fault, all {len(programs)} programs pass ({seconds:.0f} s)", flush=True)
 
             survivors = 0
             for m, (caught, what, seconds) in zip(mutations, pool.map(self.with_fault, mutations)):
@@ -146,7 +150,7 @@ class Sweep:
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--only", metavar="NAME", action="append", help="this one alone; may be repeated")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many at a time")
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)), help="how many at a time")
     parser.add_argument("--list", action="store_true", help="name them and stop")
     arguments = parser.parse_args()
 

@@ -67,9 +67,10 @@ struct blend_forward {
     template <class W>
     WARPAGG_HD void add_pairs(const W& w, unsigned walked) const {
         unsigned long long* to = pairs;
-        w.atomic(warpagg::operation::sum{}, [to](unsigned) { return to; }, value_t<W, unsigned>(0u),
-                     value_t<W, unsigned long long>(static_cast<unsigned long long>(walked) * W::size),
-                     w.lane() == 0u);
+        w.atomic(
+            warpagg::operation::sum{}, [to](unsigned) { return to; }, value_t<W, unsigned>(0u),
+            value_t<W, unsigned long long>(static_cast<unsigned long long>(walked) * W::size),
+            w.lane() == 0u);
     }
 };
 

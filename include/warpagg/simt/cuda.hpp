@@ -181,8 +181,8 @@ struct warp {
         __match_all_sync(all, reinterpret_cast<unsigned long long>(destination), &same);
         if (same == 0) stop("the destination is not the same in every lane");
     }
-    __device__ void require_busy(bool busy) const {
-        if (!busy) stop("assume_busy, but no lane is active");
+    __device__ void require_busy(bool active) const {
+        if (!any(active)) stop("assume_busy, but no lane is active");
     }
 #endif
 
@@ -190,6 +190,7 @@ struct warp {
 #if defined(WARPAGG_CHECKS)
     __device__ void stop(const char* sentence) const {
         if (lane() == 0) printf("warpagg: block %u, thread %u: %s\n", blockIdx.x, threadIdx.x, sentence);
+        __syncwarp();  // not before it has been said
         __trap();
     }
 #endif

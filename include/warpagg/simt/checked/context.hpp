@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// One stack of execution, and how to go from one to another: by a few instructions on x86-64, by ucontext
-/// elsewhere, which asks the kernel for the signal mask at every switch. Both sanitizers that follow stacks
-/// are told. Floating-point modes are the thread's, not the fiber's.
+/// One stack of execution, and how to go from one to another: by a few instructions on x86-64; elsewhere, and
+/// with WARPAGG_UCONTEXT, by ucontext, which asks the system for the signal mask at every switch. Both
+/// sanitizers that follow stacks are told. Floating-point modes are the thread's, not the fiber's.
 
 #include <cstddef>
 #include <cstdint>

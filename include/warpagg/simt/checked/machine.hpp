@@ -17,6 +17,10 @@
 #include "twin.hpp"
 #include "undefined.hpp"
 
+// The library unrolls its loops over a warp's operations: what each does stays one function, for the
+// compiler's time.
+#define WARPAGG_OUT_OF_LINE __attribute__((noinline))
+
 namespace warpagg::emulator::detail {
 
 /// What a launch runs on: the lanes of one block at a time, what they wait for, and what they did to memory.
@@ -74,7 +78,7 @@ class machine {
     shared_memory& shared() { return shared_; }
 
     /// Waits until the lanes of the mask are here too; whoever comes last calls `complete` for all of them.
-    void meet(const arrival& a) {
+    WARPAGG_OUT_OF_LINE void meet(const arrival& a) {
         const std::uint32_t bit = 1u << lane();
         if ((a.mask & bit) == 0) diagnose([&] { return not_in_mask(self(), a, bit); });
         self().at = a;
@@ -103,7 +107,8 @@ class machine {
     }
 
     /// Before an access to memory: others may run first; and the access must not conflict with another.
-    void access_memory(const void* address, std::size_t size, access_kind kind, const call_site& here) {
+    WARPAGG_OUT_OF_LINE void access_memory(const void* address, std::size_t size, access_kind kind,
+                                           const call_site& here) {
         if (random_.below(8) == 0) scheduler_.let_others_run();
         if (scheduler_.on_stack(address)) return;
         const call_site& at = self().kernel_site(here);
@@ -114,7 +119,8 @@ class machine {
     }
     /// Before a write, or an atomic whose operand is `value`.
     template <class T>
-    void write_memory(const void* address, const T& value, access_kind kind, const call_site& here) {
+    WARPAGG_OUT_OF_LINE void write_memory(const void* address, const T& value, access_kind kind,
+                                          const call_site& here) {
         access_memory(address, sizeof(T), kind, here);
         const call_site& at = self().kernel_site(here);
         if (const undefined_read* read = undefined_.origin(value))

@@ -71,8 +71,8 @@ class checked {
     /// All lanes come here; the active ones then commit one after the other, in an order that the seed draws,
     /// and lanes of other warps in between.
     template <class Op, class Dst, class T>
-    void atomic(Op op, Dst dst, unsigned index, T v, bool active,
-                call_site at = call_site::here("atomic")) const {
+    WARPAGG_OUT_OF_LINE void atomic(Op op, Dst dst, unsigned index, T v, bool active,
+                                    call_site at = call_site::here("atomic")) const {
         T* const to = active ? dst(index) : nullptr;
         commit mine{to};
         meet<T>(all_lanes, at, mine, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
@@ -236,7 +236,7 @@ class checked {
         bool p;
         std::uint32_t bits = 0;
     };
-    std::uint32_t vote(who w, bool p, const call_site& at) const {
+    WARPAGG_OUT_OF_LINE std::uint32_t vote(who w, bool p, const call_site& at) const {
         ballot_part mine{p};
         meet<bool>(w, at, mine, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
             if (counters* c = m.count()) ++c->votes;
@@ -276,7 +276,7 @@ class checked {
     };
     unsigned down(unsigned distance) const { return distance < size - lane() ? lane() + distance : lane(); }
     template <class T>
-    T exchange(who w, T v, unsigned from, const call_site& at) const {
+    WARPAGG_OUT_OF_LINE T exchange(who w, T v, unsigned from, const call_site& at) const {
         shuffle_part<T> mine{v, from, v};
         meet<T>(w, at, mine, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
             if (counters* c = m.count()) c->shuffles += (sizeof(T) + 3) / 4;
