@@ -12,6 +12,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "driver.hpp"
 #include "error.hpp"
 #include "model/ply.hpp"
 #include "scene/scene.hpp"
@@ -57,13 +58,6 @@ struct timing {
 double median(std::vector<double> x) {
     std::ranges::sort(x);
     return 0.5 * (x[(x.size() - 1) / 2] + x[x.size() / 2]);
-}
-
-std::string driver() {
-    std::ifstream version("/proc/driver/nvidia/version");
-    std::string line;
-    std::getline(version, line);
-    return line;
 }
 
 /// Every view once, nothing learned.
@@ -113,7 +107,7 @@ void bench(const options& o) {
                       {"commit", WARPAGG_COMMIT},
                       {"compiler", WARPAGG_COMPILER},
                       {"nvcc", WARPAGG_NVCC},
-                      {"driver", driver()},
+                      {"driver", driver_version()},
                       {"model_seed", o.model_seed},
                       {"scene", std::filesystem::path(o.scene.data).filename().string()},
                       {"width", scene.train[0].camera.width},

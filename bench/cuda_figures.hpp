@@ -6,10 +6,10 @@
 
 #include <cuda_runtime.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <string>
+
+#include "driver.hpp"
 
 inline void check(cudaError_t status) {
     if (status != cudaSuccess) throw std::runtime_error(cudaGetErrorString(status));
@@ -44,10 +44,6 @@ inline nlohmann::ordered_json figures_of_this_gpu(const char* bench) {
     check(cudaGetDeviceProperties(&gpu, 0));
     int driver_api = 0;
     check(cudaDriverGetVersion(&driver_api));
-    std::string driver, word;  // the first word that has a dot: the version
-    std::ifstream version("/proc/driver/nvidia/version");
-    while (driver.empty() && version >> word)
-        if (word.find('.') != std::string::npos) driver = word;
-    return {{"bench", bench},           {"gpu", gpu.name},      {"driver", driver},
+    return {{"bench", bench},           {"gpu", gpu.name},      {"driver", driver_version()},
             {"driver_api", driver_api}, {"nvcc", WARPAGG_NVCC}, {"commit", WARPAGG_COMMIT}};
 }

@@ -26,14 +26,16 @@ using warpagg::mask_t;
 using warpagg::value_t;
 namespace operation = warpagg::operation;
 
-/// None, all, each lane alone, the first n, and some at random.
-inline std::vector<std::uint32_t> masks() {
+/// None and all; and of each lane alone, the first n, and some at random, every nth.
+inline std::vector<std::uint32_t> masks(std::size_t nth = backend::every_nth_mask) {
     std::vector<std::uint32_t> all{0u, 0xffffffffu};
     for (unsigned lane = 0; lane < 32; ++lane) all.push_back(1u << lane);
     for (unsigned n = 2; n < 32; ++n) all.push_back((1u << n) - 1u);
     std::mt19937 random(7);
     for (int i = 0; i < 20; ++i) all.push_back(static_cast<std::uint32_t>(random()));
-    return all;
+    std::vector<std::uint32_t> some{all[0], all[1]};
+    for (std::size_t i = 2; i < all.size(); i += nth) some.push_back(all[i]);
+    return some;
 }
 
 /// How the values of a case are drawn. Sums of signed zeros show whether a lane was masked by zero; and the
@@ -45,7 +47,6 @@ constexpr kind kinds[] = {kind::one_scale, kind::many_scales, kind::zeros};
 template <class T>
 struct values_of {
     /// What an active lane holds.
-    template <class Op>
     static T draw(kind k, std::mt19937_64& random) {
         if constexpr (std::is_floating_point_v<T>) {
             const T sign = random() % 2 == 0 ? T(1) : T(-1);
@@ -54,8 +55,6 @@ struct values_of {
             const int exponent = static_cast<int>(random() % static_cast<unsigned>(2 * range + 1)) - range;
             const auto mantissa = static_cast<T>(1.0 + std::ldexp(static_cast<double>(random() >> 11), -53));
             return sign * std::ldexp(mantissa, exponent);
-        } else if constexpr (std::is_signed_v<T> && std::is_same_v<Op, operation::sum>) {
-            return static_cast<T>(static_cast<T>(random()) / 64);  // sums do not overflow
         } else {
             return static_cast<T>(random());
         }
@@ -103,7 +102,11 @@ std::string text_of(const T& value) {
 
 template <class T>
 T combined(operation::sum, T a, T b) {
-    return a + b;
+    if constexpr (std::is_integral_v<T>) {  // modulo 2^bits
+        return static_cast<T>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+    } else {
+        return a + b;
+    }
 }
 template <class T>
 T combined(operation::minimum, T a, T b) {

@@ -13,7 +13,6 @@ namespace {
 
 template <class Pair, class Half>
 struct values_of_pairs {
-    template <class Op>
     static Pair draw(kind k, std::mt19937_64& random) {
         const auto whole = [&] {  // 33 of them: below 256, bfloat16's limit
             return Half(k == kind::zeros ? 0.0f : static_cast<float>(random() % 9) - 4.0f);

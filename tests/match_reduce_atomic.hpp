@@ -46,14 +46,6 @@ inline unsigned draw_key(spread s, unsigned lane, unsigned c) {
     return 0;
 }
 
-/// Some of the masks; the first two are none and all.
-inline std::vector<std::uint32_t> some_masks() {
-    const std::vector<std::uint32_t> all = masks();
-    std::vector<std::uint32_t> some{all[0], all[1]};
-    for (std::size_t i = 2; i < all.size(); i += 7) some.push_back(all[i]);
-    return some;
-}
-
 /// Where records are and what keys they have: `at(case, key, component)` from the memory's start.
 struct table {
     unsigned n, record_step, case_step, first_key;
@@ -75,14 +67,14 @@ struct match_problem {
 
     match_problem(unsigned components, table (*place)(unsigned)) : n(components), where(place(components)) {
         std::mt19937_64 random(9);
-        for (const std::uint32_t mask : some_masks())
+        for (const std::uint32_t mask : masks(7))
             for (const spread s : spreads) add_case(mask, s, random);
         before.assign(guard + cases * where.case_step, values_of<T>::poison(0));
         for (unsigned c = 0; c < cases; ++c)
             for (unsigned k = 0; k < keys; ++k)
                 for (unsigned i = 0; i < n; ++i)
                     before[where.at(c, where.first_key + k, i)] =
-                        values_of<T>::template draw<Op>(kinds[(c + k + i) % 3], random);
+                        values_of<T>::draw(kinds[(c + k + i) % 3], random);
     }
 
     /// Where and how `after` differs first from what it must be with this gate, none if the policy is
@@ -110,7 +102,7 @@ struct match_problem {
         const kind k = kinds[cases % 3];
         for (unsigned i = 0; i < n; ++i)
             for (unsigned lane = 0; lane < width; ++lane)
-                values.push_back(((mask >> lane) & 1u) != 0 ? values_of<T>::template draw<Op>(k, random)
+                values.push_back(((mask >> lane) & 1u) != 0 ? values_of<T>::draw(k, random)
                                                             : values_of<T>::poison(lane + i));
         for (unsigned lane = 0; lane < width; ++lane) {
             const bool adds = ((mask >> lane) & 1u) != 0;

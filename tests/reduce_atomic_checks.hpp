@@ -44,7 +44,7 @@ struct problem {
         before.assign(where.size, values_of<T>::poison(0));
         for (unsigned c = 0; c < cases; ++c)
             for (unsigned i = 0; i < n; ++i)
-                before[where.at(c, i)] = values_of<T>::template draw<Op>(kinds[(c + c / 3 + i) % 3], random);
+                before[where.at(c, i)] = values_of<T>::draw(kinds[(c + c / 3 + i) % 3], random);
     }
 
     bool is_active(unsigned c, unsigned lane) const { return active[c * width + lane] != 0; }
@@ -82,7 +82,7 @@ struct problem {
         for (unsigned lane = 0; lane < width; ++lane) active.push_back((mask >> lane) & 1u);
         for (unsigned i = 0; i < n; ++i)
             for (unsigned lane = 0; lane < width; ++lane)
-                values.push_back(((mask >> lane) & 1u) != 0 ? values_of<T>::template draw<Op>(k, random)
+                values.push_back(((mask >> lane) & 1u) != 0 ? values_of<T>::draw(k, random)
                                                             : values_of<T>::poison(lane + i));
     }
 
@@ -204,7 +204,7 @@ std::vector<T> memory_after(const problem<T, Op>& p) {
 template <class Call, int N, class Destination = as_pointer, class T, class Op>
 void check(const problem<T, Op>& p, const char* what, rule r) {
     INFO(what, ", N = ", N);
-    constexpr bool may_pack =
+    const bool may_pack =
         Destination::contiguous && backend::packs<T>() && std::is_same_v<Op, operation::sum>;
     CHECK(p.first_difference(memory_after<Call, N, Destination>(p), r, may_pack) == "");
 }

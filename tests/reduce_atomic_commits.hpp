@@ -78,9 +78,9 @@ void check_staged(const char* what) {
         for (unsigned i = 0; i < N; ++i) {
             if (p.own_values(c, i).empty()) continue;
             const T sum = p.tree(c, i);
-            const T copy = (T{} + sum) + sum;
+            const T copy = combined(operation::sum{}, T{} + sum, sum);
             T& result = expected.value[p.where.at(c, i)];
-            if (copy != T{}) result = result + copy;  // a zero is not added
+            if (copy != T{}) result = combined(operation::sum{}, result, copy);  // a zero is not added
         }
     INFO(what, ", N = ", N);
     CHECK(expected.first_difference(memory.download()) == "");

@@ -55,6 +55,26 @@ sizes groups_of(unsigned offset = 0) {
     return made;
 }
 
+/// The groups in which 1, 2, ..., N reach the record of key 2, of those that begin `offset` floats past an
+/// address aligned to four.
+template <int N, class Policy>
+sizes groups_by_key(unsigned offset = 0) {
+    sizes made;
+    packing w;
+    w.groups = &made;
+    alignas(16) float memory[3 * N + 4] = {};
+    float values[N];
+    for (int i = 0; i < N; ++i) values[i] = static_cast<float>(i + 1);
+    warpagg::warp_match_reduce_atomic(w, memory + offset, 2, values, true, Policy{});
+    for (unsigned i = 0; i < 3 * N + 4; ++i) {
+        INFO("N = ", N, ", offset ", offset, ", component ", i);
+        const unsigned first = offset + 2 * N;
+        const bool within = i >= first && i < first + N;
+        CHECK(memory[i] == (within ? static_cast<float>(i - first + 1) : 0.0f));
+    }
+    return made;
+}
+
 }  // namespace
 
 TEST_SUITE_BEGIN("packed");
@@ -102,6 +122,19 @@ TEST_CASE("a gate has a second threshold where packed<4> applies") {
     CHECK(groups<4, second_is_higher>(1).empty());
     CHECK(groups<4, first_is_higher>(0).empty());  // reduced
     CHECK(groups<4, first_is_higher>(1).empty());
+}
+
+TEST_CASE("records by key go by fours or twos where all are aligned to them") {
+    using alone = policy<reduce::per_lane, commit::packed<4>>;
+    CHECK(groups_by_key<4, alone>() == sizes{4});
+    CHECK(groups_by_key<8, alone>() == sizes{4, 4});
+    CHECK(groups_by_key<6, alone>() == sizes{2, 2, 2});
+    CHECK(groups_by_key<6, alone>(2) == sizes{2, 2, 2});
+    CHECK(groups_by_key<6, alone>(1).empty());
+    CHECK(groups_by_key<4, alone>(2).empty());
+    CHECK(groups_by_key<5, alone>().empty());
+    CHECK(groups_by_key<4, policy<>>() == sizes{4});
+    CHECK(groups_by_key<4, policy<reduce::per_lane>>().empty());  // no more than it says
 }
 
 TEST_SUITE_END();

@@ -68,17 +68,12 @@ template <class Choice, warp W, class Record, class V, int N>
 WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
     using op = typename Choice::operation;
     using commit_rule = typename Choice::commit;
-    using T = typename scalar_of<V>::type;
-    static_assert(
-        op::template suits<T>,
-        "memory has minimum, maximum, bit_and, bit_or and bit_xor for integers of 32 and 64 bits only");
-
     if constexpr (requires { w.observe(active); }) w.observe(active);
     if constexpr (requires { w.require_uniform(record(0u)); }) w.require_uniform(record(0u));
     if constexpr (std::is_same_v<typename Choice::reduce, reduce::per_lane>) {
         commit::each_lane<op, commit_rule>(w, record, values, active);
     } else if constexpr (is_gated<typename Choice::gate>) {
-        using alone = commit::packed<4>;
+        using alone = typename Choice::alone;
         const unsigned least =
             commit::is_packed<op, alone, V>(w, record) ? Choice::gate::lanes_if_packed : Choice::gate::lanes;
         if (math::popcount(w.ballot(active)) < least) [[unlikely]] {
@@ -109,7 +104,7 @@ WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const
 /// @snippet warp_reduce_atomic.cpp accessor
 ///
 /// @param w       a model of `warp`; all of its lanes call this together
-/// @param dst     `T*`, a span, an accessor `dst(i) -> T*`, or a record of a `stage` (with `policy{staged}`);
+/// @param dst     `T*`, a span, an accessor `dst(i) -> T*`, or with `policy{staged}` a record of a `stage`;
 /// the
 ///                same record for every lane
 /// @param values  N values per lane; those of inactive lanes are ignored, NaN or not
@@ -119,10 +114,11 @@ WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const
 ///
 /// @pre All lanes of the warp call this, with the same `dst`, which holds N values of T, aligned as T.
 ///
-/// The order in which warps add is not fixed; inside a warp the tree is, and it is the same for every
-/// reduction but `per_lane`. Error of the default: (n/32 + 5) u k for n updates of condition k, u = 2^-24 for
-/// float. Cost by default, on 32 lanes: one vote, N - 1 + log2(32/N) shuffles, one atomic instruction per 32
-/// components.
+/// The order in which warps add is not fixed. Inside a warp the tree is, the same for every reduction but
+/// `per_lane`; lanes that the gate leaves to themselves add in any order. Error of a float sum with all lanes
+/// active: (n/32 + 5) u k for n updates of condition k, u = 2^-24; with few of them, up to n u k. Cost by
+/// default, on 32 lanes: one vote, N - 1 + log2(32/N) shuffles (N `redux` instructions for integers of 32
+/// bits), one atomic instruction per 32 components.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class T, int N, warp W, class Dst, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&values)[N],

@@ -23,7 +23,7 @@ struct measured {
 template <int N>
 struct measured<float, N> : measured<void, N> {
     static constexpr unsigned lanes = N == 2 ? 3 : N < 12 ? 2 : 1;
-    static constexpr unsigned lanes_if_packed = N == 2 ? 5 : N == 3 ? 3 : N < 24 ? 4 : 3;
+    static constexpr unsigned lanes_if_packed = N == 4 ? 6 : N == 2 || N == 8 ? 5 : N == 3 || N >= 24 ? 3 : 4;
     using gate = std::conditional_t<N == 1, gate::always, gate::at_least<lanes, lanes_if_packed>>;
 };
 
@@ -44,16 +44,20 @@ struct reduce_for {
     using type = Measured;
 };
 template <class Measured>
+using not_spread =
+    std::conditional_t<Measured::leaves == reduce::results_in::spread, reduce::shfl_down, Measured>;
+template <class Measured>
 struct reduce_for<commit::scalar, Measured> {
-    using type = reduce::shfl_down;
+    using type = not_spread<Measured>;
 };
 template <unsigned K, class Measured>
 struct reduce_for<commit::packed<K>, Measured> {
-    using type = reduce::shfl_down;
+    using type = not_spread<Measured>;
 };
 template <class Measured>
 struct reduce_for<commit::contiguous, Measured> {
-    using type = reduce::scatter;
+    using type =
+        std::conditional_t<Measured::leaves == reduce::results_in::first_lane, reduce::scatter, Measured>;
 };
 
 /// The commit whose instructions are fewest where a reduction leaves its results.
@@ -66,11 +70,19 @@ using commit_after = std::conditional_t<Reduce::leaves == reduce::results_in::sp
 /// caller says so.
 template <class T, int N, class Policy>
 struct choice {
+    static_assert(
+        or_default<typename Policy::operation, warpagg::operation::sum>::template suits<T>,
+        "memory has sums of 32 bits and more, and minimum, maximum, bit_and, bit_or and bit_xor of integers "
+        "of 32 and 64 bits");
     using operation = or_default<typename Policy::operation, warpagg::operation::sum>;
     using reduce =
         or_default<typename Policy::reduce,
                    typename reduce_for<typename Policy::commit, typename measured<T, N>::reduce>::type>;
     using commit = or_default<typename Policy::commit, commit_after<reduce>>;
+    /// By which lanes commit that the gate leaves to themselves.
+    using alone = std::conditional_t<std::is_same_v<typename Policy::commit, unnamed> ||
+                                         !by_one_lane<typename Policy::commit>,
+                                     warpagg::commit::packed<4>, typename Policy::commit>;
     using idle = or_default<typename Policy::idle, warpagg::idle::skip>;
     static constexpr bool measured_gate =
         std::is_same_v<typename Policy::reduce, unnamed> && !std::is_same_v<idle, warpagg::idle::add_zeros>;

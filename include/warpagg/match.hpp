@@ -25,11 +25,11 @@ struct component_by_key {
 };
 
 /// The components of one key's record, as an accessor by component.
-template <class Base, int N>
-struct record_of_key {
+template <class Base>
+struct component_of_key {
     Base base;
     unsigned key;
-    WARPAGG_HD auto operator()(unsigned i) const { return component_by_key<Base, N>{base, i}(key); }
+    WARPAGG_HD auto operator()(unsigned i) const { return base(key, i); }
 };
 
 /// Combines the values of lanes with equal keys, in a tree over each key's lanes in their order; the first of
@@ -68,28 +68,40 @@ WARPAGG_HD bool keys_rise(const W& w, const value_t<W, unsigned>& key, const mas
     return !w.any(active && after_me != 0u && key >= next);
 }
 
-/// Every active lane commits its own values to its key's record: by groups of neighbours, as `packed` does,
-/// where all records allow it, unless the policy says `per_lane` and no more.
+/// By what instructions the records of keys are committed: as the policy says, else by the largest groups
+/// that keep all records aligned.
+template <class Choice, class Policy, int N>
+using commit_of_keys = std::conditional_t<std::is_same_v<typename Choice::reduce, reduce::per_lane> ||
+                                              !std::is_same_v<typename Policy::commit, unnamed>,
+                                          typename Choice::commit, commit::packed<N % 4 == 0 ? 4 : 2>>;
+
+/// Every active lane commits its own values to its key's record.
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Choice, warp W, class Base, class V, int N>
+template <class Op, class Commit, warp W, class Base, class V, int N>
 WARPAGG_HD void commit_by_key(const W& w, Base base, const value_t<W, unsigned>& key, const V (&v)[N],
                               const mask_t<W>& active) {
-    using operation = typename Choice::operation;
-    constexpr bool plain = std::is_same_v<typename Choice::reduce, reduce::per_lane> &&
-                           std::is_same_v<typename Choice::commit, commit::scalar>;
-    constexpr unsigned group = N % 4 == 0 ? 4 : 2;
     using record = commit::contiguous_record<V>;
-    using commit::detail::packs;
-    if constexpr (!plain && N % 2 == 0 && std::is_same_v<Base, V*> &&
-                  packs<operation, commit::packed<group>, W, record, V>) {
-        if (commit::is_packed<operation, commit::packed<group>, V>(w, record{base})) {
-            commit::detail::by_groups<group, 0>(w, base + std::size_t{key} * N, v, active);
-            return;
+    if constexpr (std::is_same_v<Base, V*> && commit::detail::packs<Op, Commit, W, record, V>) {
+        if constexpr (N % Commit::neighbours == 0) {
+            if (commit::is_packed<Op, Commit, V>(w, record{base})) {
+                commit::detail::by_groups<Commit::neighbours, 0>(w, base + std::size_t{key} * N, v, active);
+                return;
+            }
         }
     }
     WARPAGG_UNROLL
     for (int i = 0; i < N; ++i)
-        w.atomic(operation{}, component_by_key<Base, N>{base, static_cast<unsigned>(i)}, key, v[i], active);
+        w.atomic(Op{}, component_by_key<Base, N>{base, static_cast<unsigned>(i)}, key, v[i], active);
+}
+
+/// The record of a key that is the same in all lanes, as a destination.
+template <int N, class T>
+WARPAGG_HD commit::contiguous_record<T> record_of_key(T* base, unsigned key) {
+    return {base + std::size_t{key} * N};
+}
+template <int N, class Base>
+WARPAGG_HD auto record_of_key(Base base, unsigned key) {
+    return component_of_key<Base>{base, key};
 }
 
 }  // namespace detail
@@ -101,20 +113,21 @@ WARPAGG_HD void commit_by_key(const W& w, Base base, const value_t<W, unsigned>&
 ///
 /// @param w       a model of `warp`; all of its lanes call this together
 /// @param base    `T*` to the record of key 0, or an accessor `base(key, i) -> T*`
-/// @param key     this lane's record; any for an inactive lane
+/// @param key     this lane's record, a number of 32 bits; any for an inactive lane
 /// @param values  N values per lane; those of inactive lanes are ignored, NaN or not
 /// @param active  whether this lane has something to add
 /// @param at      where the call stands, by its default
 /// @tparam Policy see policy.hpp. `reduce` and `commit` say what happens where all active lanes have one key,
-///                `per_lane` that nothing is combined, the gate below how many active lanes it is not
+///                `commit` how else each key's record is committed, `per_lane` that nothing is combined, the
+///                gate from how many active lanes on keys are compared
 ///
 /// @pre All lanes of the warp call this, with the same `base`, which holds N values of T for each key in use.
 ///
 /// Lanes of one key combine in a fixed tree in the order of their numbers. Cost: one shuffle, two votes, and
 /// one atomic per key and component where the active lanes' keys rise from lane to lane; one `match` and two
 /// votes more where they do not; and for the most frequent key's g lanes ceil(log2 g) times N shuffles and
-/// two votes. With one key for all: as `warp_reduce_atomic`. Where N is even and `base` is a pointer to float
-/// aligned to its largest even divisor up to 4, records are committed as by `packed`.
+/// two votes. With one key for all: as `warp_reduce_atomic`. Where `base` is a pointer to float, aligned to
+/// 16 bytes if N is a multiple of 4, or to 8 if it is even, records go to memory as `packed` says.
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Base, class V, int N, class Policy = policy<>>
 WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W, unsigned>& key,
@@ -126,18 +139,21 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
     using math::uniform;
     static_assert(detail::is_policy<Policy>,
                   "warp_match_reduce_atomic takes one policy: put the tags into policy{...}");
-    using T = typename detail::scalar_of<V>::type;
-    using choice = detail::choice<T, N, Policy>;
+    using choice = detail::choice<typename detail::scalar_of<V>::type, N, Policy>;
     using operation = typename choice::operation;
     using bits = value_t<W, std::uint32_t>;
-    static_assert(
-        operation::template suits<T>,
-        "memory has minimum, maximum, bit_and, bit_or and bit_xor for integers of 32 and 64 bits only");
     static_assert(!std::is_same_v<typename choice::commit, commit::staged>,
                   "warp_match_reduce_atomic takes the stage's copy as its base: staged says nothing here");
+    static_assert(
+        !std::is_same_v<typename choice::idle, idle::add_zeros>,
+        "an idle warp has no keys, so warp_match_reduce_atomic has nowhere to add zeros: take skip");
 
     const detail::library_call<W> call(w, at);
     if constexpr (requires { w.observe(active); }) w.observe(active);
+    if constexpr (requires { w.require_uniform(base); }) w.require_uniform(base);
+    if constexpr (std::is_same_v<typename choice::idle, idle::assume_busy>) {
+        if constexpr (requires { w.require_busy(active); }) w.require_busy(active);
+    }
     const mask_t<W> adds = detail::opaque(w, active);
     mask_t<W> commits = adds;
     V results[N];
@@ -155,8 +171,7 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
                 const bits peers = select(adds, w.match(key) & everyone, bits(0u));
                 if (!w.any(adds && peers != everyone)) {
                     const unsigned only = uniform(w.shfl(key, countr_zero(everyone)));
-                    const detail::record_of_key<Base, N> record{base, only};
-                    detail::reduce_and_commit<choice>(w, record, values, adds);
+                    detail::reduce_and_commit<choice>(w, detail::record_of_key<N>(base, only), values, adds);
                     return;
                 }
                 detail::combine_peers<operation>(w, results, peers);
@@ -164,8 +179,25 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
             }
         }
     }
-    detail::commit_by_key<choice>(w, base, key, results, commits);
+    using commit_rule = detail::commit_of_keys<choice, Policy, N>;
+    detail::commit_by_key<operation, commit_rule>(w, base, key, results, commits);
 }
+
+/// The same for a type of yours that consists of numbers, at `base[key]`: see components.hpp. On models whose
+/// lane values are scalars, not on `emulator::lanes`.
+WARPAGG_EXEC_CHECK_DISABLE
+template <warp W, composite R, class Policy = policy<>>
+WARPAGG_HD void warp_match_reduce_atomic(const W& w, R* base, const value_t<W, unsigned>& key, const R& value,
+                                         const mask_t<W>& active, Policy how = {},
+                                         call_site at = call_site::here("warp_match_reduce_atomic")) {
+    const detail::numbers_of<R> numbers(value);
+    warp_match_reduce_atomic(w, detail::destination_of_numbers(base), key, numbers.number, active, how, at);
+}
+
+/// Does not compile: a key has 32 bits, and of a wider one the rest would be lost.
+template <warp W, class Base, class Key, class V, int N, class... More>
+requires(std::is_integral_v<Key> && sizeof(Key) > sizeof(unsigned)) void warp_match_reduce_atomic(
+    const W&, Base, const Key&, const V (&)[N], const mask_t<W>&, More...) = delete;
 
 /// Does not compile: several tags go into one policy.
 template <warp W, class Base, class V, class Tag, class Next, class... More>

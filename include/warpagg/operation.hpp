@@ -19,10 +19,11 @@ namespace operation {
 struct sum {
     static constexpr auto of = axis::operation;
     template <class T>
-    static constexpr bool suits = true;
+    static constexpr bool suits = !std::is_integral_v<T> || sizeof(T) >= 4;
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {
-        return a + b;
+        using math::wrapping_add;
+        return wrapping_add(a, b);
     }
     template <class T>
     WARPAGG_HD static T identity() {

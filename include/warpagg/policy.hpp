@@ -91,7 +91,7 @@ struct skip {
     static constexpr auto of = axis::idle;
 };
 /// The caller has asked already. Precondition: there is an active lane; `emulator::checked` verifies it, and
-/// CUDA with WARPAGG_CHECKS. Cost: nothing.
+/// CUDA with WARPAGG_CHECKS. Cost: nothing; a gate votes all the same.
 struct assume_busy {
     static constexpr auto of = axis::idle;
 };
@@ -112,10 +112,11 @@ struct always {
     static constexpr unsigned lanes = 0;            ///< the fewest active lanes that reduce
     static constexpr unsigned lanes_if_packed = 0;  ///< the same where `packed<4>` applies
 };
-/// With fewer than K active lanes, each makes its own atomics, by `packed<4>` where that applies; and where
-/// it does, with fewer than Packed active lanes. Cost: one vote, in place of that of `skip`.
+/// Fewer than K active lanes (fewer than Packed, where `packed<4>` applies) make their own atomics, by
+/// `packed<4>` unless the policy names another commit. Cost: one vote, in place of that of `skip`.
 template <unsigned K, unsigned Packed = K>
 struct at_least {
+    static_assert(K > 0, "at_least<K> takes K > 0: without a gate, say always");
     static constexpr auto of = axis::gate;
     static constexpr unsigned lanes = K;                 ///< the fewest active lanes that reduce
     static constexpr unsigned lanes_if_packed = Packed;  ///< the same where `packed<4>` applies
@@ -184,9 +185,6 @@ inline constexpr bool is_gated = Gate::lanes > 0;
 template <>
 inline constexpr bool is_gated<unnamed> = false;
 
-}  // namespace detail
-
-namespace detail {
 template <class P>
 concept is_policy = requires {
     typename P::reduce;
@@ -231,6 +229,11 @@ struct policy {
     static_assert(!(std::is_same_v<idle, warpagg::idle::add_zeros> &&
                     std::is_same_v<reduce, warpagg::reduce::per_lane>),
                   "per_lane has no sums, so an idle warp has no zeros to add: take skip");
+    static_assert(!(std::is_same_v<reduce, warpagg::reduce::per_lane> && detail::is_gated<gate>),
+                  "per_lane has no reduction for at_least<K> to stand before: take always");
+    static_assert(!std::is_same_v<commit, warpagg::commit::staged> ||
+                      std::is_same_v<operation, detail::unnamed>,
+                  "a stage is added to memory: staged goes with the sum");
     static_assert(!(std::is_same_v<idle, warpagg::idle::add_zeros> && detail::is_gated<gate>),
                   "at_least<K> sends an idle warp to per-lane atomics, so it never adds zeros: take skip");
 

@@ -15,6 +15,7 @@ struct backend {
     using warp = warpagg::emulator::checked;
     static constexpr const char* name = "checked";
     static constexpr bool commits_in_lane_order = false;
+    static constexpr unsigned every_nth_mask = 7;  // it takes its time
     template <class T>
     static constexpr bool packs() {
         return false;

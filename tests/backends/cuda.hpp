@@ -61,14 +61,24 @@ __global__ void one_warp(F f) {
     f(warpagg::cuda::warp{});
 }
 
+__global__ void nothing() {}
+
+/// What code runs here has been compiled for, times ten.
+inline int compute_capability() {
+    cudaFuncAttributes of{};
+    check_cuda(cudaFuncGetAttributes(&of, nothing), "cudaFuncGetAttributes");
+    return of.ptxVersion;
+}
+
 /// See lanes.hpp.
 struct backend {
     using warp = warpagg::cuda::warp;
     static constexpr const char* name = "cuda";
     static constexpr bool commits_in_lane_order = false;
+    static constexpr unsigned every_nth_mask = 1;
     template <class T>
-    static constexpr bool packs() {
-        return std::is_same_v<T, float>;
+    static bool packs() {
+        return std::is_same_v<T, float> && compute_capability() >= 90;
     }
 
     template <class T>

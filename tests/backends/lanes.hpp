@@ -15,6 +15,8 @@ struct backend {
     using warp = warpagg::emulator::lanes;
     static constexpr const char* name = "lanes";
     static constexpr bool commits_in_lane_order = true;
+    /// Of the masks that there are, each nth is tried.
+    static constexpr unsigned every_nth_mask = 1;
     /// Whether `commit::packed` applies to aligned records of T.
     template <class T>
     static constexpr bool packs() {

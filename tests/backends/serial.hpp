@@ -14,6 +14,7 @@ struct backend {
     using warp = warpagg::emulator::serial;
     static constexpr const char* name = "serial";
     static constexpr bool commits_in_lane_order = true;
+    static constexpr unsigned every_nth_mask = 1;
     template <class T>
     static constexpr bool packs() {
         return false;

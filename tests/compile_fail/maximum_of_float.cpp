@@ -1,4 +1,4 @@
-// expect: memory has minimum, maximum, bit_and, bit_or and bit_xor for integers of 32 and 64 bits only
+// expect: memory has sums of 32 bits and more, and minimum, maximum, bit_and, bit_or and bit_xor of integers
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/atomic.hpp>

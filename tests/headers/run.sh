@@ -48,13 +48,15 @@ if [[ ${1:?host or an nvcc} == host ]]; then
         [[ " ${compilers[*]} " == *" $real "* ]] || compilers+=("$real")
     done
     ((${#compilers[@]} > 0)) || { echo "there is neither GCC 12 nor clang" >&2; exit 1; }
+    narrow=()
+    [[ $(uname -m) != x86_64 ]] || narrow=("-std=c++20 -mavx" "-std=c++20 -mfma")
     {
         for unit in "$work"/*.cpp; do
             echo "${compilers[0]} -std=c++20 $strict $unit"
         done
         for compiler in "${compilers[@]}"; do
             for options in -std=c++20 -std=gnu++20 "-std=c++2b -march=native" -std=gnu++2b \
-                "-std=c++20 -fno-exceptions -fno-rtti"; do
+                "-std=c++20 -fno-exceptions -fno-rtti" "${narrow[@]}"; do
                 echo "$compiler $options $strict $work/all.cpp"
             done
         done

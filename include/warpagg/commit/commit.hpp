@@ -15,6 +15,7 @@ inline constexpr bool packs = false;
 template <unsigned K, class W, class T>
 inline constexpr bool packs<operation::sum, packed<K>, W, contiguous_record<T>, T> =
     requires(const W& w, T* to, const T* v, bool active) {
+    w.template packs<K>(to);
     w.template atomic_add_packed<K>(to, v, active);
 };
 
@@ -36,9 +37,9 @@ WARPAGG_HD void by_groups(const W& w, T* to, const T (&v)[N], bool active) {
 /// Whether `packed<K>` applies to this record: in all lanes alike.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, class Commit, class V, warp W, class Dst>
-WARPAGG_HD bool is_packed(const W&, Dst dst) {
+WARPAGG_HD bool is_packed(const W& w, Dst dst) {
     if constexpr (detail::packs<Op, Commit, W, Dst, V>) {
-        return reinterpret_cast<std::uintptr_t>(dst(0)) % (Commit::neighbours * sizeof(V)) == 0;
+        return w.template packs<Commit::neighbours>(dst(0));
     } else {
         return false;
     }

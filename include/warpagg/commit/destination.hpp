@@ -22,11 +22,17 @@ WARPAGG_HD contiguous_record<T> destination(T* p) {
     return {p};
 }
 template <class S>
-requires requires(S s) { s.data(); }
+requires requires(const S& s) { *s.data() = *s.data(); }  // not a container's: that would be a copy's
 WARPAGG_HD auto destination(S s) { return destination(s.data()); }
 template <class A>
 requires requires(A a) { *a(0u); }
 WARPAGG_HD A destination(A a) { return a; }
 /// @}
+
+/// Whether it is a destination.
+template <class Dst>
+concept is_destination = requires(Dst dst) {
+    destination(dst);
+};
 
 }  // namespace warpagg::commit

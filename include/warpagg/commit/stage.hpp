@@ -49,7 +49,8 @@ class stage {
         for (unsigned row = warp * W::size; row < size_; row += warps * W::size) {
             const auto index = w.lane() + row;
             const auto sum = w.load_row(copy_, static_cast<std::ptrdiff_t>(row), index < size_);
-            w.atomic(operation::sum{}, commit::contiguous_record<T>{memory_}, index, sum, sum != T{});
+            w.atomic(operation::sum{}, commit::contiguous_record<T>{memory_}, index, sum,
+                     index < size_ && !(sum == T{}));
         }
     }
 
@@ -71,6 +72,8 @@ WARPAGG_HD auto record_of(Dst dst) {
     if constexpr (is_staged) {
         return dst.in_stage();
     } else {
+        static_assert(is_destination<Dst>,
+                      "the destination is a pointer, a span or an accessor: of a container, pass its data()");
         return destination(dst);
     }
 }

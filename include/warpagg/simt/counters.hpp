@@ -14,7 +14,8 @@ struct counters {
     std::uint64_t atomics = 0;   ///< atomic additions to memory, one a lane
     std::uint64_t commits = 0;   ///< warp-wide atomic instructions that had an active lane
     std::uint64_t sectors = 0;   ///< 32-byte sectors that those instructions touched, each counted alone
-    std::array<std::uint64_t, 33> active{};  ///< calls of warp_reduce_atomic by their number of active lanes
+    std::array<std::uint64_t, 33> active{};  ///< calls of warp_reduce_atomic and warp_match_reduce_atomic by
+                                             ///< their number of active lanes
 };
 
 }  // namespace warpagg::emulator

@@ -111,11 +111,19 @@ struct warp {
     __device__ __forceinline__ void atomic(Op op, Dst dst, unsigned index, T v, bool active) const {
         if (active) detail::atomic(op, dst(index), v);
     }
-    /// Adds v[0..K) to to[0..K) by one RED, where the compute capability is 9.0 or more: see
-    /// `commit::packed`.
+    /// Whether `atomic_add_packed<K>` may add to to[0..K): in global memory, aligned, and on a compute
+    /// capability of 9.0 or more.
+    template <unsigned K>
+    __device__ __forceinline__ bool packs(const float* to) const {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+        return reinterpret_cast<std::uintptr_t>(to) % (K * sizeof(float)) == 0 && __isGlobal(to);
+#else
+        return false;
+#endif
+    }
+    /// Adds v[0..K) to to[0..K) by one RED. Precondition: `packs<K>(to)`, or K = 1.
     template <unsigned K>
     __device__ __forceinline__ void atomic_add_packed(float* to, const float* v, bool active) const {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
         if (!active) return;
         if constexpr (K == 4) {
             asm volatile("red.global.add.v4.f32 [%0], {%1, %2, %3, %4};" ::"l"(__cvta_generic_to_global(to)),
@@ -128,10 +136,6 @@ struct warp {
         } else {
             atomicAdd(to, v[0]);
         }
-#else
-        for (unsigned i = 0; i < K; ++i)
-            if (active) atomicAdd(to + i, v[i]);
-#endif
     }
 
     /// `redux.sync`: v combined over the warp, in every lane. One instruction.

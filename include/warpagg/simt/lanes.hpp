@@ -53,7 +53,7 @@ struct basic_lanes : Counting {
     template <class T>
     WARPAGG_HD value<T> shfl(const value<T>& v, unsigned from) const {
         count_shuffle<T>();
-        return value<T>(v[static_cast<int>(from)]);
+        return value<T>(v[static_cast<int>(from % size)]);
     }
     template <class T>
     WARPAGG_HD value<T> shfl(const value<T>& v, const value<unsigned>& from) const {
@@ -216,18 +216,18 @@ struct basic_lanes : Counting {
 
     static WARPAGG_HD std::uint32_t bits(const mask& p) {
         std::uint32_t r = 0;
-        WARPAGG_UNROLL
-        for (int i = 0; i < p.chunks; ++i) {
 #if defined(__AVX__)
-            const auto b =
-                static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(p.part[i])));
+        WARPAGG_UNROLL
+        for (int i = 0; i < p.chunks; ++i)
+            r |= static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(p.part[i])))
+                 << (i * p.width);
 #else
-            std::uint32_t b = 0;
-            WARPAGG_UNROLL
-            for (int k = 0; k < p.width; ++k) b |= (p.part[i][k] != 0 ? 1u : 0u) << k;
+        typename mask::element flags[size];  // subscripts of vectors go astray in GCC 12 with sanitizers
+        static_assert(sizeof flags == sizeof p.part);
+        std::memcpy(flags, p.part, sizeof flags);
+        WARPAGG_UNROLL
+        for (unsigned i = 0; i < size; ++i) r |= (flags[i] != 0 ? 1u : 0u) << i;
 #endif
-            r |= b << (i * p.width);
-        }
         return r;
     }
     template <class F>

@@ -52,6 +52,18 @@ WARPAGG_HD double exp2(double a) { return ::exp2(a); }
 template <class To, class From>
 requires std::is_arithmetic_v<From> WARPAGG_HD To convert(From a) { return static_cast<To>(a); }
 
+/// a + b; of integers modulo 2^bits, signed ones too.
+template <class T>
+WARPAGG_HD T wrapping_add(const T& a, const T& b) {
+    if constexpr (std::is_integral_v<T> && sizeof(T) == 4) {
+        return static_cast<T>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+    } else if constexpr (std::is_integral_v<T> && sizeof(T) == 8) {
+        return static_cast<T>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+    } else {
+        return a + b;
+    }
+}
+
 /// How many bits are set.
 constexpr WARPAGG_HD std::uint32_t popcount(std::uint32_t bits) {
 #if defined(__CUDA_ARCH__)

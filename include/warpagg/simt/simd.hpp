@@ -8,7 +8,7 @@
 /// scalar code). Not for nvcc, which rejects vector types in host-device templates: keep such code in `.cpp`
 /// files.
 
-#if defined(__AVX2__)
+#if defined(__AVX__)
 #include <immintrin.h>
 #endif
 
@@ -330,6 +330,23 @@ WARPAGG_HD lanes<std::uint32_t, L> countr_zero(const lanes<std::uint32_t, L>& a)
     for (int k = 0; k < L; ++k) r.set(k, math::countr_zero(a[k]));
     return r;
 }
+/// a + b; of integers modulo 2^bits, signed ones too.
+template <class T, int L>
+WARPAGG_HD lanes<T, L> wrapping_add(const lanes<T, L>& a, const lanes<T, L>& b) {
+    if constexpr (std::is_integral_v<T> && std::is_signed_v<T>) {
+        using words =
+            typename lanes<std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>, L>::chunk;
+        lanes<T, L> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < r.chunks; ++i)
+            r.part[i] = reinterpret_cast<typename lanes<T, L>::chunk>(reinterpret_cast<words>(a.part[i]) +
+                                                                      reinterpret_cast<words>(b.part[i]));
+        return r;
+    } else {
+        return a + b;
+    }
+}
+
 template <class T, int L>
 WARPAGG_HD T uniform(const lanes<T, L>& a) {
     return a[0];
@@ -349,6 +366,7 @@ using warpagg::popcount;
 using warpagg::select;
 using warpagg::sqrt;
 using warpagg::uniform;
+using warpagg::wrapping_add;
 }  // namespace math
 
 }  // namespace warpagg

@@ -10,6 +10,9 @@
 #define WARPAGG_HD __host__ __device__ __forceinline__
 /// A host-device template that calls a device-only member is no fault until somebody calls it from the host.
 #define WARPAGG_EXEC_CHECK_DISABLE _Pragma("nv_exec_check_disable")
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)  // GCC would instrument it for minutes
+#define WARPAGG_HD inline
+#define WARPAGG_EXEC_CHECK_DISABLE
 #else
 #define WARPAGG_HD inline __attribute__((always_inline))
 #define WARPAGG_EXEC_CHECK_DISABLE
@@ -18,8 +21,8 @@
 /// Before a short loop over registers: rolled up, its arrays would live in memory.
 #if defined(__CUDA_ARCH__) || defined(__clang__)
 #define WARPAGG_UNROLL _Pragma("unroll")
-#elif defined(__CUDACC__)  // nvcc's pass over host code, whose compiler does not know the pragma
-#define WARPAGG_UNROLL
+#elif defined(__CUDACC__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define WARPAGG_UNROLL  // nvcc's pass over host code, whose compiler does not know the pragma; or as above
 #else
 #define WARPAGG_UNROLL _Pragma("GCC unroll 64")
 #endif

@@ -2,5 +2,5 @@
 // SPDX-License-Identifier: MIT
 #include "backends/serial.hpp"
 
-#define TEST_VALUES float, double, std::int32_t, std::uint32_t
+#define TEST_VALUES float, double
 #include "warp_reduce_atomic.hpp"
