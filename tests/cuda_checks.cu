@@ -18,8 +18,13 @@ __global__ void add(float* memory, unsigned step, unsigned active) {
     const float v[2] = {1.0f, 2.0f};
     warpagg::warp_reduce_atomic(w, memory + w.lane() * step, v, w.lane() < active,
                                 warpagg::policy{warpagg::assume_busy});
-    // With one key for all, the record is one that the library has worked out.
-    warpagg::warp_match_reduce_atomic(w, memory, step, v, w.lane() < active);
+}
+/// The same by keys: all lanes have key 0.
+__global__ void add_by_key(float* memory, unsigned step, unsigned active) {
+    const warpagg::cuda::warp w;
+    const float v[2] = {1.0f, 2.0f};
+    warpagg::warp_match_reduce_atomic(w, memory + w.lane() * step, 0u, v, w.lane() < active,
+                                      warpagg::policy{warpagg::assume_busy});
 }
 
 bool succeeds(cudaError_t result) {
@@ -37,6 +42,7 @@ int main(int argc, char** argv) {
     if (!succeeds(cudaMemset(memory, 0, 64 * sizeof(float)))) return 1;
 
     add<<<1, 32>>>(memory, misuse == "destination" ? 2 : 0, misuse == "idle" ? 0 : 9);
+    add_by_key<<<1, 32>>>(memory, misuse == "base" ? 2 : 0, misuse == "idle_by_key" ? 0 : 9);
     if (!succeeds(cudaDeviceSynchronize())) return 1;
 
     float sums[2];

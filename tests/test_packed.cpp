@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <vector>
 #include <warpagg/atomic.hpp>
 #include <warpagg/simt/serial.hpp>
@@ -20,6 +21,10 @@ namespace gate = warpagg::gate;
 struct packing : warpagg::emulator::serial {
     std::vector<unsigned>* groups;  ///< the sizes of those committed so far
 
+    template <unsigned K>
+    bool packs(const float* to) const {
+        return reinterpret_cast<std::uintptr_t>(to) % (K * sizeof(float)) == 0;
+    }
     template <unsigned K>
     void atomic_add_packed(float* to, const float* v, bool active) const {
         if (!active) return;
@@ -126,14 +131,17 @@ TEST_CASE("a gate has a second threshold where packed<4> applies") {
 
 TEST_CASE("records by key go by fours or twos where all are aligned to them") {
     using alone = policy<reduce::per_lane, commit::packed<4>>;
+    using by_twos = policy<reduce::per_lane, commit::packed<2>>;
     CHECK(groups_by_key<4, alone>() == sizes{4});
     CHECK(groups_by_key<8, alone>() == sizes{4, 4});
-    CHECK(groups_by_key<6, alone>() == sizes{2, 2, 2});
-    CHECK(groups_by_key<6, alone>(2) == sizes{2, 2, 2});
-    CHECK(groups_by_key<6, alone>(1).empty());
+    CHECK(groups_by_key<6, alone>().empty());  // every other record is not aligned to four
+    CHECK(groups_by_key<6, by_twos>() == sizes{2, 2, 2});
+    CHECK(groups_by_key<6, by_twos>(2) == sizes{2, 2, 2});
+    CHECK(groups_by_key<6, by_twos>(1).empty());
     CHECK(groups_by_key<4, alone>(2).empty());
     CHECK(groups_by_key<5, alone>().empty());
     CHECK(groups_by_key<4, policy<>>() == sizes{4});
+    CHECK(groups_by_key<6, policy<>>() == sizes{2, 2, 2});
     CHECK(groups_by_key<4, policy<reduce::per_lane>>().empty());  // no more than it says
 }
 

@@ -131,7 +131,8 @@ TEST_CASE("the default for floats, as docs/policies.md has it") {
                   gate::always>);
     CHECK(scatters<float, 2, gate::at_least<3, 5>>);
     CHECK(scatters<float, 3, gate::at_least<2, 3>>);
-    CHECK(scatters<float, 4, gate::at_least<2, 4>>);
+    CHECK(scatters<float, 4, gate::at_least<2, 6>>);
+    CHECK(scatters<float, 8, gate::at_least<2, 5>>);
     CHECK(scatters<float, 11, gate::at_least<2, 4>>);
     CHECK(scatters<float, 12, gate::at_least<1, 4>>);
     CHECK(scatters<float, 23, gate::at_least<1, 4>>);

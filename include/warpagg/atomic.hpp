@@ -15,6 +15,7 @@
 #include "reduce/scatter.hpp"
 #include "reduce/tree.hpp"
 #include "simt/call_site.hpp"
+#include "simt/iterations.hpp"
 #include "simt/warp.hpp"
 #if defined(__CUDACC__)
 #include "simt/cuda.hpp"

@@ -142,6 +142,9 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
     using choice = detail::choice<typename detail::scalar_of<V>::type, N, Policy>;
     using operation = typename choice::operation;
     using bits = value_t<W, std::uint32_t>;
+    static_assert(
+        requires { *(base + 0); } || requires { *base(0u, 0u); },
+        "the base is a pointer to the record of key 0, or an accessor base(key, i) -> T*");
     static_assert(!std::is_same_v<typename choice::commit, commit::staged>,
                   "warp_match_reduce_atomic takes the stage's copy as its base: staged says nothing here");
     static_assert(

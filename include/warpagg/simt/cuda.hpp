@@ -138,6 +138,7 @@ struct warp {
         }
     }
 
+#if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ >= 800  // before, `reduce::redux` takes butterfly
     /// `redux.sync`: v combined over the warp, in every lane. One instruction.
     /// @{
     __device__ __forceinline__ int redux(operation::sum, int v) const { return __reduce_add_sync(all, v); }
@@ -169,6 +170,7 @@ struct warp {
         return static_cast<T>(__reduce_xor_sync(all, static_cast<unsigned>(v)));
     }
     /// @}
+#endif
 
     /// The same flag, of which the compiler knows nothing. It would else split a loop on a flag that does not
     /// change in it, and a warp with flags of both kinds would run both halves, waiting at every shuffle.

@@ -5,6 +5,10 @@
 /// @file
 /// What compilers call the same thing by different names.
 
+#if __cplusplus < 202002L
+#error "warpagg needs C++20: compile with -std=c++20"
+#endif
+
 #if defined(__CUDACC__)
 /// Before a function: it runs on host and device, and is always inlined.
 #define WARPAGG_HD __host__ __device__ __forceinline__

@@ -37,8 +37,7 @@ using mask_t = value_t<W, bool>;
 /// | `store(p, i, v, active)` | `p[i] = v` per active lane |
 /// | `load_row(p, i, active)` | `p[i + lane]` per active lane; `i` is uniform and may be negative |
 /// | `store_row(p, i, v, active)` | `p[i + lane] = v` per active lane |
-/// | `atomic(op, dst, i, v, active)` | per active lane, `*dst(i) = op::combine(*dst(i), v)`, atomically,
-/// relaxed; `op` as in operation.hpp |
+/// | `atomic(op, dst, i, v, active)` | per active lane, `*dst(i) = op::combine(*dst(i), v)`, relaxed |
 template <class W>
 concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i, mask_t<W> p, float* m,
                         float* (*dst)(unsigned)) {
