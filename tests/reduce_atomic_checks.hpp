@@ -15,13 +15,19 @@ namespace {
 /// What is done with the values of a case's lanes.
 struct rule {
     unsigned alone_below = 0;                      ///< with fewer active lanes, each adds its own values
-    unsigned alone_below_if_packed = alone_below;  ///< the same where `packed<4>` applies
+    unsigned alone_below_if_packed = alone_below;  ///< the same where their commit packs neighbours
     bool touched_when_idle = false;
+    unsigned packed_neighbours = 4;  ///< how many it packs, in records that are aligned to as many
 };
 constexpr rule always_alone{33};
-template <class T, int N, class Policy>
-constexpr rule as_chosen{warpagg::detail::choice<T, N, Policy>::gate::lanes,
-                         warpagg::detail::choice<T, N, Policy>::gate::lanes_if_packed};
+
+template <class Commit>
+constexpr unsigned neighbours_of = 1;
+template <unsigned K>
+constexpr unsigned neighbours_of<warpagg::commit::packed<K>> = K;
+template <class T, int N, class Policy, class Choice = warpagg::detail::choice<T, N, Policy>>
+constexpr rule as_chosen{Choice::gate::lanes, Choice::gate::lanes_if_packed, false,
+                         neighbours_of<typename Choice::alone>};
 
 template <class T, class Op = operation::sum>
 struct problem {
@@ -68,7 +74,8 @@ struct problem {
     std::string first_difference(const std::vector<T>& after, rule r, bool may_pack) const {
         expectation<T> expected(before);
         for (unsigned c = 0; c < cases; ++c) {
-            const bool packed = may_pack && where.at(c, 0) * sizeof(T) % 16 == 0;
+            const bool packed =
+                may_pack && r.packed_neighbours > 1 && where.at(c, 0) % r.packed_neighbours == 0;
             const unsigned alone_below = packed ? r.alone_below_if_packed : r.alone_below;
             for (unsigned i = 0; i < n; ++i) expect(c, i, alone_below, r.touched_when_idle, expected);
         }

@@ -110,16 +110,16 @@ namespace gate {
 struct always {
     static constexpr auto of = axis::gate;
     static constexpr unsigned lanes = 0;            ///< the fewest active lanes that reduce
-    static constexpr unsigned lanes_if_packed = 0;  ///< the same where `packed<4>` applies
+    static constexpr unsigned lanes_if_packed = 0;  ///< the same where their commit packs
 };
-/// Fewer than K active lanes (fewer than Packed, where `packed<4>` applies) make their own atomics, by
-/// `packed<4>` unless the policy names another commit. Cost: one vote, in place of that of `skip`.
+/// Fewer than K active lanes (fewer than Packed, where their commit packs neighbours) make their own atomics,
+/// by `packed<4>` unless the policy names `packed<2>` or `scalar`. Cost: one vote, in place of that of `skip`.
 template <unsigned K, unsigned Packed = K>
 struct at_least {
     static_assert(K > 0, "at_least<K> takes K > 0: without a gate, say always");
     static constexpr auto of = axis::gate;
     static constexpr unsigned lanes = K;                 ///< the fewest active lanes that reduce
-    static constexpr unsigned lanes_if_packed = Packed;  ///< the same where `packed<4>` applies
+    static constexpr unsigned lanes_if_packed = Packed;  ///< the same where their commit packs
 };
 
 }  // namespace gate
