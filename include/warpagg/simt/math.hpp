@@ -87,7 +87,8 @@ WARPAGG_HD std::uint32_t countr_zero(std::uint32_t bits) {
 
 /// The bits of an unsigned of 32 bits in reverse order.
 template <class V>
-WARPAGG_HD V bit_reverse(V bits) {
+WARPAGG_HD V bit_reverse(const V& value) {
+    V bits = value;
     const auto swap = [&](unsigned distance, unsigned lower) {
         bits = ((bits >> distance) & lower) | ((bits & lower) << distance);
     };

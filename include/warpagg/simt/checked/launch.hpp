@@ -34,7 +34,7 @@ report try_launch(const grid& g, const Kernel& kernel) {
                      g.threads);
         std::abort();
     }
-    const std::uint64_t seed = g.seed ? *g.seed : seed_in_environment().value_or(1);
+    const std::uint64_t seed = g.seed.value_or(seed_in_environment().value_or(1));
     return detail::machine(g.blocks, g.threads, seed, g.count).run([&kernel](detail::machine& m) {
         kernel(checked(m));
     });
