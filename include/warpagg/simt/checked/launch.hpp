@@ -25,8 +25,8 @@ struct grid {
 /// a diagnosis no lane goes on, and the destructors of what lives in their stacks do not run. An exception
 /// that leaves the kernel leaves `try_launch` too.
 ///
-/// Cost: some 50 ns per lane and operation when optimized, ten times that when not. One launch uses one
-/// thread of the process; several threads may launch at the same time.
+/// Cost: a switch of fibers for each operation of each lane: slow, but it is for tests. One launch uses
+/// one thread of the process; several threads may launch at the same time.
 template <class Kernel>
 report try_launch(const grid& g, const Kernel& kernel) {
     if (g.threads == 0 || g.threads > 1024 || g.threads % 32 != 0) {
