@@ -113,7 +113,8 @@ struct always {
     static constexpr unsigned lanes_if_packed = 0;  ///< the same where their commit packs
 };
 /// Fewer than K active lanes (fewer than Packed, where their commit packs neighbours) make their own atomics,
-/// by `packed<4>` unless the policy names `packed<2>` or `scalar`. Cost: one vote, in place of that of `skip`.
+/// by `packed<4>` unless the policy names `packed<2>` or `scalar`. Cost: one vote, in place of that of
+/// `skip`.
 template <unsigned K, unsigned Packed = K>
 struct at_least {
     static_assert(K > 0, "at_least<K> takes K > 0: without a gate, say always");
