@@ -138,6 +138,35 @@ def examples_origin():
     )
 
 
+def stability():
+    f = results("stability")
+
+    def db(value):
+        return "" if value is None else f"{value:.2f}"
+
+    rows = [
+        [
+            r["what"],
+            f"{r['iterations']:,}",
+            f"{r['first_gaussians']:,}",
+            f"{r['gaussians']:,}",
+            db(r["training_psnr"]),
+            db(r["held_out_psnr"]),
+            db(r["ply_training_psnr"]),
+            str(r["skipped_steps"]),
+            f"{r['seconds']:.0f}",
+        ]
+        for r in f["rows"]
+        if r["sound"]
+    ]
+    head = ["what is hard", "iterations", "Gaussians at first", "at the end", "training PSNR, dB", "held-out", "training, from the `.ply`"]
+    unsound = [r["name"] for r in f["rows"] if not r["sound"]]
+    return markdown(head + ["skipped steps", "s"], rows) + (
+        f"\nNot finite, or not in place: {', '.join(unsound) or 'none'}. {f['device']}, driver {f['driver']}, nvcc {f['nvcc']}, "
+        f"commit {f['commit']}, seed {f['seed']}, photos of {f['resolution']} pixels a side.\n"
+    )
+
+
 EXAMPLES = {
     "histogram": "Histogram",
     "embedding_gradient": "Gradient of an embedding",
@@ -147,7 +176,7 @@ EXAMPLES = {
     "torch": "PyTorch",
 }
 
-TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin)}
+TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability)}
 TABLES.update({f"{name}_{m}": example(m, title) for name, title in EXAMPLES.items() for m in ("emulator", "gpu")})
 
 

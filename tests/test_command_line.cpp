@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -132,6 +133,9 @@ struct small_scene {
     std::int32_t camera_model = 1;  // PINHOLE
     std::array<double, 4> rotation{1, 0, 0, 0};
     double depth = 4;
+    double offset = 0, unit = 1;  ///< of coordinates: unit * (x + offset)
+
+    double moved(double x) const { return unit * (x + offset); }
 
     std::string cameras_bin() const {
         bytes out;
@@ -148,20 +152,21 @@ struct small_scene {
         bytes out;
         out.put(static_cast<std::uint64_t>(photos));
         for (int i = 0; i < photos; ++i) {
-            out.put(static_cast<std::uint32_t>(i + 1)).put(rotation).put(0.1 * i).put(0.0).put(depth);
+            out.put(static_cast<std::uint32_t>(i + 1)).put(rotation);
+            for (const double x : {0.1 * i, 0.0, depth}) out.put(unit * (x - offset));
             out.put(std::uint32_t{1}).put_text(photo(i)).put(std::uint64_t{0});
         }
         return out.data();
     }
 
-    static std::string points_bin() {
+    std::string points_bin() const {
         bytes out;
         out.put(std::uint64_t{8});
         for (unsigned i = 0; i < 8; ++i) {
             out.put(std::uint64_t{i + 1})
-                .put(i & 1 ? 0.5 : -0.5)
-                .put(i & 2 ? 0.5 : -0.5)
-                .put(i & 4 ? 0.5 : -0.5);
+                .put(moved(i & 1 ? 0.5 : -0.5))
+                .put(moved(i & 2 ? 0.5 : -0.5))
+                .put(moved(i & 4 ? 0.5 : -0.5));
             out.put(std::array<std::uint8_t, 3>{200, 100, 50}).put(0.5).put(std::uint64_t{0});
         }
         return out.data();
@@ -422,6 +427,17 @@ TEST_CASE("a number that makes no sense is refused") {
                                                         {"--max-cap", "0", ""},
                                                         {"--sh-degree-interval", "0", ""},
                                                         {"--save-iterations", "abc", ""},
+                                                        {"--position-lr-init", "nan", ""},
+                                                        {"--position-lr-final", "0", ""},
+                                                        {"--feature-lr", "inf", ""},
+                                                        {"--opacity-lr", "-1e-3", ""},
+                                                        {"--scaling-lr", "1e-60", ""},
+                                                        {"--rotation-lr", "fast", ""},
+                                                        {"--densify-grad-threshold", "nan", ""},
+                                                        {"--opacity-reset-interval", "0", ""},
+                                                        {"--densification-interval", "0", ""},
+                                                        {"--densify-from-iter", "-1", ""},
+                                                        {"--densify-until-iter", "1.5", ""},
                                                         {"--background", "beige", ""},
                                                         {"--device", "tpu", ""},
                                                         {"--gradient", "magic", ""},
@@ -576,6 +592,78 @@ TEST_CASE("a scene of photos trains") {
     small_scene{}.write(folder / "scene");
     check_success(training(folder / "scene") + words{"-o", (folder / "results").string()});
     CHECK(read_json(folder / "results/metrics.json").at("psnr").is_null());  // no views were held out
+}
+
+TEST_CASE("a scene far from the origin, in another unit: the file has its coordinates, and all read it") {
+    for (const auto& [offset, unit] : {std::pair(0.0, 1e-4), std::pair(1e4, 1.0), std::pair(0.0, 1e4)}) {
+        CAPTURE(offset);
+        CAPTURE(unit);
+        const temporary_folder folder;
+        small_scene scene;
+        scene.offset = offset;
+        scene.unit = unit;
+        scene.write(folder / "scene");
+        const fs::path output = folder / "results", again = folder / "again", model = model_of(output, 5);
+        const words data{"-d", (folder / "scene").string(), "--eval", "--test-every", "2", "--device", "cpu"};
+        check_success(words{"train", "-i", "5", "-o", output.string()} + data);
+        const gs::gaussians saved = gs::read_ply(model);
+        REQUIRE(saved.count() == 8);
+        for (const float x : saved.mean)
+            CHECK(std::abs(static_cast<double>(x) / unit - offset) == doctest::Approx(0.5).epsilon(0.1));
+        for (const float s : saved.log_scale)
+            CHECK(static_cast<double>(s) - std::log(unit) == doctest::Approx(0).epsilon(0.1));
+
+        check_success(words{"evaluate", model.string(), "-o", again.string()} + data);
+        const double psnr = read_json(output / "metrics.json").at("psnr").get<double>();
+        CHECK(read_json(again / "metrics.json").at("psnr").get<double>() ==
+              doctest::Approx(psnr).epsilon(1e-12));
+        check_success(words{"render", model.string(), "-o", (folder / "pictures").string()} + data);
+        CHECK(contents(folder / "pictures") == contents(output / "test/ours_5/renders"));
+
+        // The orbit sees something, wherever it is.
+        check_success({"render", model.string(), "-o", (folder / "orbit").string(), "--orbit-views", "1",
+                       "-r", "40", "--device", "cpu"});
+        const gs::image picture = gs::read_image(folder / "orbit/00000.png");
+        CHECK(std::ranges::any_of(std::vector<std::uint8_t>(picture.rgba.begin() + 4 * (20 * 40 + 15),
+                                                            picture.rgba.begin() + 4 * (20 * 40 + 25)),
+                                  [](std::uint8_t level) { return level > 20 && level < 255; }));
+    }
+}
+
+TEST_CASE("rates and intervals are options, by the reference implementation's names") {
+    const temporary_folder folder;
+    check_success(small_training(folder / "default") + words{"-q"});
+    const json usual = read_json(folder / "default/settings.json");
+    const json expected{{"position_lr_init", 1.6e-4},
+                        {"position_lr_final", 1.6e-6},
+                        {"feature_lr", 2.5e-3},
+                        {"opacity_lr", 2.5e-2},
+                        {"scaling_lr", 5e-3},
+                        {"rotation_lr", 1e-3},
+                        {"opacity_reset_interval", 3000},
+                        {"densification_interval", 100},
+                        {"densify_from_iter", 500},
+                        {"densify_until_iter", 30}};
+    for (const auto& [name, value] : expected.items()) {
+        CAPTURE(name);
+        CHECK(usual.at(name) == value);
+    }
+
+    json others{{"position_lr_init", 1e-3},     {"position_lr_final", 1e-5},   {"feature_lr", 2e-3},
+                {"opacity_lr", 3e-2},           {"scaling_lr", 4e-3},          {"rotation_lr", 2e-3},
+                {"opacity_reset_interval", 25}, {"densification_interval", 5}, {"densify_from_iter", 10},
+                {"densify_until_iter", 20}};
+    words options{"-q"};
+    for (const auto& [name, value] : others.items()) options = options + words{"--" + name, value.dump()};
+    check_success(small_training(folder / "other") + options);
+    const json chosen = read_json(folder / "other/settings.json");
+    for (const auto& [name, value] : others.items()) {
+        CAPTURE(name);
+        CHECK(chosen.at(name) == value);
+    }
+    // They are not only noted: it densifies before iteration 20.
+    CHECK(read_json(folder / "other/metrics.json").at("gaussians") !=
+          read_json(folder / "default/metrics.json").at("gaussians"));
 }
 
 TEST_CASE("--quiet prints nothing") {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "engines.hpp"
+#include "error.hpp"
 #include "model/initialise.hpp"
 #include "train/trainer.hpp"
 
@@ -14,33 +16,6 @@ namespace {
 using gs::gaussians;
 using gs::train::densify_rule;
 using gs::train::engine;
-
-using make_engine = std::unique_ptr<engine> (*)();
-
-std::vector<make_engine> engines() {
-    std::vector<make_engine> all{gs::train::make_cpu_engine};
-#if defined(WARPAGG_TEST_CUDA)
-    all.push_back(gs::train::make_cuda_engine);
-#endif
-    return all;
-}
-
-gs::scene small_scene(const char* name = "synthetic:spheres") {
-    gs::load_options o;
-    o.data = name;
-    o.resolution = 48;
-    o.eval = true;
-    return gs::load_scene(o, [](const std::string&) {});
-}
-
-gs::train::step_plan plan_for(std::size_t view) {
-    gs::train::schedule s;
-    gs::train::step_plan p;
-    p.view = view;
-    p.rates = s.rates_at(1);
-    p.watch = true;
-    return p;
-}
 
 bool same(const gaussians& a, const gaussians& b) {
     return a.mean == b.mean && a.log_scale == b.log_scale && a.quaternion == b.quaternion &&
@@ -77,9 +52,9 @@ TEST_CASE("training brings the held-out views near the photos") {
         e->set_model(gs::from_points(scene.points, 1, 3000, 1));
         const double before = e->measure(0, {}).psnr();
         gs::train::train_options o;
-        o.iterations = 300;
-        o.sh_degree = 1;
-        o.sh_degree_interval = 100;
+        o.schedule.iterations = 300;
+        o.schedule.sh_degree = 1;
+        o.schedule.sh_degree_interval = 100;
         o.max_cap = 4000;
         int reports = 0;
         gs::train::train_events events{[&](const gs::train::progress& p) {
@@ -227,6 +202,18 @@ TEST_CASE("opacities are brought down, never up") {
         e->reset_opacity(0.01f);
         const float most = std::log(0.01f / 0.99f);
         CHECK(e->get_model().opacity == std::vector<float>{-9, -4.6f, most, most});
+    }
+}
+
+TEST_CASE("a picture too large to be numbered is refused") {
+    const gs::scene scene = small_scene();
+    gs::camera large = scene.test[0].camera;
+    large.width = large.height = 46341;  // squared, beyond 31 bits
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_model(gs::from_points(scene.points, 0, 1, 1));
+        CHECK_THROWS_WITH_AS(e->render(large, {}), doctest::Contains("46341x46341 has more than 2^30 pixels"),
+                             gs::error);
     }
 }
 

@@ -426,6 +426,23 @@ TEST_CASE("images without pixels, with too many, or with too few bytes for them"
     CHECK(says(error_of_bytes(with_jpeg_size(jpeg, 50, 40)), {"b.img", "truncated"}));
 }
 
+TEST_CASE("a JPEG of more scans than a photo has is refused, however few bytes they take") {
+    const temporary_folder folder;
+    write_jpeg(folder / "a.jpg", 64, 64, JCS_GRAYSCALE, smooth_samples(64, 64, 1), true);
+    const std::string jpeg = gs_test::read_file(folder / "a.jpg");
+    // The first scan, of the blocks' means, again and again: up to the next one's Huffman table.
+    const std::size_t scan = jpeg.find("\xFF\xDA"), end = jpeg.find("\xFF\xC4", scan);
+    const auto with_scans = [&](int more) {
+        std::string bytes = jpeg.substr(0, scan);
+        for (int i = 0; i < more; ++i) bytes += jpeg.substr(scan, end - scan);
+        gs_test::write_file(folder / "b.jpg", bytes + jpeg.substr(scan));
+        return error_of_reading(folder / "b.jpg");
+    };
+    CHECK(with_scans(0).empty());
+    CHECK(with_scans(50).empty());
+    CHECK(says(with_scans(100), {"b.jpg", "more than 100 scans"}));
+}
+
 TEST_CASE("CMYK JPEGs are refused by name") {
     const temporary_folder folder;
     write_jpeg(folder / "a.jpg", 8, 8, JCS_CMYK, smooth_samples(8, 8, 4));

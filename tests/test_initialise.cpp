@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <limits>
 #include <numeric>
 
@@ -42,6 +44,29 @@ gs::scene scene_seen_from(const std::string& source, std::initializer_list<glm::
         s.train.push_back(v);
     }
     return s;
+}
+
+/// Twenty cameras about an object, none like another.
+gs::scene scene_that_looks_at(const glm::dvec3& object, double distance) {
+    gs::scene s;
+    s.source = "Blender";
+    for (int i = 0; i < 20; ++i) {
+        const glm::dvec3 z = glm::normalize(glm::dvec3(std::cos(1.0 * i), std::sin(1.7 * i), -1 - 0.1 * i));
+        const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0, 1, 0.1 * i), z));
+        gs::view v;
+        v.camera.rotation = glm::transpose(glm::dmat3(x, glm::cross(z, x), z));
+        v.camera.translation = -(v.camera.rotation * (object - distance * z));
+        s.train.push_back(v);
+    }
+    return s;
+}
+
+double half_side_about(const glm::dvec3& centre, const std::vector<gs::coloured_point>& points) {
+    double farthest = 0;
+    for (const gs::coloured_point& p : points)
+        for (glm::length_t axis = 0; axis < 3; ++axis)
+            farthest = std::max(farthest, std::abs(p.position[axis] - centre[axis]));
+    return farthest;
 }
 
 }  // namespace
@@ -131,8 +156,8 @@ TEST_CASE("from_points: `most` draws without replacement, by seed, and sizes wha
     CHECK(gs::from_points(points, 0, 1000, 7).mean == gs::from_points(points, 0, all, 8).mean);
 }
 
-TEST_CASE("random_points: the box of a Blender scene") {
-    const gs::scene blender = scene_seen_from("Blender", {{4, 0, 0}});
+TEST_CASE("random_points: the box of a NeRF-synthetic scene") {
+    const gs::scene blender = scene_that_looks_at(glm::dvec3(0), 4.0311288);
     const std::vector<gs::coloured_point> points = gs::random_points(blender, 5000, 3);
     REQUIRE(points.size() == 5000);
     glm::dvec3 least{0}, greatest{0}, sum{0};
@@ -142,9 +167,9 @@ TEST_CASE("random_points: the box of a Blender scene") {
         sum += p.position;
     }
     for (int axis = 0; axis < 3; ++axis) {
-        CHECK(least[axis] >= -1.3);
+        CHECK(least[axis] >= -1.3000001);
         CHECK(least[axis] < -1.25);
-        CHECK(greatest[axis] <= 1.3);
+        CHECK(greatest[axis] <= 1.3000001);
         CHECK(greatest[axis] > 1.25);
         CHECK(std::abs(sum[axis] / 5000) < 0.05);
     }
@@ -154,16 +179,48 @@ TEST_CASE("random_points: the box of a Blender scene") {
     CHECK(bright->colour.r == 255);
 }
 
+TEST_CASE("random_points: the box follows what the cameras look at") {
+    const glm::dvec3 object(5e3, -7e3, 9e3);
+    const gs::scene blender = scene_that_looks_at(object, 0.1);
+    REQUIRE(blender.looked_at());
+    CHECK(glm::distance(*blender.looked_at(), object) < 1e-5);
+    CHECK(half_side_about(object, gs::random_points(blender, 1000, 3)) ==
+          doctest::Approx(0.1 * 1.3 / 4.0311288).epsilon(0.01));
+}
+
+TEST_CASE("random_points: cameras that look one way have the object where the origin is nearest") {
+    gs::scene s = scene_seen_from("Blender", {{0.5, 0.25, -4}});  // looks along z
+    SUBCASE("one") { CHECK(glm::distance(s.looked_at().value(), {0.5, 0.25, 0}) < 1e-5); }
+    SUBCASE("two, parallel") {
+        s = scene_seen_from("Blender", {{0.5, 0.25, -4}, {-0.5, 0.25, -4}});
+        CHECK(glm::distance(s.looked_at().value(), {0, 0.25, 0}) < 1e-5);
+    }
+    SUBCASE("two, identical") {
+        s.train.push_back(s.train[0]);
+        CHECK(glm::distance(s.looked_at().value(), {0.5, 0.25, 0}) < 1e-5);
+    }
+    SUBCASE("in the internal frame it is the same point") {
+        const glm::dvec3 before = s.looked_at().value();
+        gs::recentre(s, [](const std::string&) {});
+        CHECK(s.train[0].camera.centre() == glm::dvec3(0));
+        CHECK(glm::distance(s.frame.out_of(s.looked_at().value()), before) < 1e-5);
+    }
+    SUBCASE("an object behind the camera is none: the box is about the camera") {
+        s = scene_seen_from("Blender", {{0, 0, 4}});
+        CHECK_FALSE(s.looked_at());
+        CHECK(half_side_about({0, 0, 4}, gs::random_points(s, 1000, 3)) == doctest::Approx(1).epsilon(0.01));
+    }
+    SUBCASE("on a tripod they look at nothing together") {
+        s = scene_that_looks_at({0, 0, 0}, 4);
+        for (gs::view& v : s.train) v.camera.translation = -(v.camera.rotation * glm::dvec3(3, 2, 1));
+        CHECK_FALSE(s.looked_at());
+    }
+}
+
 TEST_CASE("random_points: the box around the cameras of another scene, by seed") {
     const gs::scene colmap = scene_seen_from("COLMAP", {{10, 0, 0}, {12, 0, 0}, {10, 2, 0}, {12, 2, 0}});
-    const glm::dvec3 centre{11, 1, 0};
     const std::vector<gs::coloured_point> points = gs::random_points(colmap, 1000, 3);
-    double farthest = 0;
-    for (const gs::coloured_point& p : points) {
-        for (int axis = 0; axis < 3; ++axis) {
-            farthest = std::max(farthest, std::abs(p.position[axis] - centre[axis]));
-        }
-    }
+    const double farthest = half_side_about({11, 1, 0}, points);
     CHECK(farthest <= colmap.extent());
     CHECK(farthest > 0.95 * colmap.extent());
     CHECK(gs::random_points(colmap, 10, 3)[9].position == points[9].position);

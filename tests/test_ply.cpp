@@ -301,6 +301,19 @@ TEST_CASE("ply: a header that is no header is refused") {
     check_refused(with_replaced(text, "end_header", "element face 1\nend_header"), {"'face'"});
 }
 
+TEST_CASE("ply: a header that goes on and on is refused") {
+    const std::string text = header("1", needed_properties());
+    const std::string comment = "comment " + std::string(60000, 'a') + "\n";
+    const temporary_folder folder;
+    write_text(folder.path / "long.ply", with_replaced(text, "element", comment + "element") + floats(14));
+    CHECK(gs::read_ply(folder.path / "long.ply").count() == 1);
+    check_refused(with_replaced(text, "element", comment + comment + "element") + floats(14),
+                  {"no end_header", "65536"});
+    check_refused(with_replaced(text, "float y", "float " + std::string(5000, 'y') + " y"),
+                  {"'y'", "'float'"});
+    check_refused(with_replaced(text, "float y", std::string(5000, 'y') + " y"), {"'y'", "yyy ...'"});
+}
+
 TEST_CASE("ply: a count that is none is refused") {
     for (const char* count : {"-1", "1.5", "many", "1e3", "99999999999999999999999"}) {
         const std::string quoted = "'" + std::string(count) + "'";
@@ -365,4 +378,17 @@ TEST_CASE("ply: an unwritable folder leaves the existing file as it was") {
     if (permissions_bind) CHECK_THROWS_AS(gs::write_ply(file, sample_model(1, 5)), gs::error);
     check_same(gs::read_ply(file), good);
     fs::permissions(folder.path, fs::perms::owner_all);
+}
+
+TEST_CASE("ply: what is not finite never replaces a good file") {
+    const temporary_folder folder;
+    const fs::path file = folder.path / "model.ply";
+    const gs::gaussians good = sample_model(1, 3);
+    gs::write_ply(file, good);
+    gs::gaussians poisoned = good;
+    poisoned.log_scale[3 * 2 + 1] = std::numeric_limits<float>::quiet_NaN();
+    CHECK_THROWS_WITH_AS(gs::write_ply(file, poisoned),
+                         doctest::Contains("'scale_1' of vertex 2 is not finite"), gs::error);
+    check_same(gs::read_ply(file), good);
+    CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
 }

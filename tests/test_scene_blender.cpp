@@ -280,6 +280,19 @@ TEST_CASE("transforms files that say something impossible") {
         {"last row",
          set_matrix({{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 1, 1}}),
          {"frame 1", "not a rotation"}},
+        {"huge",
+         set_matrix({{1e300, 0, 0, 0}, {0, 1e300, 0, 0}, {0, 0, 1e300, 0}, {0, 0, 0, 1}}),
+         {"frame 1", "not a rotation"}},
+        {"far",
+         set_matrix({{1, 0, 0, 1e200}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}),
+         {"frame 1", "translation", "1e30"}},
+        {"pose of all",
+         [](json& f) {
+             f["transform_matrix"] = f["frames"][1]["transform_matrix"];
+             f["frames"][1].erase("transform_matrix");
+         },
+         {"frame 1", "transform_matrix is missing"}},
+        {"null number", [](json& f) { f["frames"][1]["cx"] = nullptr; }, {"frame 1", "cx is not a number"}},
     };
     for (const wrong_file& wrong : cases) {
         const temporary_folder folder;
@@ -324,6 +337,111 @@ TEST_CASE("what is not JSON is named by file, line and byte") {
     std::filesystem::remove(file);
     std::filesystem::create_directory(file);
     CHECK(says(error_of_loading(folder.path()), {"transforms_train.json"}));
+}
+
+TEST_CASE("a transforms file may spell its texts and numbers as JSON allows, and nest what is not read") {
+    const temporary_folder folder;
+    write_photo(folder / "caf\xC3\xA9 \xF0\x9F\x98\x80/a\"b.png");
+    write_file(folder / "transforms_train.json",
+               "{\"camera_angle_x\":8e-1 , \"frames\" :\r\n[\t{\"file_path\": "
+               "\"caf\\u00e9 \\uD83D\\uDE00\\/a\\\"b\", \"transform_matrix\": "
+               "[[1,-0,0E0,1e-400],[0,1.0,0,2.5e+0],[0,0,1,-3],[0,0,0,1]], \"cx\": 7, \"c\\u0078\": 9}],"
+               "\"unread\": [[], {}, [{\"\": [null, true, false, \"\\u0000\"]}]]}");
+    const gs::scene scene = load(folder.path());
+    REQUIRE(scene.train.size() == 1);
+    CHECK(scene.train[0].name == "caf\xC3\xA9 \xF0\x9F\x98\x80/a\"b.png");
+    CHECK(scene.train[0].camera.centre() == glm::dvec3(0, 2.5, -3));
+    CHECK(scene.train[0].camera.cx == 9);  // of a field that is said twice the last one counts
+    CHECK(scene.train[0].camera.fx == doctest::Approx(10 / std::tan(0.4)));
+
+    write_file(folder / "transforms_train.json", "{\"frames\": [], \"frames\": []}");
+    CHECK(says(error_of_loading(folder.path()), {"transforms_train.json", "frames twice"}));
+}
+
+TEST_CASE("what nlohmann's library takes for JSON, and nothing else, is JSON") {
+    // Each a value, within an array: that is a transforms file only if it is no object.
+    const char* texts[] = {"0",
+                           "-0",
+                           "01",
+                           "-",
+                           "+1",
+                           ".5",
+                           "1.",
+                           "1.5",
+                           "1e",
+                           "1e+",
+                           "1E-2",
+                           "1e5.5",
+                           "0x10",
+                           "1 2",
+                           "1,",
+                           ",1",
+                           "1,,2",
+                           "",
+                           "[",
+                           "]",
+                           "[]]",
+                           "[1,]",
+                           "{",
+                           "{}",
+                           "{1:2}",
+                           "{\"a\"}",
+                           "{\"a\":}",
+                           "{\"a\":1,}",
+                           "{,}",
+                           "{\"a\"1}",
+                           "\"",
+                           "\"\\\"",
+                           "\"\\x\"",
+                           "\"\t\"",
+                           "\"\\t\"",
+                           "\"\\u\"",
+                           "\"\\u12\"",
+                           "\"\\u12g4\"",
+                           "\"\\u1aF4\"",
+                           "\"\\ud800\"",
+                           "\"\\ud800\\u0041\"",
+                           "\"\\udc00\"",
+                           "\"\\ud834\\udd1e\"",
+                           "\"\\u+123\"",
+                           "tru",
+                           "true",
+                           "True",
+                           "nul",
+                           "nullx",
+                           "falsee",
+                           "1 // x",
+                           "'a'",
+                           "\"a\" \"b\"",
+                           "[1 2]",
+                           "{\"a\":1 \"b\":2}",
+                           "\v1",
+                           "--1",
+                           "1-",
+                           "-a",
+                           "[}",
+                           "{]"};
+    const temporary_folder folder;
+    std::size_t taken = 0;
+    for (const char* text : texts) {
+        CAPTURE(text);
+        const std::string whole = "[" + std::string(text) + "]";
+        write_file(folder / "transforms_train.json", whole);
+        const bool valid = json::accept(whole);
+        taken += valid;
+        CHECK(says(error_of_loading(folder.path()), {valid ? "is not a JSON object" : "is not valid JSON"}));
+    }
+    CHECK(taken == 10);
+}
+
+TEST_CASE("a transforms file that nests too deeply is refused before the stack overflows") {
+    const temporary_folder folder;
+    for (const std::string opening : {"[", "{\"a\":"}) {
+        std::string text = "{\"a\":";
+        for (int i = 0; i < 100000; ++i) text += opening;
+        write_file(folder / "transforms_train.json", text);
+        CHECK(says(error_of_loading(folder.path()), {"transforms_train.json", "100 deep", "line 1"}));
+    }
 }
 
 TEST_CASE("photos of a Blender scene that are damaged or of no known kind") {

@@ -307,13 +307,12 @@ TEST_CASE("a COLMAP model reads the same from binary and from text") {
     REQUIRE(binary.cameras.size() == 5);
     REQUIRE(text.cameras.size() == 5);
     for (std::size_t i = 0; i < 5; ++i) {
-        const auto& [id, model, a, lens_a] = binary.cameras[i];
-        const auto& b = text.cameras[i].intrinsics;
-        const auto& lens_b = text.cameras[i].distortion;
-        CHECK(id == written.cameras[i].id);
-        CHECK(id == text.cameras[i].id);
-        CHECK(model == written.cameras[i].model);
-        CHECK(model == text.cameras[i].model);
+        const gs::colmap_camera &a = binary.cameras[i], &b = text.cameras[i];
+        const gs::lens &lens_a = a.distortion, &lens_b = b.distortion;
+        CHECK(a.id == written.cameras[i].id);
+        CHECK(a.id == b.id);
+        CHECK(a.model == written.cameras[i].model);
+        CHECK(b.model == written.cameras[i].model);
         CHECK(std::array{a.fx, a.fy, a.cx, a.cy} == std::array{b.fx, b.fy, b.cx, b.cy});
         CHECK(std::pair{a.width, a.height} == std::pair{b.width, b.height});
         CHECK(std::array{lens_a.k1, lens_a.k2, lens_a.p1, lens_a.p2} ==
@@ -327,8 +326,8 @@ TEST_CASE("a COLMAP model reads the same from binary and from text") {
     REQUIRE(binary.images.size() == 3);
     REQUIRE(text.images.size() == 3);
     for (std::size_t i = 0; i < 3; ++i) {
-        CHECK(binary.images[i].name == written.images[i].name);
-        CHECK(binary.images[i].name == text.images[i].name);
+        CHECK(binary.name(binary.images[i]) == written.images[i].name);
+        CHECK(text.name(text.images[i]) == written.images[i].name);
         CHECK(binary.images[i].camera_id == written.images[i].camera_id);
         CHECK(binary.images[i].camera_id == text.images[i].camera_id);
         CHECK(binary.images[i].rotation == text.images[i].rotation);
@@ -517,6 +516,17 @@ TEST_CASE("a lens that folds the photo over is refused, not straightened into no
     write_binary(folder / "sparse/0", model);
     write_photos(folder / "images", model, 40, 30);
     CHECK(says(error_of_loading(folder.path()), {"a.png", "distorts too strongly"}));
+}
+
+TEST_CASE("a lens whose picture overflows is sampled within the photo") {
+    gs::camera camera;
+    camera.width = camera.height = 4;
+    camera.fx = camera.fy = 1e-200;
+    gs::image photo;
+    photo.width = photo.height = 4;
+    photo.rgba.assign(4 * 4 * 4, 200);
+    const gs::image bent = gs::undistort(photo, camera, {1, -1, 0, 0}, camera);  // inf - inf
+    CHECK(bent.rgba == photo.rgba);
 }
 
 TEST_CASE("the resolution scales photos and intrinsics by the same exact ratios") {
@@ -720,6 +730,13 @@ TEST_CASE("models that say something impossible, in binary and in text") {
         {"centre",
          [](auto& m) { m.cameras[0].parameters[2] = infinity; },
          {"cameras", "camera 1", "not finite"}},
+        {"tiny focal", [](auto& m) { m.cameras[0].parameters[0] = 1e-300; }, {"camera 1", "focal length"}},
+        {"huge focal", [](auto& m) { m.cameras[0].parameters[1] = 1e300; }, {"camera 1", "focal length"}},
+        {"twice", [](auto& m) { m.cameras[1].id = 1; }, {"cameras", "camera 1 twice"}},
+        {"name twice", [](auto& m) { m.images[0].name = "b.png"; }, {"images", "b.png twice"}},
+        {"long name",
+         [](auto& m) { m.images[0].name = std::string(5000, 'x'); },
+         {"images", "xxx ...", "too long"}},
         {"camera id", [](auto& m) { m.images[1].camera_id = 99; }, {"images", "a.png", "camera 99"}},
         {"zero turn",
          [](auto& m) {
@@ -735,6 +752,12 @@ TEST_CASE("models that say something impossible, in binary and in text") {
          {"images", "translation", "c.png"}},
         {"NaN point", [](auto& m) { m.points[1].position[2] = not_a_number; }, {"points3D", "not finite"}},
         {"far point", [](auto& m) { m.points[0].position[0] = -infinity; }, {"points3D", "not finite"}},
+        {"farther than squares go",
+         [](auto& m) { m.points[0].position[0] = 1e200; },
+         {"points3D", "position", "1e30"}},
+        {"far camera",
+         [](auto& m) { m.images[0].translation[2] = -1e200; },
+         {"images", "translation", "c.png", "1e30"}},
     };
     for (const bool binary : {true, false})
         for (const wrong_model& wrong : cases) {
@@ -853,6 +876,15 @@ TEST_CASE("malformed lines of text models are named by file and number") {
         CHECK(says(problem, {part}));
         for (const std::string& word : words) CHECK(says(problem, {word}));
     }
+}
+
+TEST_CASE("a word that is no number is shown, but not all of it, nor what would steer a terminal") {
+    const temporary_folder folder;
+    write_text(folder / "sparse/0", plain_model());
+    write_file(folder / "sparse/0/cameras.txt", "1\x1B[2J" + std::string(10000, '1') + " PINHOLE\n");
+    const std::string problem = error_of_loading(folder.path());
+    CHECK(says(problem, {"line 1", "malformed", "1?[2J11111", "1 ...'"}));
+    CHECK(problem.size() < 1000);
 }
 
 TEST_CASE("photos that are missing or unreadable are named, the first by name") {

@@ -41,3 +41,52 @@ TEST_CASE("densification ends half-way, and opacities are reset only while it la
     s.iterations = 100000;
     CHECK(s.densify_until() == 15000);
 }
+
+TEST_CASE("rates and intervals are the reference implementation's, and can be others") {
+    schedule s;
+    s.iterations = 30000;
+    CHECK(s.rates_at(0)[0] == 1.6e-4f);
+    CHECK(s.rates_at(30000)[0] == doctest::Approx(1.6e-6));
+    CHECK(s.rates_at(0)[1] == 5e-3f);    // log scale
+    CHECK(s.rates_at(0)[2] == 1e-3f);    // quaternion
+    CHECK(s.rates_at(0)[3] == 2.5e-2f);  // opacity
+    CHECK(s.rates_at(0)[4] == 2.5e-3f);  // colour
+    CHECK(s.densify_until() == 15000);
+
+    s.position_lr_init = 1e-2;
+    s.position_lr_final = 1e-4;
+    s.scaling_lr = 1;
+    s.rotation_lr = 2;
+    s.opacity_lr = 3;
+    s.feature_lr = 40;
+    CHECK(s.rates_at(15000)[0] == doctest::Approx(1e-3));
+    CHECK(s.rates_at(30001)[0] == doctest::Approx(1e-4));
+    CHECK(s.rates_at(7) == std::array<float, 8>{s.rates_at(7)[0], 1, 2, 3, 40, 2, 2, 2});
+}
+
+TEST_CASE("densification and resets keep to their intervals") {
+    schedule s;
+    s.iterations = 1000;
+    s.densify_from_iter = 20;
+    s.densification_interval = 10;
+    s.densify_until_iter = 900;
+    s.opacity_reset_interval = 30;
+    CHECK_FALSE(s.densifies(20));
+    CHECK(s.densifies(30));
+    CHECK_FALSE(s.densifies(35));
+    CHECK(s.densifies(890));
+    CHECK_FALSE(s.densifies(900));
+    CHECK(s.watches(899));
+    CHECK_FALSE(s.watches(900));
+    CHECK(s.resets_opacity(30));
+    CHECK_FALSE(s.resets_opacity(40));
+    CHECK(s.resets_opacity(870));
+    CHECK_FALSE(s.resets_opacity(900));
+    CHECK_FALSE(s.drops_large(30));
+    CHECK(s.drops_large(31));
+    s.white = true;
+    CHECK(s.resets_opacity(20));
+    s.densify_until_iter = 0;
+    CHECK_FALSE(s.densifies(30));
+    CHECK_FALSE(s.resets_opacity(30));
+}

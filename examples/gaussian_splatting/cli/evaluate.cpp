@@ -13,8 +13,9 @@ void evaluate(const settings& s) {
     const session session(s);
     const auto engine = session.make_engine();
     const stopwatch loading;
-    const gaussians model = read_ply(s.ply);
+    gaussians model = read_ply(s.ply);
     scene scene = session.load();
+    model = into(scene.frame, std::move(model));
     if (scene.test.empty()) scene.test = std::move(scene.train);  // without --eval, all views are measured
     scene.train.clear();
     const auto background = session.background(scene.has_alpha);

@@ -7,6 +7,7 @@
 
 #include "../error.hpp"
 #include "../model/ply.hpp"
+#include "../scene/look_at.hpp"
 #include "session.hpp"
 
 namespace gs::cli {
@@ -18,21 +19,8 @@ struct named_camera {
     gs::camera camera;
 };
 
-/// A camera at `from` that looks at `to`.
-camera look_at(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& up, int size) {
-    const glm::dvec3 z = glm::normalize(to - from);
-    const glm::dvec3 x = glm::normalize(glm::cross(z, up));
-    const glm::dvec3 y = glm::cross(z, x);
-    camera c;
-    c.width = c.height = size;
-    c.fx = c.fy = 1.2 * size;
-    c.cx = c.cy = 0.5 * size;
-    c.rotation = glm::transpose(glm::dmat3(x, y, z));
-    c.translation = -(c.rotation * from);
-    return c;
-}
-
-/// Round the middle of the cloud, in the plane in which it is widest, from above.
+/// Round the middle of the cloud, in the plane in which it is widest, from above. The model is in the frame
+/// that it has by itself.
 std::vector<named_camera> orbit(const gaussians& model, int views, int size) {
     const std::size_t n = model.count();
     std::array<glm::dvec3, 2> quartiles;  // robust against floaters
@@ -49,7 +37,7 @@ std::vector<named_camera> orbit(const gaussians& model, int views, int size) {
     up[thin] = 1;
     ahead[(thin + 1) % 3] = 1;
     const glm::dvec3 side = glm::cross(up, ahead);
-    const double radius = std::max(2.5 * glm::length(spread), 1.0);
+    const double radius = 2.5 * std::max(glm::length(spread), 1.0);
     std::vector<named_camera> cameras;
     for (int i = 0; i < views; ++i) {
         const double a = 2 * std::acos(-1.0) * i / views;
@@ -57,7 +45,7 @@ std::vector<named_camera> orbit(const gaussians& model, int views, int size) {
             middle + radius * (0.9 * (std::cos(a) * ahead + std::sin(a) * side) + 0.45 * up);
         char name[32];
         std::snprintf(name, sizeof name, "%05d.png", i);
-        cameras.push_back({name, look_at(from, middle, up, size)});
+        cameras.push_back({name, look_at(from, middle, up, size, 1.2 * size)});
     }
     return cameras;
 }
@@ -78,15 +66,18 @@ int orbit_size(int resolution) { return divides_size(resolution) ? 800 / resolut
 void render(const settings& s) {
     const session session(s);
     const auto engine = session.make_engine();
-    const gaussians model = read_ply(s.ply);
+    gaussians model = read_ply(s.ply);
     if (model.count() == 0) throw error(s.ply + " holds no Gaussians: there is nothing to draw");
     const bool orbits = s.scene.data.empty();
     bool alpha = false;
     std::vector<named_camera> cameras;
     if (orbits) {
+        const frame own = frame_of(model);
+        model = into(own, std::move(model));
         cameras = orbit(model, s.orbit_views, orbit_size(s.scene.resolution));
     } else {
         const scene scene = session.load();
+        model = into(scene.frame, std::move(model));
         alpha = scene.has_alpha;
         cameras = cameras_of(scene);
     }

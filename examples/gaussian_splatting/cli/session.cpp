@@ -18,7 +18,10 @@ void session::say(const std::string& line) const {
 }
 
 scene session::load() const {
-    return load_scene(settings_.scene, [this](const std::string& line) { say(line); });
+    const auto log = [this](const std::string& line) { say(line); };
+    scene loaded = load_scene(settings_.scene, log);
+    recentre(loaded, log);
+    return loaded;
 }
 
 std::unique_ptr<train::engine> session::make_engine() const {

@@ -19,6 +19,7 @@ class session {
     explicit session(const settings& settings) : settings_(settings) {}
 
     void say(const std::string& line) const;
+    /// The scene, in its internal frame.
     scene load() const;
     /// The device that was asked for. Throws `error` where it is not there.
     std::unique_ptr<train::engine> make_engine() const;

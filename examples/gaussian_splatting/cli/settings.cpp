@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -78,6 +79,19 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
     return {refusal, range};
 }
 
+/// CLI11's own check lets nan pass.
+CLI::Validator positive_number() {
+    const auto refusal = [](const std::string& text) {
+        float value = 0;
+        const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool number = problem == std::errc() && end == text.data() + text.size();
+        return number && std::isfinite(value) && value > 0
+                   ? std::string()
+                   : "must be a positive number that float can hold, not '" + text + "'";
+    };
+    return {refusal, "positive"};
+}
+
 void add_scene(CLI::App& app, settings& s, bool required) {
     auto* data = app.add_option("-d,--data,-s,--source-path", s.scene.data,
                                 "Scene: a folder (COLMAP or Blender) or synthetic:NAME");
@@ -112,25 +126,49 @@ void add_common(CLI::App& app, settings& s) {
     app.add_flag("-q,--quiet", s.quiet, "Print errors only");
 }
 
+/// The rates and intervals, by the names that the field gives them.
+void add_schedule(CLI::App& app, train::schedule& s) {
+    const auto rate = [&](const char* name, double& value, const char* what) {
+        app.add_option(name, value, what)->check(positive_number())->capture_default_str();
+    };
+    const auto count = [&](const char* name, int& value, std::uint64_t least, const char* what) {
+        app.add_option(name, value, what)->check(whole_number(least, 10000000))->capture_default_str();
+    };
+    rate("--position-lr-init", s.position_lr_init,
+         "Adam's rate of positions at first, by the scene's extent");
+    rate("--position-lr-final", s.position_lr_final, "The same at the end");
+    rate("--feature-lr", s.feature_lr, "Of colours; a twentieth of it for what depends on direction");
+    rate("--opacity-lr", s.opacity_lr, "Of opacities");
+    rate("--scaling-lr", s.scaling_lr, "Of log scales");
+    rate("--rotation-lr", s.rotation_lr, "Of quaternions");
+    count("--opacity-reset-interval", s.opacity_reset_interval, 1, "Iterations between two resets");
+    count("--densification-interval", s.densification_interval, 1, "Iterations between two densifications");
+    count("--densify-from-iter", s.densify_from_iter, 0, "Densify after this iteration");
+    app.add_option("--densify-until-iter", s.densify_until_iter,
+                   "And before this one; by default half of the iterations, at most 15000")
+        ->check(whole_number(0, 10000000));
+}
+
 CLI::App* add_train(CLI::App& app, settings& s) {
     CLI::App* train = app.add_subcommand("train", "Photos to Gaussians");
     add_scene(*train, s, true);
     add_common(*train, s);
     train->add_option("-o,--output,-m,--model-path", s.output, "Folder for the results")->required();
-    train->add_option("-i,--iterations", s.iterations)
+    train->add_option("-i,--iterations", s.schedule.iterations)
         ->check(whole_number(1, 10000000))
         ->capture_default_str();
-    train->add_option("--sh-degree", s.sh_degree, "Of view-dependent colour")
+    train->add_option("--sh-degree", s.schedule.sh_degree, "Of view-dependent colour")
         ->check(whole_number(0, 3))
         ->capture_default_str();
-    train->add_option("--sh-degree-interval", s.sh_degree_interval, "Iterations between two degrees")
+    train->add_option("--sh-degree-interval", s.schedule.sh_degree_interval, "Iterations between two degrees")
         ->check(whole_number(1, 10000000))
         ->capture_default_str();
     train
         ->add_option("--densify-grad-threshold", s.densify_grad_threshold,
                      "Mean gradient of a centre, in halves of the picture, from which a Gaussian grows")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
+    add_schedule(*train, s.schedule);
     train->add_option("--max-cap", s.max_cap, "Most Gaussians; by default one for 32 pixels of the photos")
         ->check(whole_number(1, 100000000));
     std::set<std::string> policies(gradient_policy_names.begin(), gradient_policy_names.end());
@@ -205,8 +243,8 @@ settings parse(int argc, char** argv) {
     s.scene.seed = s.seed;
     if (s.command != "train" && s.background == "random")
         throw error("--background random is for training: " + s.command + " needs one colour");
-    refuse_late(s.save_iterations, s.iterations, "--save-iterations");
-    refuse_late(s.test_iterations, s.iterations, "--test-iterations");
+    refuse_late(s.save_iterations, s.schedule.iterations, "--save-iterations");
+    refuse_late(s.test_iterations, s.schedule.iterations, "--test-iterations");
     if (s.command == "render" && s.scene.data.empty() && s.scene.eval)
         throw error("--eval picks views of a scene: it needs --data");
     return s;

@@ -8,6 +8,7 @@
 
 #include "../scene/scene.hpp"
 #include "../train/densify_rule.hpp"
+#include "../train/schedule.hpp"
 
 namespace gs::cli {
 
@@ -22,9 +23,7 @@ struct settings {
     std::uint64_t seed = 0;
     bool quiet = false;
 
-    int iterations = 7000;
-    int sh_degree = 3;
-    int sh_degree_interval = 1000;
+    train::schedule schedule;
     float densify_grad_threshold = train::densify_rule{}.gradient;
     std::size_t max_cap = 0;  ///< 0: by the photos
     std::string gradient = "scatter";

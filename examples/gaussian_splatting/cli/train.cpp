@@ -25,16 +25,14 @@ gradient_policy policy_of(const std::string& name) {
 train::train_options options_of(const settings& s, const scene& scene,
                                 const train::background_choice& background) {
     train::train_options o;
-    o.iterations = s.iterations;
-    o.sh_degree = s.sh_degree;
-    o.sh_degree_interval = s.sh_degree_interval;
+    o.schedule = s.schedule;
     o.densify_gradient = s.densify_grad_threshold;
     o.max_cap = s.max_cap > 0 ? s.max_cap : train::default_cap(scene);
     o.seed = s.seed;
     o.gradient = policy_of(s.gradient);
     o.background = background;
     o.save_iterations = s.save_iterations;
-    o.save_iterations.insert(s.iterations);
+    o.save_iterations.insert(s.schedule.iterations);
     o.test_iterations = s.test_iterations;
     return o;
 }
@@ -46,7 +44,7 @@ gaussians first_model(const scene& scene, const train::train_options& o) {
     const auto points = scene.points.empty()
                             ? random_points(scene, std::min(most_random, o.max_cap / 2 + 1), o.seed)
                             : scene.points;
-    return from_points(points, o.sh_degree, o.max_cap, o.seed);
+    return from_points(points, o.schedule.sh_degree, o.max_cap, o.seed);
 }
 
 std::filesystem::path ply_of(const std::filesystem::path& output, int iteration) {
@@ -58,14 +56,25 @@ std::filesystem::path pictures_of(const std::filesystem::path& output, int itera
 }
 
 ordered_json settings_json(const settings& s, const train::train_options& o) {
+    const train::schedule& plan = o.schedule;
     return {{"data", s.scene.data},
             {"images", s.scene.images},
             {"resolution", s.scene.resolution},
             {"eval", s.scene.eval},
             {"test_every", s.scene.test_every},
-            {"iterations", o.iterations},
-            {"sh_degree", o.sh_degree},
-            {"sh_degree_interval", o.sh_degree_interval},
+            {"iterations", plan.iterations},
+            {"sh_degree", plan.sh_degree},
+            {"sh_degree_interval", plan.sh_degree_interval},
+            {"position_lr_init", plan.position_lr_init},
+            {"position_lr_final", plan.position_lr_final},
+            {"feature_lr", plan.feature_lr},
+            {"opacity_lr", plan.opacity_lr},
+            {"scaling_lr", plan.scaling_lr},
+            {"rotation_lr", plan.rotation_lr},
+            {"opacity_reset_interval", plan.opacity_reset_interval},
+            {"densification_interval", plan.densification_interval},
+            {"densify_from_iter", plan.densify_from_iter},
+            {"densify_until_iter", plan.densify_until()},
             {"densify_grad_threshold", o.densify_gradient},
             {"max_cap", o.max_cap},
             {"gradient", s.gradient},
@@ -81,7 +90,8 @@ ordered_json effects_json(const settings& s, const scene& scene, const train::ba
     const auto effect = [](const char* name, bool on, const std::string& reason) {
         return ordered_json{{"name", name}, {"on", on}, {"reason", reason}};
     };
-    return {effect("view-dependent colour", s.sh_degree > 0, "--sh-degree " + std::to_string(s.sh_degree)),
+    return {effect("view-dependent colour", s.schedule.sh_degree > 0,
+                   "--sh-degree " + std::to_string(s.schedule.sh_degree)),
             effect("background", scene.has_alpha || background.random,
                    scene.has_alpha ? "the photos have transparent parts" : "--background " + s.background)};
 }
@@ -139,7 +149,7 @@ void train(const settings& s) {
     events.save = [&](int iteration) {
         const auto file = ply_of(output.path(), iteration);
         std::filesystem::create_directories(file.parent_path());
-        write_ply(file, engine->get_model());
+        write_ply(file, out_of(scene.frame, engine->get_model()));
     };
     events.test = [&](int iteration) {
         const auto report = evaluate::measure_test_views(*engine, scene, background.colour, {});
@@ -148,24 +158,32 @@ void train(const settings& s) {
         session.say("iteration " + std::to_string(iteration) + ": held-out PSNR " +
                     number("%.2f dB", report.psnr()));
     };
+    events.warn = [&](const std::string& line) {
+        bar.clear();
+        session.say("warning: " + line);
+    };
     const train::train_result result = train::train(*engine, scene, options, events);
     const device::stage_times times = engine->times();
-    const double pairs = static_cast<double>(engine->pairs()) / options.iterations;
+    const double pairs = static_cast<double>(engine->pairs()) / options.schedule.iterations;
 
     const stopwatch evaluating;
-    const auto pictures = pictures_of(output.path(), options.iterations);
+    // What is measured is what the file holds, which float has rounded in the scene's own frame.
+    engine->set_model(into(scene.frame, out_of(scene.frame, engine->get_model())));
+    const auto pictures = pictures_of(output.path(), options.schedule.iterations);
     const auto report = evaluate::measure_test_views(*engine, scene, background.colour, pictures);
 
     ordered_json metrics = to_json(report);
     metrics["training_psnr"] = last.psnr;
     metrics["tests"] = tested;
-    metrics["iterations"] = options.iterations;
+    metrics["iterations"] = options.schedule.iterations;
     metrics["gaussians"] = engine->count();
     metrics["seconds"] = {
         {"load", load_seconds}, {"train", result.seconds}, {"evaluate", evaluating.seconds()}};
-    metrics["iterations_per_second"] = options.iterations / result.seconds;
+    metrics["iterations_per_second"] = options.schedule.iterations / result.seconds;
     metrics["densify_seconds"] = result.densify_seconds;
     metrics["skipped_steps"] = result.skipped_steps;
+    metrics["left_out_gradients"] = result.left_out_gradients;
+    metrics["silent_gaussians"] = result.silent_gaussians;
     metrics["pairs_per_iteration"] = pairs;
     metrics["stages"] = stages_json(times, pairs);
     metrics["peak_host_bytes"] = peak_host_bytes();
@@ -188,7 +206,7 @@ void train(const settings& s) {
             "picture   " + (pictures / "renders" / evaluate::picture_names(scene.test).front()).string() +
             (report.views.size() > 1 ? " and " + std::to_string(report.views.size() - 1) + " more" : ""));
     }
-    session.say("model     " + ply_of(output.path(), options.iterations).string());
+    session.say("model     " + ply_of(output.path(), options.schedule.iterations).string());
     session.say("metrics   " + (output.path() / "metrics.json").string());
 }
 

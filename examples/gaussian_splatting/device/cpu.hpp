@@ -64,12 +64,20 @@ class basic_cpu {
         for (std::size_t i = 0; i < n; ++i) f(i);
     }
     /// The same for plain arithmetic on arrays, where neighbouring elements may share a SIMD instruction; and
-    /// not at all if f.skip().
+    /// not at all if f.skip(). f(i) says whether all is well with i; if not, f.report(i) is called.
     template <class F>
     void for_each_element(std::size_t n, const F& f) {
         if (f.skip()) return;
-#pragma omp parallel for simd schedule(static)
-        for (std::size_t i = 0; i < n; ++i) f(i);
+        constexpr std::size_t block = 1024;
+#pragma omp parallel for schedule(static)
+        for (std::size_t first = 0; first < n; first += block) {
+            const std::size_t length = std::min(block, n - first);
+            std::uint32_t wrong[block], any = 0;
+#pragma omp simd reduction(| : any)
+            for (std::size_t i = 0; i < length; ++i) any |= wrong[i] = f(first + i) ? 0 : 1;
+            for (std::size_t i = 0; any != 0 && i < length; ++i)
+                if (wrong[i] != 0) f.report(first + i);
+        }
     }
     /// f(warp, i) for each i in [0, n), each on a warp of its own.
     template <class F>

@@ -44,7 +44,7 @@ __global__ void for_each_index(std::size_t n, F f) {
 template <class F>
 __global__ void for_each_element(std::size_t n, F f) {
     const std::size_t i = std::size_t{blockIdx.x} * block_size + threadIdx.x;
-    if (i < n && !f.skip()) f(i);
+    if (i < n && !f.skip() && !f(i)) f.report(i);
 }
 
 template <class F>
@@ -127,7 +127,8 @@ class cuda {
         detail::for_each_index<<<blocks(n, detail::block_size), detail::block_size, 0, stream_>>>(n, f);
         check(cudaGetLastError());
     }
-    /// The same for plain arithmetic on arrays; and not at all if f.skip(), which the device finds out.
+    /// The same for plain arithmetic on arrays; and not at all if f.skip(), which the device finds out. f(i)
+    /// says whether all is well with i; if not, f.report(i) is called.
     template <class F>
     void for_each_element(std::size_t n, const F& f) {
         if (n == 0) return;

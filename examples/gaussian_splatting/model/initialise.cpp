@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <glm/geometric.hpp>
 #include <nanoflann.hpp>
 #include <numeric>
 #include <random>
@@ -16,8 +17,10 @@ namespace {
 constexpr float sh_c0 = 0.28209479177387814F;  ///< the constant spherical harmonic, 1 / (2 sqrt(pi))
 constexpr double initial_opacity = 0.1;
 constexpr std::size_t neighbours = 3;
-constexpr double least_squared_distance = 1e-7;  ///< keeps points that coincide from having no size
-constexpr double half_side_of_centred_scenes = 1.3;
+/// Keeps points that coincide from having no size; by an extent of `internal_extent`.
+constexpr double least_squared_distance = 1e-7;
+/// Of the box in which the objects of NeRF-synthetic scenes lie, by the distance of their cameras.
+constexpr double half_side_of_objects = 1.3 / 4.0311288;
 
 /// Spelt out because the standard leaves the results of its distributions to the implementation.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
@@ -78,7 +81,14 @@ std::vector<double> neighbour_distances(const std::vector<coloured_point>& point
 }
 
 std::pair<glm::dvec3, double> box_looked_at(const scene& s) {
-    if (s.source == "Blender" || s.source == "synthetic") return {glm::dvec3(0), half_side_of_centred_scenes};
+    const auto object = s.source == "COLMAP" ? std::nullopt : s.looked_at();
+    if (object) {
+        std::vector<double> distances;
+        for (const view& v : s.train) distances.push_back(glm::distance(*object, v.camera.centre()));
+        const auto median = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+        std::ranges::nth_element(distances, median);
+        return {*object, half_side_of_objects * *median};
+    }
     glm::dvec3 sum{0};
     for (const view& v : s.train) sum += v.camera.centre();
     return {sum / static_cast<double>(s.train.size()), s.extent()};

@@ -15,6 +15,9 @@ inline constexpr std::size_t parameter_count = static_cast<std::size_t>(paramete
 /// Values per Gaussian.
 inline constexpr std::array<int, parameter_count> parameter_width{3, 3, 4, 1, 3, 9, 15, 21};
 
+inline constexpr std::array<const char*, parameter_count> parameter_names{
+    "mean", "log_scale", "quaternion", "opacity", "sh0", "sh1", "sh2", "sh3"};
+
 /// Whether a model of this SH degree has the parameter.
 constexpr bool has_parameter(std::size_t p, int sh_degree) {
     return static_cast<int>(p) - static_cast<int>(parameter::sh0) <= sh_degree;

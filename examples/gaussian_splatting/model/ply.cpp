@@ -9,16 +9,16 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "../clipped.hpp"
 #include "../error.hpp"
+#include "../scene/file_bytes.hpp"
 #include "../write_aside.hpp"
 
 namespace gs {
@@ -143,7 +143,7 @@ double read_scalar(scalar_type type, const char* bytes) {
 }
 
 struct property {
-    std::string name;
+    std::string_view name;  ///< in the header's text
     scalar_type type;
     std::size_t offset;  ///< bytes from the row's beginning
 };
@@ -160,63 +160,94 @@ struct header {
     }
 };
 
+/// Where a file has one of the fields.
+struct column {
+    field to;
+    scalar_type type;
+    std::size_t offset;  ///< bytes from the row's beginning
+};
+
+/// What of the header is needed to read the rows.
+struct layout {
+    std::size_t count = 0;   ///< vertices
+    std::size_t stride = 0;  ///< bytes of one
+    int sh_degree = 0;
+    std::vector<column> columns;
+};
+
+/// Takes the first word off a line; empty at its end. The \r of a Windows line end is a blank.
+std::string_view take_word(std::string_view& line) {
+    constexpr std::string_view blanks = " \t\r";
+    line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+    const std::string_view word = line.substr(0, line.find_first_of(blanks));
+    line.remove_prefix(word.size());
+    return word;
+}
+
 /// Reads one file; knows its name for the messages.
 class reader {
   public:
-    explicit reader(const std::filesystem::path& file) : name_(file.string()) {
-        std::error_code failed;
-        size_ = std::filesystem::file_size(file, failed);
-        if (failed) throw error("cannot read " + name_ + ": " + failed.message());
-        in_.open(file, std::ios::binary);
-        if (!in_) throw error("cannot read " + name_);
-    }
+    explicit reader(const std::filesystem::path& file) : file_(file) {}
 
     gaussians read() {
-        const header h = read_header();
-        const int degree = sh_degree(h);
-        const std::vector<field> fields = fields_of_degree(degree);
-        for (const field& f : fields) {
-            if (h.find(f.name) == nullptr) fail("its vertices have no property '" + f.name + "'");
-        }
-        // Before anything is allocated by the header's word.
-        check_size(h);
-        return read_rows(h, degree, fields);
+        const layout l = read_layout();
+        std::string().swap(text_);  // only the header's names lay in it
+        return read_rows(l);
     }
 
   private:
-    [[noreturn]] void fail(const std::string& what) const { throw error(name_ + ": " + what); }
+    [[noreturn]] void fail(const std::string& what) const { throw error(file_.name + ": " + what); }
 
-    /// The words of the next line that is no comment.
-    std::vector<std::string> next_line() {
-        std::string line;
-        while (std::getline(in_, line)) {
-            std::istringstream stream(line);  // takes the \r of a Windows line end for a blank
-            std::vector<std::string> words;
-            for (std::string word; stream >> word;) words.push_back(word);
-            if (!words.empty() && words[0] != "comment" && words[0] != "obj_info") return words;
+    /// The first words of a line, of which none here has more than three.
+    struct line {
+        std::array<std::string_view, 3> words;
+        std::size_t count = 0;  ///< 4 stands for more than three
+        std::string_view last;
+    };
+
+    /// The next line that is neither blank nor a comment.
+    line next_line() {
+        while (next_ < text_.size()) {
+            const std::size_t end = text_.find('\n', next_);
+            if (end == std::string::npos) break;
+            std::string_view rest = std::string_view(text_).substr(next_, end - next_);
+            next_ = end + 1;
+            line found;
+            for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
+                if (found.count < 3) found.words[found.count] = word;
+                found.count = std::min<std::size_t>(found.count + 1, 4);
+                found.last = word;
+            }
+            if (found.count > 0 && found.words[0] != "comment" && found.words[0] != "obj_info") return found;
         }
+        if (text_.size() == longest_header) fail("its header has no end_header in its first 65536 bytes");
         fail("its header has no end_header");
     }
 
+    /// The header lies within the file's first bytes, which stay in `text_` for the names.
     header read_header() {
+        text_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(file_.size, longest_header)));
+        file_.in.read(text_.data(), static_cast<std::streamsize>(text_.size()));
+        if (!file_.in) throw error("cannot read " + file_.name);
         check_magic();
         header h;
-        std::string element;
+        h.properties.reserve(lines_beginning("property"));
+        std::string_view element;
         bool format_said = false;
-        for (std::vector<std::string> words = next_line(); words[0] != "end_header"; words = next_line()) {
-            if (words[0] == "format" && words.size() == 3) {
-                if (words[1] != "binary_little_endian") {
-                    fail("its format is " + words[1] + ", but only binary_little_endian is read");
+        for (line l = next_line(); l.words[0] != "end_header"; l = next_line()) {
+            if (l.words[0] == "format" && l.count == 3) {
+                if (l.words[1] != "binary_little_endian") {
+                    fail("its format is " + clipped(l.words[1]) + ", but only binary_little_endian is read");
                 }
                 format_said = true;
-            } else if (words[0] == "element" && words.size() == 3) {
-                if (words[1] == "vertex" && !h.properties.empty()) fail("it has two elements 'vertex'");
-                add_element(h, words[1], words[2]);
-                element = words[1];
-            } else if (words[0] == "property" && words.size() >= 3 && !element.empty()) {
-                if (element == "vertex") add_property(h, words);
+            } else if (l.words[0] == "element" && l.count == 3) {
+                if (l.words[1] == "vertex" && !h.properties.empty()) fail("it has two elements 'vertex'");
+                add_element(h, l.words[1], l.words[2]);
+                element = l.words[1];
+            } else if (l.words[0] == "property" && l.count >= 3 && !element.empty()) {
+                if (element == "vertex") add_property(h, l);
             } else {
-                fail_at_line(words[0]);
+                fail_at_line(l.words[0]);
             }
         }
         if (!format_said) fail("its header says no format");
@@ -224,45 +255,68 @@ class reader {
         return h;
     }
 
+    std::size_t lines_beginning(std::string_view word) const {
+        std::size_t count = 0;
+        for (std::size_t at = text_.find('\n'); at != std::string::npos; at = text_.find('\n', at + 1))
+            count += text_.compare(at + 1, word.size(), word) == 0;
+        return count;
+    }
+
     /// What is no text is data: the header went on into it.
-    [[noreturn]] void fail_at_line(const std::string& first_word) const {
+    [[noreturn]] void fail_at_line(std::string_view first_word) const {
         const bool text =
             std::all_of(first_word.begin(), first_word.end(), [](char c) { return c > ' ' && c < 127; });
         if (!text) fail("its header has no end_header");
-        fail("its header has a line '" + first_word.substr(0, 40) + " ...', which is not understood here");
+        fail("its header has a line '" + std::string(first_word.substr(0, 40)) +
+             " ...', which is not understood here");
     }
 
     void check_magic() {
-        std::array<char, 4> magic{};
-        in_.read(magic.data(), magic.size());
-        const std::string_view begin(magic.data(), magic.size());
-        if (begin != "ply\n" && begin != "ply\r")
+        if (!text_.starts_with("ply\n") && !text_.starts_with("ply\r"))
             fail("it is not a PLY file, which begins with a line 'ply'");
+        next_ = 4;
     }
 
-    void add_element(header& h, const std::string& name, const std::string& count_text) const {
+    void add_element(header& h, std::string_view name, std::string_view count_text) const {
         std::uint64_t count = 0;
         const char* const end = count_text.data() + count_text.size();
         const auto parsed = std::from_chars(count_text.data(), end, count);
         if (parsed.ec != std::errc{} || parsed.ptr != end) {
-            fail("the count of its element '" + name + "' is '" + count_text + "', which is no count");
+            fail("the count of its element '" + clipped(name) + "' is '" + clipped(count_text) +
+                 "', which is no count");
         }
         if (name == "vertex") {
             h.count = count;
         } else if (count != 0) {
-            fail("it has the element '" + name + "', but only 'vertex' is read");
+            fail("it has the element '" + clipped(name) + "', but only 'vertex' is read");
         }
     }
 
-    void add_property(header& h, const std::vector<std::string>& words) const {
-        const std::string& name = words.back();
-        const std::optional<scalar_type> type = scalar_type_called(words[1]);
-        if (!type || words.size() != 3) {
-            fail("its property '" + name + "' has the type '" + words[1] + "', which is no scalar type");
+    void add_property(header& h, const line& l) const {
+        const std::string_view name = l.last;
+        const std::optional<scalar_type> type = scalar_type_called(l.words[1]);
+        if (!type || l.count != 3) {
+            fail("its property '" + clipped(name) + "' has the type '" + clipped(l.words[1]) +
+                 "', which is no scalar type");
         }
-        if (h.find(name) != nullptr) fail("it has the property '" + name + "' twice");
+        if (h.find(name) != nullptr) fail("it has the property '" + clipped(name) + "' twice");
         h.properties.push_back({name, *type, h.stride});
         h.stride += size_of(*type);
+    }
+
+    layout read_layout() {
+        const header h = read_header();
+        layout l;
+        l.stride = h.stride;
+        l.sh_degree = sh_degree(h);
+        for (const field& f : fields_of_degree(l.sh_degree)) {
+            const property* const source = h.find(f.name);
+            if (source == nullptr) fail("its vertices have no property '" + f.name + "'");
+            l.columns.push_back({f, source->type, source->offset});
+        }
+        check_size(h);  // before anything is allocated by the header's word
+        l.count = static_cast<std::size_t>(h.count);
+        return l;
     }
 
     int sh_degree(const header& h) const {
@@ -276,7 +330,7 @@ class reader {
     }
 
     void check_size(const header& h) {
-        const std::uint64_t found = size_ - static_cast<std::uint64_t>(in_.tellg());
+        const std::uint64_t found = file_.size - next_;
         const bool fits = h.count <= std::numeric_limits<std::uint64_t>::max() / h.stride;
         if (fits && h.count * h.stride == found) return;
         const std::string expected = fits ? std::to_string(h.count * h.stride) : "more than 2^64";
@@ -284,44 +338,47 @@ class reader {
              expected + " bytes, but " + std::to_string(found) + " bytes follow the header");
     }
 
-    gaussians read_rows(const header& h, int degree, const std::vector<field>& fields) {
-        const auto count = static_cast<std::size_t>(h.count);
+    gaussians read_rows(const layout& l) {
         gaussians model;
-        model.sh_degree = degree;
-        for (const field& f : fields) (model.*f.array).resize(count * static_cast<std::size_t>(f.width));
+        model.sh_degree = l.sh_degree;
+        for (const column& c : l.columns)
+            (model.*c.to.array).resize(l.count * static_cast<std::size_t>(c.to.width));
 
-        constexpr std::size_t bytes_at_once = 1 << 18;
-        const std::size_t rows_at_once = std::min(count, bytes_at_once / h.stride + 1);
-        std::vector<char> rows(rows_at_once * h.stride);
-        for (std::size_t first = 0; first < count; first += rows_at_once) {
-            const std::size_t read = std::min(rows_at_once, count - first);
-            in_.read(rows.data(), static_cast<std::streamsize>(read * h.stride));
-            if (!in_) throw error("cannot read " + name_);
-            for (const field& f : fields) {
-                copy_column(*h.find(f.name), h.stride, rows.data(), read, f, first, model);
-            }
+        // Few, as rows of bytes are to become floats, which are four times their size, and no more than that.
+        constexpr std::size_t bytes_at_once = 1 << 14;
+        const std::size_t rows_at_once = std::min(l.count, bytes_at_once / l.stride + 1);
+        std::vector<char> rows(rows_at_once * l.stride);
+        file_.in.seekg(static_cast<std::streamoff>(next_));
+        for (std::size_t first = 0; first < l.count; first += rows_at_once) {
+            const std::size_t read = std::min(rows_at_once, l.count - first);
+            file_.in.read(rows.data(), static_cast<std::streamsize>(read * l.stride));
+            if (!file_.in) throw error("cannot read " + file_.name);
+            for (const column& c : l.columns) copy_column(c, l.stride, rows.data(), read, first, model);
         }
         return model;
     }
 
-    void copy_column(const property& from, std::size_t stride, const char* rows, std::size_t count,
-                     const field& to, std::size_t first, gaussians& model) const {
-        const auto width = static_cast<std::size_t>(to.width);
-        float* const column = (model.*to.array).data() + first * width + static_cast<std::size_t>(to.offset);
+    void copy_column(const column& c, std::size_t stride, const char* rows, std::size_t count,
+                     std::size_t first, gaussians& model) const {
+        const auto width = static_cast<std::size_t>(c.to.width);
+        float* const values =
+            (model.*c.to.array).data() + first * width + static_cast<std::size_t>(c.to.offset);
         for (std::size_t i = 0; i < count; ++i) {
-            const double value = read_scalar(from.type, rows + i * stride + from.offset);
+            const double value = read_scalar(c.type, rows + i * stride + c.offset);
             // Written so that NaN fails too; a double beyond the range of float is refused as well.
             if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
-                fail("the property '" + to.name + "' of vertex " + std::to_string(first + i) +
+                fail("the property '" + c.to.name + "' of vertex " + std::to_string(first + i) +
                      " is not a finite float");
             }
-            column[i * width] = static_cast<float>(value);
+            values[i * width] = static_cast<float>(value);
         }
     }
 
-    std::string name_;
-    std::uint64_t size_ = 0;
-    std::ifstream in_;
+    static constexpr std::size_t longest_header = 1 << 16;
+
+    opened_file file_;
+    std::string text_;      ///< the header, and what follows it up to that length
+    std::size_t next_ = 0;  ///< where the next line begins in it
 };
 
 }  // namespace
@@ -336,7 +393,11 @@ void write_ply(const std::filesystem::path& file, const gaussians& model) {
                 const field& f = fields[j];
                 const std::size_t place =
                     i * static_cast<std::size_t>(f.width) + static_cast<std::size_t>(f.offset);
-                row[j < normals_after ? j : j + normals] = (model.*f.array)[place];
+                const float value = (model.*f.array)[place];
+                if (!std::isfinite(value))
+                    throw error("cannot write " + file.string() + ": the property '" + f.name +
+                                "' of vertex " + std::to_string(i) + " is not finite");
+                row[j < normals_after ? j : j + normals] = value;
             }
             out.write(reinterpret_cast<const char*>(row.data()),
                       static_cast<std::streamsize>(row.size() * sizeof(float)));

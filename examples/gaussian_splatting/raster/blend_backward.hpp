@@ -63,17 +63,17 @@ struct blend_backward {
                 const real own = g0 * s.red + g1 * s.green + g2 * s.blue;
                 const real ds = select(seen.free, weight * (own - behind), real(0));
                 behind = select(counts, fma(seen.alpha, own - behind, behind), behind);
-                const real dsx = ds * seen.dx, dsy = ds * seen.dy;
+                const real dsu = ds * seen.at.u, dsv = ds * seen.at.v;
                 real values[sum_count];
                 values[sum_red] = weight * g0;
                 values[sum_green] = weight * g1;
                 values[sum_blue] = weight * g2;
                 values[sum_s] = ds;
-                values[sum_sx] = dsx;
-                values[sum_sy] = dsy;
-                values[sum_sxx] = dsx * seen.dx;
-                values[sum_sxy] = dsx * seen.dy;
-                values[sum_syy] = dsy * seen.dy;
+                values[sum_su] = dsu;
+                values[sum_sv] = dsv;
+                values[sum_suu] = dsu * seen.at.u;
+                values[sum_suv] = dsu * seen.at.v;
+                values[sum_svv] = dsv * seen.at.v;
                 warpagg::warp_reduce_atomic(w, sums + gaussian * record_stride, values, counts, Policy{});
             }
         }

@@ -2,42 +2,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
-
+#include "../model/opacity.hpp"
 #include "../model/parameters.hpp"
 #include "camera.hpp"
+#include "ellipse.hpp"
 
 namespace gs::raster {
 
-template <class Real>
-using vec2 = glm::vec<2, Real>;
-template <class Real>
-using vec3 = glm::vec<3, Real>;
-template <class Real>
-using vec4 = glm::vec<4, Real>;
-template <class Real>
-using mat3 = glm::mat<3, 3, Real>;
-
-/// Pixels; what the covariance of a splat is widened by, the variance of a pixel's filter (Kerbl et al.
-/// 2023).
-inline constexpr double pixel_variance = 0.3;
 /// Gaussians nearer than this are not drawn.
 inline constexpr double near_plane = 0.2;
 
-template <class Real>
-WARPAGG_HD vec3<Real> load3(const Real* p, unsigned i) {
-    return {p[3 * i], p[3 * i + 1], p[3 * i + 2]};
-}
-template <class Real>
-WARPAGG_HD void store3(Real* p, unsigned i, const vec3<Real>& v) {
-    p[3 * i] = v.x;
-    p[3 * i + 1] = v.y;
-    p[3 * i + 2] = v.z;
-}
+/// Colours are held between 0 and this, so that their squares stay finite; photos end at 1.
+inline constexpr double most_colour = 32768;
 
 /// The rotation of a unit quaternion w x y z; columns are the principal axes.
 template <class Real>
@@ -68,15 +44,15 @@ struct footprint {
     vec3<Real> at;        ///< in camera space
     Real u, v;            ///< x/z and y/z, clamped for the Jacobian
     bool u_free, v_free;  ///< not clamped
-    vec4<Real> unit;      ///< quaternion of length one
+    Real x, y;            ///< the centre in pixels
+    vec4<Real> turn;      ///< quaternion of length one
     Real inverse_length;  ///< of the quaternion
     vec3<Real> scale;
     mat3<Real> rotation;  ///< of the Gaussian
     vec3<Real> px, py;    ///< rows of Jacobian times world-to-camera rotation
     vec3<Real> ax, ay;    ///< rows of that times rotation times scale: the covariance is their Gram matrix
-    Real xx, xy, yy;      ///< covariance in pixels, widened
-    Real determinant;
-    bool drawable;  ///< in front of the camera, finite, not degenerate
+    ellipse<Real> shape;
+    bool drawable;  ///< in front of the camera, and finite
 };
 
 template <class Real>
@@ -89,21 +65,21 @@ WARPAGG_HD footprint<Real> see(const parameter_arrays<const Real>& g, unsigned i
     f.at = camera.rotation * load3(g.mean, i) + camera.translation;
     if (!(f.at.z > Real(near_plane))) return f;
 
-    const vec4<Real> q(g.quaternion[4 * i], g.quaternion[4 * i + 1], g.quaternion[4 * i + 2],
-                       g.quaternion[4 * i + 3]);
-    const Real length2 = glm::dot(q, q);
-    if (!(length2 > 0)) return f;
-    f.inverse_length = 1 / warpagg::math::sqrt(length2);
-    f.unit = q * f.inverse_length;
-    f.scale = glm::exp(load3(g.log_scale, i));
-    f.rotation = rotation_of(f.unit);
+    const unit<4, Real> turn(load4(g.quaternion, i));
+    f.turn = turn.direction;
+    f.inverse_length = turn.inverse_length;
+    const vec3<Real> log_scale = load3(g.log_scale, i);
+    f.scale = glm::exp(log_scale);
+    f.rotation = rotation_of(f.turn);
 
     const Real rz = 1 / f.at.z;
-    const Real u = f.at.x * rz, v = f.at.y * rz;
+    const Real u = f.at.x / f.at.z, v = f.at.y / f.at.z;  // where 1 / z underflows, too
     f.u = min(max(u, camera.least_x), camera.most_x);
     f.v = min(max(v, camera.least_y), camera.most_y);
     f.u_free = f.u == u;
     f.v_free = f.v == v;
+    f.x = camera.fx * u + camera.cx;
+    f.y = camera.fy * v + camera.cy;
     // Row r of the world-to-camera rotation.
     const auto row = [&](int r) {
         return vec3<Real>(camera.rotation[0][r], camera.rotation[1][r], camera.rotation[2][r]);
@@ -114,22 +90,10 @@ WARPAGG_HD footprint<Real> see(const parameter_arrays<const Real>& g, unsigned i
     f.ax = (f.px * f.rotation) * f.scale;
     f.ay = (f.py * f.rotation) * f.scale;
 
-    const Real xx = glm::dot(f.ax, f.ax), yy = glm::dot(f.ay, f.ay);
-    f.xy = glm::dot(f.ax, f.ay);
-    f.xx = xx + Real(pixel_variance);
-    f.yy = yy + Real(pixel_variance);
-    // The determinant of a Gram matrix is a square (Lagrange's identity), so nothing cancels and none is
-    // negative.
-    const vec3<Real> area = glm::cross(f.ax, f.ay);
-    f.determinant =
-        glm::dot(area, area) + Real(pixel_variance) * (xx + yy) + Real(pixel_variance * pixel_variance);
-    f.drawable = f.determinant > 0 && f.determinant < Real(1e30);
+    f.shape = ellipse<Real>(f.ax, f.ay);
+    f.drawable =
+        is_finite(f.at) && is_finite(f.x) && is_finite(f.y) && is_finite(log_scale) && f.shape.is_sound();
     return f;
-}
-
-template <class Real>
-WARPAGG_HD Real sigmoid(Real x) {
-    return 1 / (1 + glm::exp(-x));
 }
 
 }  // namespace gs::raster

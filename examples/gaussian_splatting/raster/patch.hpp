@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bin.hpp"
+#include "bits.hpp"
 #include "geometry.hpp"
 #include "splat.hpp"
 
@@ -53,8 +54,8 @@ struct patch {
             return w.load(reinterpret_cast<const Real*>(splats), first + i, valid);
         };
         const real x0 = left - field(0), y0 = top - field(1), reach = field(2);
-        const real least = least_exponent<real>(field(4), field(5), field(6), x0, x0 + Real(across - 1), y0,
-                                                y0 + Real(down - 1));
+        const real least = least_exponent<real>(field(4), field(5), field(6), field(11), field(7), x0,
+                                                x0 + Real(across - 1), y0, y0 + Real(down - 1));
         return w.ballot(valid && least <= reach);
     }
 };
@@ -62,34 +63,19 @@ struct patch {
 /// What one pixel sees of a splat.
 template <class W, class Real>
 struct coverage {
-    value_t<W, Real> dx, dy, alpha;
+    whitened<value_t<W, Real>> at;
+    value_t<W, Real> alpha;
     mask_t<W> hit;   ///< alpha is at least `least_alpha`
     mask_t<W> free;  ///< alpha is not capped, so that geometry and opacity move it
 
-    WARPAGG_HD coverage(const splat<Real>& s, const patch<W, Real>& p) {
-        dx = p.x - s.x;
-        dy = p.y - s.y;
-        const value_t<W, Real> sigma = exponent(s, dx, dy);
+    WARPAGG_HD coverage(const splat<Real>& s, const patch<W, Real>& p)
+        : at(s.p, s.q, s.r, p.x - s.x, p.y - s.y) {
+        const value_t<W, Real> sigma = at.exponent();
         hit = sigma <= value_t<W, Real>(s.reach);
         const value_t<W, Real> full = s.opacity * warpagg::math::exp2(-sigma);
         free = full < value_t<W, Real>(Real(most_alpha));
         alpha = warpagg::math::min(full, value_t<W, Real>(Real(most_alpha)));
     }
 };
-
-WARPAGG_HD unsigned lowest_bit(std::uint32_t bits) {
-#if defined(__CUDA_ARCH__)
-    return static_cast<unsigned>(__ffs(static_cast<int>(bits)) - 1);
-#else
-    return static_cast<unsigned>(__builtin_ctz(bits));
-#endif
-}
-WARPAGG_HD unsigned highest_bit(std::uint32_t bits) {
-#if defined(__CUDA_ARCH__)
-    return static_cast<unsigned>(31 - __clz(static_cast<int>(bits)));
-#else
-    return static_cast<unsigned>(31 - __builtin_clz(bits));
-#endif
-}
 
 }  // namespace gs::raster

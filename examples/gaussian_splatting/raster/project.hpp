@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "../model/spherical_harmonics.hpp"
+#include "bits.hpp"
 #include "geometry.hpp"
 #include "splat.hpp"
 
@@ -23,7 +24,8 @@ WARPAGG_HD void for_each_tile(const splat<Real>& s, const tile_box& box, unsigne
             const Real x0 = Real(tx * tile_size) + Real(0.5) - s.x,
                        y0 = Real(ty * tile_size) + Real(0.5) - s.y;
             const Real side = tile_size - 1;
-            if (least_exponent<Real>(s.a, s.b, s.c, x0, x0 + side, y0, y0 + side) <= s.reach)
+            if (least_exponent<Real>(s.p, s.q, s.r, s.slope_x, s.slope_y, x0, x0 + side, y0, y0 + side) <=
+                s.reach)
                 f(ty * tiles_across + tx);
         }
 }
@@ -51,50 +53,41 @@ struct project {
         splats[i] = {};
 
         const footprint<Real> f = see(gaussians, i, camera);
-        if (!f.drawable) return;
+        if (!f.drawable || !is_finite(gaussians.opacity[i])) return;
         splat<Real> s{};
         s.opacity = sigmoid(gaussians.opacity[i]);
         s.reach = glm::log2(s.opacity * Real(1 / least_alpha));
         if (!(s.reach > 0)) return;
-        s.x = camera.fx * f.at.x / f.at.z + camera.cx;
-        s.y = camera.fy * f.at.y / f.at.z + camera.cy;
-
-        constexpr Real ln2 = Real(0.6931471805599453);
-        const Real k = 1 / (2 * ln2 * f.determinant);
-        s.a = f.yy * k;
-        s.b = -2 * f.xy * k;
-        s.c = f.xx * k;
-        const tile_box box = bounds(s, warpagg::math::sqrt(2 * ln2 * s.reach * f.xx),
-                                    warpagg::math::sqrt(2 * ln2 * s.reach * f.yy));
+        s.x = f.x;
+        s.y = f.y;
+        s.p = f.shape.p;
+        s.q = f.shape.q;
+        s.r = f.shape.r;
+        s.slope_x = f.shape.slope_x;
+        s.slope_y = f.shape.slope_y;
+        const Real far = warpagg::math::sqrt(s.reach);
+        const tile_box box = bounds(s, far * f.shape.width, far * f.shape.height);
         unsigned met = 0;
         for_each_tile(s, box, tiles_across, [&](unsigned) { ++met; });
         if (met == 0) return;
 
         const vec3<Real> rgb = colour(i);
-        s.red = rgb.x;
-        s.green = rgb.y;
-        s.blue = rgb.z;
+        if (!is_finite(rgb)) return;
+        s.red = held(rgb.x);
+        s.green = held(rgb.y);
+        s.blue = held(rgb.z);
         splats[i] = s;
         boxes[i] = box;
         tiles[i] = met;
-        const auto z = static_cast<float>(f.at.z);
-        depths[i] = bits_of(z);
+        depths[i] = bits_of(static_cast<float>(f.at.z));
     }
 
   private:
-    static WARPAGG_HD std::uint32_t bits_of(float z) {
-#if defined(__CUDA_ARCH__)
-        return __float_as_uint(z);
-#else
-        return __builtin_bit_cast(std::uint32_t, z);
-#endif
-    }
-
     /// The tiles that hold a pixel centre within these half extents.
     WARPAGG_HD tile_box bounds(const splat<Real>& s, Real half_x, Real half_y) const {
         const auto tile = [](Real pixel, unsigned end) {
             const Real t = glm::floor(pixel / tile_size);
-            return static_cast<std::uint16_t>(warpagg::math::min(warpagg::math::max(t, Real(0)), Real(end)));
+            return static_cast<std::uint16_t>(warpagg::math::min(warpagg::math::max(Real(0), t), Real(end)));
         };
         const Real half(0.5);
         return {tile(s.x - half_x - half, tiles_across), tile(s.y - half_y - half, tiles_down),
@@ -102,8 +95,12 @@ struct project {
                 tile(s.y + half_y - half + tile_size, tiles_down)};
     }
 
+    static WARPAGG_HD Real held(Real channel) {
+        return warpagg::math::min(warpagg::math::max(channel, Real(0)), Real(most_colour));
+    }
+
     WARPAGG_HD vec3<Real> colour(unsigned i) const {
-        const vec3<Real> direction = glm::normalize(load3(gaussians.mean, i) - camera.centre);
+        const vec3<Real> direction = unit(load3(gaussians.mean, i) - camera.centre).direction;
         Real basis[16];
         sh_basis(sh_degree, direction, basis);
         vec3<Real> sum(0.5);
@@ -112,7 +109,7 @@ struct project {
             for (unsigned m = 0; m < size; ++m, ++k)
                 sum += basis[k] * load3(gaussians.sh[band], i * size + m);
         }
-        return glm::max(sum, vec3<Real>(0));
+        return sum;
     }
 };
 

@@ -4,13 +4,15 @@
 
 #include "../model/spherical_harmonics.hpp"
 #include "geometry.hpp"
+#include "list_room.hpp"
 #include "splat.hpp"
 
 namespace gs::raster {
 
-/// What the backward blending sums for a Gaussian over the pixels, with s = dL/dalpha alpha and d = pixel -
-/// centre. A record is 12 values apart from the next, so that one commit touches two sectors.
-enum sum { sum_red, sum_green, sum_blue, sum_s, sum_sx, sum_sy, sum_sxx, sum_sxy, sum_syy, sum_count };
+/// What the backward blending sums for a Gaussian over the pixels, with s = dL/dalpha alpha and (u, v) the
+/// offset in widths of the splat (see `whitened`), in which a long thin splat's moments do not cancel. A
+/// record is 12 values apart from the next, so that one commit touches two sectors.
+enum sum { sum_red, sum_green, sum_blue, sum_s, sum_su, sum_sv, sum_suu, sum_suv, sum_svv, sum_count };
 inline constexpr unsigned record_stride = 12;
 
 /// What densification wants to know of a Gaussian, over the iterations since it last asked.
@@ -32,6 +34,7 @@ struct project_backward {
 
     parameter_arrays<Real> gradients;
     visibility* seen;  ///< null: nobody wants to know
+    list_room room;    ///< of the view
 
     WARPAGG_HD void operator()(std::size_t index) const {
         const auto i = static_cast<unsigned>(index);
@@ -41,24 +44,23 @@ struct project_backward {
         }
         const footprint<Real> f = see(gaussians, i, camera);
         const Real* s = sums + i * record_stride;
-        // L depends on the exponent sigma through alpha = o exp(-sigma), so dL/dsigma = -s, where
-        // sigma = (A dx^2 + C dy^2) / 2 + B dx dy and (A, B, C) is the inverse covariance.
-        const Real inverse = 1 / f.determinant;
-        const Real A = f.yy * inverse, B = -f.xy * inverse, C = f.xx * inverse;
-        const vec2<Real> centre(A * s[sum_sx] + B * s[sum_sy], B * s[sum_sx] + C * s[sum_sy]);
-        gradients.opacity[i] = s[sum_s] * (1 - splats[i].opacity);
+        // L depends on the exponent through alpha = o exp(-ln2 (u^2 + v^2)), and s = dL/dalpha alpha. With M
+        // the rows (p, 0), (r, q), the inverse covariance is 2 ln2 M^T M and (u, v) = M d.
+        constexpr Real two_ln2 = Real(1.3862943611198906);
+        const Real p = f.shape.p, q = f.shape.q, r = f.shape.r;
+        const vec2<Real> centre = two_ln2 * vec2<Real>(p * s[sum_su] + r * s[sum_sv], q * s[sum_sv]);
+        gradients.opacity[i] = s[sum_s] * sigmoid(-gaussians.opacity[i]);
 
-        // dL/dcovariance = -Q G Q with Q the inverse covariance and G = dL/dQ = -1/2 sum s d d^T.
-        const Real half(0.5);
-        const Real gxx = half * s[sum_sxx], gxy = half * s[sum_sxy], gyy = half * s[sum_syy];
-        const Real hxx = A * gxx + B * gxy, hxy = A * gxy + B * gyy, hyx = B * gxx + C * gxy,
-                   hyy = B * gxy + C * gyy;
-        const Real cxx = hxx * A + hxy * B, cxy = hxx * B + hxy * C, cyy = hyx * B + hyy * C;
-        // The covariance is the Gram matrix of ax, ay.
-        const vec3<Real> dax = Real(2) * (cxx * f.ax + cxy * f.ay);
-        const vec3<Real> day = Real(2) * (cxy * f.ax + cyy * f.ay);
+        // dL/dcovariance = (2 ln2)^2 / 2 M^T W M with W the second moments, and the covariance is the Gram
+        // matrix of ax and ay, whose whitened forms are wx and wy.
+        const vec3<Real> wx = p * f.ax, wy = r * f.ax + q * f.ay;
+        const Real k = two_ln2 * two_ln2;
+        const vec3<Real> nx = k * (s[sum_suu] * wx + s[sum_suv] * wy),
+                         ny = k * (s[sum_suv] * wx + s[sum_svv] * wy);
+        const vec3<Real> dax = p * nx + r * ny, day = q * ny;
 
-        shape(i, f, dax, day);
+        store3(gradients.log_scale, i, nx * wx + ny * wy);
+        turn(i, f, dax * f.scale, day * f.scale);
         position(i, f, centre, f.rotation * (dax * f.scale), f.rotation * (day * f.scale), s);
         if (seen != nullptr) note(i, centre);
     }
@@ -76,16 +78,14 @@ struct project_backward {
         }
     }
 
-    /// ax = (px R) * scale: to the scale and, through R, to the quaternion.
-    WARPAGG_HD void shape(unsigned i, const footprint<Real>& f, const vec3<Real>& dax,
-                          const vec3<Real>& day) const {
-        store3(gradients.log_scale, i, dax * f.ax + day * f.ay);
-        const vec3<Real> sax = dax * f.scale, say = day * f.scale;
+    /// ax = (px R) * scale: through R to the quaternion.
+    WARPAGG_HD void turn(unsigned i, const footprint<Real>& f, const vec3<Real>& sax,
+                         const vec3<Real>& say) const {
         mat3<Real> rotation;
         for (int c = 0; c < 3; ++c) rotation[c] = sax[c] * f.px + say[c] * f.py;
-        const vec4<Real> unit = rotation_gradient(f.unit, rotation);
+        const vec4<Real> g = rotation_gradient(f.turn, rotation);
         // Only the part across the quaternion turns anything.
-        const vec4<Real> q = (unit - f.unit * glm::dot(f.unit, unit)) * f.inverse_length;
+        const vec4<Real> q = (g - f.turn * glm::dot(f.turn, g)) * f.inverse_length;
         for (int k = 0; k < 4; ++k) gradients.quaternion[4 * i + static_cast<unsigned>(k)] = q[k];
     }
 
@@ -113,13 +113,14 @@ struct project_backward {
 
     /// Returns the gradient of the mean through the direction of sight.
     WARPAGG_HD vec3<Real> colour(unsigned i, const Real* s) const {
-        // A channel that the forward pass held at zero takes no gradient.
+        // A channel that the forward pass held at a bound takes no gradient.
+        const auto free = [](Real channel, Real g) {
+            return channel > 0 && channel < Real(most_colour) ? g : Real(0);
+        };
         const splat<Real>& p = splats[i];
-        const vec3<Real> g(p.red > 0 ? s[sum_red] : Real(0), p.green > 0 ? s[sum_green] : Real(0),
-                           p.blue > 0 ? s[sum_blue] : Real(0));
-        const vec3<Real> sight = load3(gaussians.mean, i) - camera.centre;
-        const Real inverse_length = 1 / glm::length(sight);
-        const vec3<Real> direction = sight * inverse_length;
+        const vec3<Real> g(free(p.red, s[sum_red]), free(p.green, s[sum_green]), free(p.blue, s[sum_blue]));
+        const unit<3, Real> sight(load3(gaussians.mean, i) - camera.centre);
+        const vec3<Real> direction = sight.direction;
         Real basis[16], weight[16];
         sh_basis(sh_degree, direction, basis);
         for (int band = 0, k = 0; band <= sh_degree; ++band) {
@@ -130,12 +131,17 @@ struct project_backward {
             }
         }
         const vec3<Real> d = sh_gradient(sh_degree, direction, weight);
-        return (d - direction * glm::dot(direction, d)) * inverse_length;
+        return (d - direction * glm::dot(direction, d)) * sight.inverse_length;
     }
 
+    /// A step that is left out (see `list_room`), or a gradient that is, says nothing of the Gaussian.
     WARPAGG_HD void note(unsigned i, const vec2<Real>& centre) const {
-        const vec2<Real> halves(Real(0.5) * Real(camera.width), Real(0.5) * Real(camera.height));
-        seen[i].gradient += static_cast<float>(glm::length(centre * halves));
+        const vec2<Real> halves =
+            centre * vec2<Real>(Real(0.5) * Real(camera.width), Real(0.5) * Real(camera.height));
+        const Real most = largest(halves);
+        const auto norm = static_cast<float>(most > 0 ? most * glm::length(halves / most) : most);
+        if (room.exceeded() || !is_finite(norm)) return;
+        seen[i].gradient += norm;
         seen[i].seen += 1;
     }
 };

@@ -12,9 +12,9 @@
 #include "bin.hpp"
 #include "blend_backward.hpp"
 #include "blend_forward.hpp"
-#include "gradient_policy.hpp"
 #include "project.hpp"
 #include "project_backward.hpp"
+#include "with_policy.hpp"
 
 namespace gs::raster {
 
@@ -85,29 +85,22 @@ class renderer {
         device_.begin(stage::blend_backward);
         reserve(sums_, count_ * record_stride);
         device_.zero(sums_.data(), sums_.size());
-        using namespace warpagg;
-        switch (policy) {
-            case gradient_policy::per_lane:
-                blend_back<false, warpagg::policy<reduce::per_lane>>(picture_gradient);
-                break;
-            case gradient_policy::reduce:
-                blend_back<false, warpagg::policy<reduce::shfl_down, idle::add_zeros>>(picture_gradient);
-                break;
-            case gradient_policy::reduce_skip:
-                blend_back<true, warpagg::policy<reduce::shfl_down, idle::assume_busy>>(picture_gradient);
-                break;
-            case gradient_policy::scatter:
-                blend_back<true, warpagg::policy<reduce::scatter, idle::assume_busy>>(picture_gradient);
-                break;
-        }
+        with_policy(policy, [&](auto tags, auto ask_first) {
+            device_.for_each_warp(
+                warps(), blend_backward<Real, decltype(tags), ask_first.value>{
+                             splats_.data(), gaussian_of_.data(), ranges_.data(), tiles_across_,
+                             camera_.width, camera_.height, colour(background_), transmittance_.data(),
+                             last_.data(), picture_gradient, sums_.data()});
+        });
         device_.begin(stage::project_backward);
-        device_.for_each_index(count_, project_backward<Real>{gaussians_, camera_, sh_degree_, splats_.data(),
-                                                              tiles_.data(), sums_.data(), gradients, seen});
+        device_.for_each_index(
+            count_, project_backward<Real>{gaussians_, camera_, sh_degree_, splats_.data(), tiles_.data(),
+                                           sums_.data(), gradients, seen, room()});
     }
 
     const Real* picture() const { return picture_.data(); }
-    /// On the device: instances that the last view has, whether they fit or not.
-    const std::uint64_t* instances() const { return first_.data() + count_; }
+    /// Whether the last view's instances fit.
+    list_room room() const { return {first_.data() + count_, capacity_}; }
     /// On the device: pixel-Gaussian pairs evaluated by all `forward`s so far.
     const unsigned long long* pairs() const { return pairs_.data(); }
 
@@ -122,6 +115,10 @@ class renderer {
     std::size_t warps() const { return tiles() * patch<typename Device::warp, Real>::per_tile; }
 
     void project_all(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
+        // Places in the three planes of a picture are numbers of 32 bits.
+        if (std::int64_t{view.width} * view.height > std::int64_t{1} << 30)
+            throw error("a picture of " + std::to_string(view.width) + "x" + std::to_string(view.height) +
+                        " has more than 2^30 pixels: lower --resolution");
         tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
         first_.resize(count + 1);
@@ -148,15 +145,6 @@ class renderer {
         device_.sort_pairs(tile_of_, gaussian_of_, capacity_, static_cast<int>(std::bit_width(no_tile)));
         device_.zero(reserve(ranges_, tiles()).data(), tiles());
         device_.for_each_index(capacity_, find_ranges{tile_of_.data(), capacity_, no_tile, ranges_.data()});
-    }
-
-    template <bool AskFirst, class Policy>
-    void blend_back(const Real* picture_gradient) {
-        const auto b = colour(background_);
-        device_.for_each_warp(warps(), blend_backward<Real, Policy, AskFirst>{
-                                           splats_.data(), gaussian_of_.data(), ranges_.data(), tiles_across_,
-                                           camera_.width, camera_.height, b, transmittance_.data(),
-                                           last_.data(), picture_gradient, sums_.data()});
     }
 
     static vec3<Real> colour(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/gtc/quaternion.hpp>
 #include <string>
 #include <vector>
 
@@ -14,27 +15,34 @@ namespace gs {
 
 struct colmap_camera {
     std::uint32_t id = 0;
-    std::string model;
-    camera intrinsics;  ///< its pose is left at the identity
+    int width = 0, height = 0;
+    const char* model = "";  ///< its name, for messages
+    double fx = 0, fy = 0, cx = 0, cy = 0;
     lens distortion;
+
+    camera pinhole() const { return {width, height, fx, fy, cx, cy}; }  ///< at the origin
 };
 
 struct colmap_image {
-    std::string name;
     std::uint32_t camera_id = 0;
-    glm::dmat3 rotation{1};
+    std::size_t name_begins = 0;  ///< in `colmap_model::names`
+    glm::dquat rotation{1, 0, 0, 0};
     glm::dvec3 translation{0};
 };
 
 struct colmap_model {
-    std::vector<colmap_camera> cameras;
-    std::vector<colmap_image> images;  ///< in the file's order
+    std::vector<colmap_camera> cameras;  ///< by id
+    std::vector<colmap_image> images;    ///< in the file's order
     std::vector<coloured_point> points;
+    std::string names;                  ///< of the images, each with a final zero
     std::filesystem::path images_file;  ///< where `images` came from, for messages
+
+    const char* name(const colmap_image& image) const { return names.c_str() + image.name_begins; }
 };
 
 /// Reads cameras, images and points3D from a folder; of each, `.bin` is preferred to `.txt`. The points may
-/// be missing. Throws `error` naming file, and line or record, where something is malformed.
+/// be missing. Throws `error` naming file, and line or record, where something is malformed. What it
+/// allocates, at any time, is below four times the files' size and 64 KiB, whatever they hold.
 colmap_model read_colmap_model(const std::filesystem::path& folder);
 
 /// The views of a COLMAP folder, sorted by name; with `eval`, every `test_every`-th is a test view.

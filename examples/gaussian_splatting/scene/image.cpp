@@ -34,6 +34,9 @@ constexpr std::uint64_t largest_decoded_bytes = std::uint64_t{1} << 31;
 // A 1-bit PNG under deflate's best ratio, 1032 to 1: nothing that we read packs pixels more densely.
 constexpr std::uint64_t most_pixels_per_byte = 8 * 1032;
 
+// Of a progressive JPEG, each of which goes over all pixels: as many as cjpeg can be told to write.
+constexpr int most_scans = 100;
+
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
     throw error("cannot read the image " + file.string() + ": " + why);
 }
@@ -116,6 +119,8 @@ class png_reader {
     bool read_header(std::FILE* file) {
         if (setjmp(png_jmpbuf(png_))) return false;
         png_set_user_limits(png_, largest_side, largest_side);
+        // But those that make the pixels: texts and profiles may be compressed, and swell to megabytes each.
+        png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
         png_init_io(png_, file);
         png_read_info(png_, info_);
         png_set_expand(png_);
@@ -213,7 +218,6 @@ struct jpeg_errors {
     std::jmp_buf escape{};
     std::array<char, JMSG_LENGTH_MAX> message{};
     bool no_pixels = false;
-    bool damaged = false;
 };
 
 jpeg_errors& errors_of(j_common_ptr jpeg) { return *reinterpret_cast<jpeg_errors*>(jpeg->err); }
@@ -238,12 +242,15 @@ bool means_lost_pixels(int message_code) {
     }
 }
 
-// libjpeg goes on after lost data and paints the rest grey, which must not pass for a photo.
-void note_jpeg_warning(j_common_ptr jpeg, int level) {
-    jpeg_errors& errors = errors_of(jpeg);
-    if (level >= 0 || errors.damaged || !means_lost_pixels(jpeg->err->msg_code)) return;
-    errors.damaged = true;
-    jpeg->err->format_message(jpeg, errors.message.data());
+// libjpeg would go on after lost data and paint the rest grey, which must not pass for a photo.
+void heed_jpeg_warning(j_common_ptr jpeg, int level) {
+    if (level < 0 && means_lost_pixels(jpeg->err->msg_code)) leave_jpeg(jpeg);
+}
+
+void count_jpeg_scans(j_common_ptr jpeg) {
+    if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= most_scans) return;
+    std::snprintf(errors_of(jpeg).message.data(), JMSG_LENGTH_MAX, "more than %d scans", most_scans);
+    std::longjmp(errors_of(jpeg).escape, 1);
 }
 
 void print_no_jpeg_message(j_common_ptr) {}
@@ -253,8 +260,9 @@ class jpeg_reader {
     jpeg_reader() {
         jpeg_.err = jpeg_std_error(&errors_.manager);
         errors_.manager.error_exit = leave_jpeg;
-        errors_.manager.emit_message = note_jpeg_warning;
+        errors_.manager.emit_message = heed_jpeg_warning;
         errors_.manager.output_message = print_no_jpeg_message;
+        progress_.progress_monitor = count_jpeg_scans;
     }
     ~jpeg_reader() { jpeg_destroy_decompress(&jpeg_); }
     jpeg_reader(const jpeg_reader&) = delete;
@@ -263,6 +271,7 @@ class jpeg_reader {
     bool read_header(std::FILE* file) {
         if (setjmp(errors_.escape)) return false;
         jpeg_create_decompress(&jpeg_);
+        jpeg_.progress = &progress_;
         jpeg_stdio_src(&jpeg_, file);
         jpeg_read_header(&jpeg_, TRUE);
         return true;
@@ -282,7 +291,7 @@ class jpeg_reader {
             jpeg_read_scanlines(&jpeg_, &row, 1);
         }
         jpeg_finish_decompress(&jpeg_);
-        return !errors_.damaged;
+        return true;
     }
 
     std::string failure() const { return errors_.message.data(); }
@@ -291,6 +300,7 @@ class jpeg_reader {
   private:
     jpeg_decompress_struct jpeg_{};
     jpeg_errors errors_;
+    jpeg_progress_mgr progress_{};
 };
 
 [[noreturn]] void refuse_jpeg(const std::filesystem::path& file, const jpeg_reader& reader) {

@@ -18,7 +18,9 @@ struct image {
 };
 
 /// Reads a PNG or JPEG, told apart by its first bytes; grey, palette, 16-bit and CMYK-free JPEGs included.
-/// Throws `error` naming the file where it is missing, unreadable, truncated, or has no pixels.
+/// Throws `error` naming the file where it is missing, unreadable, truncated, has no pixels, more than 65536
+/// a side or 2 GiB of them, or more than 100 scans. Memory goes into pixels, up to 10 bytes each, and nothing
+/// else.
 image read_image(const std::filesystem::path& file);
 
 /// Width and height from the header alone, without decoding. Errors as `read_image`.

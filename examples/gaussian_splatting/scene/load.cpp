@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <glm/geometric.hpp>
 #include <string_view>
 
 #include "../error.hpp"
@@ -55,30 +54,11 @@ void require_views(const scene& loaded, const load_options& options) {
     if (options.eval && loaded.test.empty()) throw error(options.data + " has no test views" + split);
 }
 
-double median_distance(const std::vector<coloured_point>& points, const glm::dvec3& from) {
-    std::vector<double> distances;
-    distances.reserve(points.size());
-    for (const coloured_point& point : points) distances.push_back(glm::distance(from, point.position));
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    return *middle;
-}
-
 bool any_has_alpha(const std::vector<view>& views) {
     return std::ranges::any_of(views, [](const view& one) { return one.pixels.has_alpha; });
 }
 
 }  // namespace
-
-double scene::extent() const {
-    if (train.empty()) return 0;
-    glm::dvec3 mean(0);
-    for (const view& one : train) mean += one.camera.centre() / static_cast<double>(train.size());
-    double farthest = 0;
-    for (const view& one : train) farthest = std::max(farthest, glm::distance(mean, one.camera.centre()));
-    const double depth = points.empty() ? 1 : median_distance(points, mean);
-    return farthest > 1e-6 * depth ? 1.1 * farthest : depth;
-}
 
 scene load_scene(const load_options& options, const log_function& log) {
     if (options.resolution < 1)

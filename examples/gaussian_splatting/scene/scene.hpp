@@ -6,9 +6,11 @@
 #include <functional>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "frame.hpp"
 #include "image.hpp"
 
 namespace gs {
@@ -44,12 +46,18 @@ struct scene {
     std::vector<coloured_point> points;  ///< from structure from motion; empty if the source has none
     bool has_alpha = false;              ///< some photo is not opaque
     std::string source;                  ///< "Blender", "COLMAP" or "synthetic", for messages
+    gs::frame frame;                     ///< that cameras and points are in: the files' own until `recentre`
 
     /// 1.1 times the largest distance of a training camera from their mean: the unit of the learning rate of
     /// positions and of densification (Kerbl et al. 2023, reference implementation). Where all cameras are in
-    /// one place, to a millionth of what follows, the median distance of the points from it, or 1 without
-    /// points.
+    /// one place, to a millionth of what follows, the median distance of the points from it; without points,
+    /// that of `looked_at`; and if that is nowhere, 1 in the files' unit.
     double extent() const;
+
+    /// The point nearest to the optical axes of the training cameras, in the least squares sense. Along what
+    /// they leave open (a single camera, parallel axes) the one nearest to the origin of the files, where
+    /// scenes without points have their object. None where half of the cameras do not have it ahead.
+    std::optional<glm::dvec3> looked_at() const;
 };
 
 /// What a resolution means: 1, 2, 4 and 8 divide the size, any other number is the longer side in pixels.

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "../error.hpp"
+#include "look_at.hpp"
 
 namespace gs {
 namespace {
@@ -217,19 +218,6 @@ std::uint8_t to_byte(double in_unit_interval) {
     return static_cast<std::uint8_t>(std::lround(255 * in_unit_interval));
 }
 
-camera camera_at(const vec& eye, int size) {
-    const vec forward = glm::normalize(-eye);
-    const vec right = glm::normalize(glm::cross(forward, vec{0, 0, 1}));
-    const vec down = glm::cross(forward, right);
-    camera c;
-    c.width = c.height = size;
-    c.fx = c.fy = 0.5 * size / std::tan(0.5 * field_of_view);
-    c.cx = c.cy = 0.5 * size;
-    c.rotation = glm::transpose(glm::dmat3(right, down, forward));
-    c.translation = -c.rotation * eye;
-    return c;
-}
-
 /// The i-th of the cameras on a spiral that turns by the golden angle: evenly spread, neighbours in space far
 /// apart in number, so that every n-th camera lies between others.
 camera spiral_camera(int i, int size) {
@@ -239,7 +227,8 @@ camera spiral_camera(int i, int size) {
     const double height = glm::mix(lowest, highest, (i + 0.5) / view_count);
     const double across = std::sqrt(1 - height * height);
     const double angle = golden_angle * i;
-    return camera_at(camera_distance * vec{across * std::cos(angle), across * std::sin(angle), height}, size);
+    const vec eye = camera_distance * vec{across * std::cos(angle), across * std::sin(angle), height};
+    return look_at(eye, vec{0}, {0, 0, 1}, size, 0.5 * size / std::tan(0.5 * field_of_view));
 }
 
 vec ray_direction(const camera& c, double x, double y) {
@@ -265,30 +254,29 @@ void render_row(const world& w, const camera& c, int row, std::uint8_t* rgba) {
     }
 }
 
-std::vector<view> blank_views(const world& w, int size) {
+std::vector<view> spiral_views(int size) {
     std::vector<view> views(view_count);
     for (int i = 0; i < view_count; ++i) {
         view& v = views[static_cast<std::size_t>(i)];
         v.name = "view_" + std::string(i < 10 ? "0" : "") + std::to_string(i) + ".png";
         v.camera = spiral_camera(i, size);
-        v.pixels = {size, size, {}, w.transparent};
-        v.pixels.rgba.resize(4 * static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
     }
     return views;
 }
 
-std::vector<view> render_views(const world& w, int size) {
-    std::vector<view> views = blank_views(w, size);
-#pragma omp parallel for collapse(2) schedule(dynamic, 8)
-    for (int i = 0; i < view_count; ++i) {
-        for (int row = 0; row < size; ++row) {
-            view& v = views[static_cast<std::size_t>(i)];
-            const std::size_t bytes_per_row = 4 * static_cast<std::size_t>(size);
-            render_row(w, v.camera, row,
-                       v.pixels.rgba.data() + bytes_per_row * static_cast<std::size_t>(row));
-        }
+void take_photos(const world& w, std::vector<view>& views) {
+    std::vector<std::pair<view*, int>> rows;
+    for (view& v : views) {
+        const int width = v.camera.width, height = v.camera.height;
+        v.pixels = {width, height, {}, w.transparent};
+        v.pixels.rgba.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+        for (int row = 0; row < height; ++row) rows.emplace_back(&v, row);
     }
-    return views;
+#pragma omp parallel for schedule(dynamic, 8)
+    for (const auto& [v, row] : rows) {
+        const std::size_t bytes_per_row = 4 * static_cast<std::size_t>(v->camera.width);
+        render_row(w, v->camera, row, v->pixels.rgba.data() + bytes_per_row * static_cast<std::size_t>(row));
+    }
 }
 
 /// Spelt out because the standard leaves the results of its distributions to the implementation.
@@ -296,10 +284,11 @@ double uniform(std::mt19937_64& random) { return static_cast<double>(random() >>
 
 /// Where rays through random places of random views meet a surface: seen by a camera by construction, and
 /// denser where more cameras look, as a cloud from structure from motion is.
-std::vector<coloured_point> seen_points(const world& w, const std::vector<view>& views, std::uint64_t seed) {
+std::vector<coloured_point> seen_points(const world& w, const std::vector<view>& views, std::size_t count,
+                                        std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::vector<coloured_point> points;
-    while (points.size() < point_count) {
+    while (points.size() < count) {
         const auto chosen = static_cast<std::size_t>(uniform(random) * static_cast<double>(views.size()));
         const camera& c = views[chosen].camera;
         const double x = uniform(random) * c.width;
@@ -333,7 +322,8 @@ std::vector<std::string> synthetic_scene_names() {
 scene make_synthetic_scene(const std::string& name, const load_options& options, const log_function& log) {
     const world w = world_called(name);
     const int size = size_at(options.resolution);
-    std::vector<view> views = render_views(w, size);
+    std::vector<view> views = spiral_views(size);
+    take_photos(w, views);
 
     scene result;
     result.source = "synthetic";
@@ -343,13 +333,22 @@ scene make_synthetic_scene(const std::string& name, const load_options& options,
         const bool held_out = options.eval && i % views_per_test_view == views_per_test_view / 2;
         (held_out ? result.test : result.train).push_back(std::move(views[i]));
     }
-    result.points = seen_points(w, result.train, options.seed);
+    result.points = seen_points(w, result.train, point_count, options.seed);
     if (log) {
         log("synthetic scene '" + name + "': " + std::to_string(result.train.size()) + " training and " +
             std::to_string(result.test.size()) + " test views of " + std::to_string(size) + "x" +
             std::to_string(size) + ", " + std::to_string(result.points.size()) + " points");
     }
     return result;
+}
+
+void photograph_synthetic(const std::string& name, std::vector<view>& views) {
+    take_photos(world_called(name), views);
+}
+
+std::vector<coloured_point> synthetic_points(const std::string& name, const std::vector<view>& views,
+                                             std::size_t count, std::uint64_t seed) {
+    return seen_points(world_called(name), views, count, seed);
 }
 
 }  // namespace gs

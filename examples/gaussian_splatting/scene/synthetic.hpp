@@ -20,4 +20,12 @@ namespace gs {
 /// `options.seed`. The result does not depend on the number of threads. Throws `error` for an unknown name.
 scene make_synthetic_scene(const std::string& name, const load_options& options, const log_function& log);
 
+/// Takes the photos that the views' cameras have of the same world: other cameras than the scene's own, in no
+/// sphere.
+void photograph_synthetic(const std::string& name, std::vector<view>& views);
+
+/// More of its surface points. Precondition: some view sees a surface.
+std::vector<coloured_point> synthetic_points(const std::string& name, const std::vector<view>& views,
+                                             std::size_t count, std::uint64_t seed);
+
 }  // namespace gs

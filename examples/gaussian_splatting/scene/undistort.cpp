@@ -60,9 +60,12 @@ bool photo_covers(const camera& taken_with, const lens& distortion, const std::v
     return true;
 }
 
+/// Into 0 to `last`; NaN too, which std::clamp would let pass.
+double into_range(double value, double last) { return std::fmin(std::fmax(value, 0.0), last); }
+
 void sample(const image& photo, glm::dvec2 position, std::uint8_t* result) {
-    const double x = std::clamp(position.x - 0.5, 0.0, photo.width - 1.0);
-    const double y = std::clamp(position.y - 0.5, 0.0, photo.height - 1.0);
+    const double x = into_range(position.x - 0.5, photo.width - 1.0);
+    const double y = into_range(position.y - 0.5, photo.height - 1.0);
     const auto left = static_cast<std::size_t>(x), top = static_cast<std::size_t>(y);
     const std::size_t right = std::min(left + 1, static_cast<std::size_t>(photo.width) - 1);
     const std::size_t bottom = std::min(top + 1, static_cast<std::size_t>(photo.height) - 1);

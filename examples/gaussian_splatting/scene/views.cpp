@@ -185,11 +185,18 @@ void for_each_in_parallel(std::size_t count, const Body& body) {
 
 }  // namespace
 
+// Written so that NaN fails too.
 bool has_sound_intrinsics(const camera& pinhole, const lens& distortion) {
+    constexpr double least_focal_length = 1e-6, largest = 1e9;
     for (const double value : {pinhole.fx, pinhole.fy, pinhole.cx, pinhole.cy, distortion.k1, distortion.k2,
                                distortion.p1, distortion.p2})
-        if (!std::isfinite(value)) return false;
-    return pinhole.fx > 0 && pinhole.fy > 0;
+        if (!(std::abs(value) <= largest)) return false;
+    return pinhole.fx >= least_focal_length && pinhole.fy >= least_focal_length;
+}
+
+bool is_sound_place(const glm::dvec3& place) {
+    constexpr double farthest = 1e30;
+    return std::abs(place.x) <= farthest && std::abs(place.y) <= farthest && std::abs(place.z) <= farthest;
 }
 
 std::vector<view> load_views(const std::vector<recorded_view>& recorded, const load_options& options,

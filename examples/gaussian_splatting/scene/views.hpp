@@ -11,6 +11,9 @@
 
 namespace gs {
 
+/// No file's name is longer on Linux. What std::filesystem makes of a longer one takes many times its size.
+inline constexpr std::size_t longest_path = 4096;
+
 /// What a scene's files say of one photo, before it is opened.
 struct recorded_view {
     std::filesystem::path file;
@@ -25,7 +28,14 @@ struct recorded_view {
 std::vector<view> load_views(const std::vector<recorded_view>& recorded, const load_options& options,
                              const log_function& log);
 
-/// Whether all intrinsics are finite and the focal lengths positive.
+/// Whether the focal lengths lie between 1e-6 and 1e9 pixels and the rest is finite and at most 1e9: what no
+/// change of the photo's size can make overflow.
 bool has_sound_intrinsics(const camera& pinhole, const lens& distortion);
+inline constexpr const char* unsound_intrinsics =
+    " has a focal length that is not between 1e-6 and 1e9, or a parameter that is not finite or beyond 1e9";
+
+/// Whether a position is finite and so near, at most 1e30, that distances to it can be squared.
+bool is_sound_place(const glm::dvec3& place);
+inline constexpr const char* unsound_place = " is not finite, or beyond 1e30";
 
 }  // namespace gs

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "../device/atomic.hpp"
+#include "../raster/bits.hpp"
 #include "../raster/geometry.hpp"
 #include "../raster/project_backward.hpp"
 #include "densify_rule.hpp"
@@ -23,30 +25,23 @@ struct judge_gaussians {
     std::uint32_t* large;    ///< 1 or 0
     std::uint32_t* urgency;  ///< sort key: the more urgent the growth the smaller; all ones for none
     std::uint32_t* identities;
+    unsigned long long* silent;  ///< those that were drawn and took no gradient, added to
 
     WARPAGG_HD void operator()(std::size_t index) const {
         const auto i = static_cast<unsigned>(index);
         const raster::visibility v = seen[i];
         const float mean = v.seen > 0 ? v.gradient / v.seen : 0.0f;
+        if (v.seen > 0 && v.gradient == 0) device::atomic_add(silent, 1);
         const glm::vec3 s = raster::load3(gaussians.log_scale, i);
         const float largest = glm::exp(warpagg::math::max(s.x, warpagg::math::max(s.y, s.z)));
-        const bool opaque = raster::sigmoid(gaussians.opacity[i]) >= rule.least_opacity;
+        const bool opaque = sigmoid(gaussians.opacity[i]) >= rule.least_opacity;
         const bool too_large = rule.most_scale > 0 && largest > rule.most_scale;
         const bool stay = opaque && !too_large;
         stays[i] = stay ? 1 : 0;
         large[i] = largest > rule.dense_scale ? 1 : 0;
         identities[i] = i;
         // Positive floats sort as their bits do; the complement turns the order round.
-        urgency[i] = stay && mean >= rule.gradient ? ~bits_of(mean) : 0xffffffffu;
-    }
-
-  private:
-    static WARPAGG_HD std::uint32_t bits_of(float a) {
-#if defined(__CUDA_ARCH__)
-        return __float_as_uint(a);
-#else
-        return __builtin_bit_cast(std::uint32_t, a);
-#endif
+        urgency[i] = stay && mean >= rule.gradient ? ~raster::bits_of(mean) : 0xffffffffu;
     }
 };
 
@@ -112,12 +107,12 @@ struct part_halves {
         const auto i = static_cast<unsigned>(index);
         if (births[i] != split) return;
         const glm::vec3 log_scale = raster::load3(gaussians.log_scale, i);
-        const float* p = gaussians.quaternion + 4 * i;
-        const glm::vec4 q(p[0], p[1], p[2], p[3]);
+        const raster::unit turn(raster::load4(gaussians.quaternion, i));
         counter_random random(seed, step, i);
         const glm::vec3 offset =
-            raster::rotation_of(glm::normalize(q)) * (glm::exp(log_scale) * random.normal3());
-        raster::store3(gaussians.mean, i, raster::load3(gaussians.mean, i) + offset);
+            raster::rotation_of(turn.direction) * (glm::exp(log_scale) * random.normal3());
+        const glm::vec3 mean = raster::load3(gaussians.mean, i) + offset;
+        if (raster::is_finite(mean)) raster::store3(gaussians.mean, i, mean);
         raster::store3(gaussians.log_scale, i, log_scale - glm::vec3(0.47000363f));  // log 1.6
     }
 };

@@ -11,6 +11,7 @@
 #include "densify.hpp"
 #include "engine.hpp"
 #include "photometric.hpp"
+#include "watch.hpp"
 
 namespace gs::train {
 
@@ -23,12 +24,19 @@ struct clamp_picture {
     }
 };
 
-/// Counts the steps that were left out: one index.
-struct count_skipped {
-    const std::uint64_t* instances;
-    std::uint64_t reserved;
+/// Counts the steps that were left out, and looks at the loss: one index.
+struct close_step {
+    raster::list_room room;
     std::uint64_t* skipped;
-    WARPAGG_HD void operator()(std::size_t) const { *skipped += *instances > reserved ? 1 : 0; }
+    const double* totals;  ///< of the loss
+    train::watch watch;
+
+    WARPAGG_HD void operator()(std::size_t) const {
+        if (room.exceeded()) ++*skipped;
+        double sum = 0;
+        for (int k = 0; k < loss_sum_count; ++k) sum += totals[k];
+        if (!raster::is_finite(sum)) watch.note(fault::loss, 0, 0);
+    }
 };
 
 /// An `engine` on a device: the order of the kernels, and the memory they share.
@@ -42,6 +50,9 @@ class device_engine final : public engine {
     device_engine() : renderer_(device_), photometric_(device_) {
         skipped_.resize(1);
         device_.zero(skipped_.data(), 1);
+        silent_.resize(1);
+        found_.resize(1);
+        take_findings();
     }
 
     std::string device_name() const override { return device_.name(); }
@@ -123,18 +134,21 @@ class device_engine final : public engine {
         device_.begin(stage::loss);
         photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
                                plan.background);
-        const float* by_picture = photometric_.gradient(renderer_.picture(), plan.ssim_weight);
+        const float* by_picture =
+            photometric_.gradient(renderer_.picture(), plan.ssim_weight, renderer_.room());
         renderer_.backward(by_picture, plan.gradient, write(gradients_), plan.watch ? seen_.data() : nullptr);
         device_.begin(stage::adam);
         descend(plan);
         device_.end_iteration();
     }
 
-    void densify(const densify_rule& rule) override {
-        if (count_ == 0) return;
+    std::uint64_t densify(const densify_rule& rule) override {
+        if (count_ == 0) return 0;
+        device_.zero(silent_.data(), 1);
         for (auto* b : {&copies_, &large_, &urgency_, &gaussian_of_}) b->resize(count_);
-        device_.for_each_index(count_, judge_gaussians{read(values_), seen_.data(), rule, copies_.data(),
-                                                       large_.data(), urgency_.data(), gaussian_of_.data()});
+        device_.for_each_index(
+            count_, judge_gaussians{read(values_), seen_.data(), rule, copies_.data(), large_.data(),
+                                    urgency_.data(), gaussian_of_.data(), silent_.data()});
         const std::size_t staying = total_of_copies();
         const std::size_t room = rule.cap > staying ? rule.cap - staying : 0;
         device_.sort_pairs(urgency_, gaussian_of_, count_, 32);
@@ -159,12 +173,15 @@ class device_engine final : public engine {
         }
         device_.for_each_index(next, part_halves{births_.data(), rule.seed, rule.step, write(values_)});
         begin_generation(next);
+        unsigned long long silent = 0;
+        device_.download(&silent, silent_.data(), 1);
+        return silent;
     }
 
     void reset_opacity(float most) override {
         constexpr std::size_t p = index(parameter::opacity);
-        device_.for_each_index(count_, lower_opacity{values_[p].data(), first_[p].data(), second_[p].data(),
-                                                     std::log(most / (1 - most))});
+        device_.for_each_index(
+            count_, lower_opacity{values_[p].data(), first_[p].data(), second_[p].data(), logit(most)});
     }
 
     void reserve() override {
@@ -179,6 +196,15 @@ class device_engine final : public engine {
         std::uint64_t n = 0;
         device_.download(&n, skipped_.data(), 1);
         return n;
+    }
+
+    findings take_findings() override {
+        watch::memory found;
+        device_.download(&found, found_.data(), 1);
+        const watch::memory clean = watch::clean();
+        device_.upload(found_.data(), &clean, 1);
+        device_.wait();
+        return watch::decode(found);
     }
 
     std::vector<float> render(const camera& camera, const std::array<float, 3>& background) override {
@@ -263,19 +289,21 @@ class device_engine final : public engine {
     }
 
     void descend(const step_plan& plan) {
+        const train::watch watch{found_.data(), static_cast<std::uint32_t>(plan.iteration)};
         ++steps_;
         const double by_first = 1 / (1 - std::pow(adam<float>::beta1, steps_));
         const double by_second = 1 / std::sqrt(1 - std::pow(adam<float>::beta2, steps_));
         for (std::size_t p = 0; p < parameter_count; ++p) {
             if (!has_parameter(p, plan.sh_degree)) continue;
-            const std::size_t n = count_ * static_cast<std::size_t>(parameter_width[p]);
+            const auto width = static_cast<std::uint32_t>(parameter_width[p]);
             device_.for_each_element(
-                n, adam<float>{values_[p].data(), first_[p].data(), second_[p].data(), gradients_[p].data(),
-                               static_cast<float>(plan.rates[p] * by_first), static_cast<float>(by_second),
-                               renderer_.instances(), renderer_.reserved_instances()});
+                count_ * width,
+                adam<float>{values_[p].data(), first_[p].data(), second_[p].data(), gradients_[p].data(),
+                            static_cast<float>(plan.rates[p] * by_first), static_cast<float>(by_second),
+                            renderer_.room(), watch, static_cast<std::uint32_t>(p), width});
         }
-        device_.for_each_index(
-            1, count_skipped{renderer_.instances(), renderer_.reserved_instances(), skipped_.data()});
+        device_.for_each_index(1,
+                               close_step{renderer_.room(), skipped_.data(), photometric_.totals(), watch});
     }
 
     std::uint64_t all_pairs() {
@@ -313,12 +341,14 @@ class device_engine final : public engine {
     arrays values_, first_, second_, gradients_;
     buffer<raster::visibility> seen_;
     buffer<std::uint64_t> skipped_;
+    buffer<watch::memory> found_;
     buffer<float> shown_;
 
     // What `densify` works with.
     buffer<std::uint32_t> copies_, large_, urgency_, gaussian_of_, origin_;
     buffer<birth> births_;
     buffer<std::uint64_t> first_copy_;
+    buffer<unsigned long long> silent_;
     buffer<float> spare_value_, spare_first_, spare_second_;
 };
 

@@ -13,12 +13,14 @@
 #include "../raster/gradient_policy.hpp"
 #include "../scene/scene.hpp"
 #include "densify_rule.hpp"
+#include "finding.hpp"
 #include "quality.hpp"
 
 namespace gs::train {
 
 /// One iteration: which photo, and what it is worth to learn from it.
 struct step_plan {
+    int iteration = 0;     ///< for what is found not to be finite; less than 2^24
     std::size_t view = 0;  ///< of the training views
     int sh_degree = 0;
     std::array<float, 3> background{};
@@ -44,8 +46,9 @@ class engine {
     virtual std::size_t count() const = 0;
 
     virtual void step(const step_plan& plan) = 0;
-    /// Copies, splits and drops Gaussians by what `step`s have seen since the last call.
-    virtual void densify(const densify_rule& rule) = 0;
+    /// Copies, splits and drops Gaussians by what `step`s have seen since the last call. Returns how many
+    /// were drawn but took no gradient at all, as those whose alpha is too low everywhere.
+    virtual std::uint64_t densify(const densify_rule& rule) = 0;
     virtual void reset_opacity(float most) = 0;
     /// Makes room for the longest lists of the training views, and half as much again for what they grow to.
     /// To be called after `set_model` and `densify`, and now and then.
@@ -54,6 +57,8 @@ class engine {
     virtual quality take_training_quality() = 0;
     /// Steps that changed no parameter, since their lists did not fit.
     virtual std::uint64_t skipped_steps() = 0;
+    /// What was not finite in the `step`s since the last call. No parameter ever is: see `adam`.
+    virtual findings take_findings() = 0;
 
     /// Three planes, not clamped.
     virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background) = 0;

@@ -7,6 +7,8 @@
 #include <glm/vec3.hpp>
 #include <warpagg/atomic.hpp>
 
+#include "../raster/list_room.hpp"
+
 namespace gs::train {
 
 using warpagg::mask_t;
@@ -24,10 +26,10 @@ struct composite {
 
     WARPAGG_HD void operator()(std::size_t i) const {
         const std::uint8_t* p = rgba + 4 * i;
-        const Real through = Real(255 - p[3]);
+        const Real through =
+            Real(255 - p[3]) / 255;  // 1 where nothing is, which leaves the background as it is
         for (int c = 0; c < 3; ++c)
-            planes[static_cast<std::size_t>(c) * pixels + i] =
-                (Real(p[c]) + through * background[c]) * Real(1.0 / 255);
+            planes[static_cast<std::size_t>(c) * pixels + i] = Real(p[c]) / 255 + through * background[c];
     }
 };
 
@@ -72,97 +74,121 @@ struct pixel_row {
         inside = column < width;
     }
 
-    /// Which lanes have a pixel `shift` columns further.
-    WARPAGG_HD mask_t<W> has_column(int shift) const {
-        return inside &&
-               column + static_cast<unsigned>(shift) < width;  // what is left of the picture wraps around
+    /// f(tap, values of the N maps) for each tap of the window along the row, or along the column if `Down`.
+    template <bool Down, int N, class Real, class F>
+    WARPAGG_HD void for_each_tap(const W& w, const ssim_window& window, const Real* const (&maps)[N],
+                                 const F& f) const {
+        for (int t = -ssim_window::radius; t <= ssim_window::radius; ++t) {
+            // What is left of the picture, or above it, wraps around.
+            const auto shift = static_cast<unsigned>(t);
+            const value_t<W, unsigned> at = Down ? value_t<W, unsigned>(row + shift) : column + shift;
+            const mask_t<W> there = inside && at < (Down ? height : width);
+            const std::ptrdiff_t from = first + (Down ? static_cast<std::ptrdiff_t>(t) * width : t);
+            value_t<W, Real> values[N];
+            for (int m = 0; m < N; ++m) values[m] = w.load_row(maps[m], from, there);
+            f(value_t<W, Real>(static_cast<Real>(window.tap[t < 0 ? -t : t])), values);
+        }
     }
 
-    /// Sums `tap * map` along the row, or along the column if `Down`, over each of N maps.
+    /// The window's mean of each of N maps along the row, or along the column if `Down`.
     template <bool Down, int N, class Real>
     WARPAGG_HD void blur(const W& w, const ssim_window& window, const Real* const (&maps)[N],
-                         value_t<W, Real> (&sums)[N]) const {
-        for (int t = -ssim_window::radius; t <= ssim_window::radius; ++t) {
-            if (Down && row + static_cast<unsigned>(t) >= height) continue;
-            const std::ptrdiff_t from = first + (Down ? static_cast<std::ptrdiff_t>(t) * width : t);
-            const mask_t<W> there = Down ? inside : has_column(t);
-            const value_t<W, Real> tap(static_cast<Real>(window.tap[t < 0 ? -t : t]));
-            for (int m = 0; m < N; ++m) sums[m] = fma(tap, w.load_row(maps[m], from, there), sums[m]);
-        }
+                         value_t<W, Real> (&means)[N]) const {
+        for (auto& m : means) m = value_t<W, Real>(0);
+        for_each_tap<Down>(w, window, maps, [&](const auto& tap, const auto& values) {
+            for (int m = 0; m < N; ++m) means[m] = fma(tap, values[m], means[m]);
+        });
     }
 };
 
-/// First pass: the means along the rows of x, y, x^2, y^2 and xy, into five maps of three planes.
+/// What the similarity is made of, a map of three planes each: the means of x and of the difference d = x -
+/// y, the sum of the variances of x and of y, and the variance of d. A variance is a sum of squares about the
+/// mean, so that none is negative, whatever the rounding.
+enum ssim_moment { mean_x, mean_d, variance_sum, variance_d, ssim_moment_count };
+
+/// First pass: the moments along the rows.
 template <class Real>
 struct ssim_moments {
     const Real* x;
     const Real* y;
     int width, height;
     ssim_window window;
-    Real* moments[5];
+    Real* moments[ssim_moment_count];
 
     template <class W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
         using real = value_t<W, Real>;
         const pixel_row<W> p(w, index, width, height);
-        real sum[5] = {real(0), real(0), real(0), real(0), real(0)};
-        for (int t = -ssim_window::radius; t <= ssim_window::radius; ++t) {
-            const mask_t<W> there = p.has_column(t);
-            const real tap(static_cast<Real>(window.tap[t < 0 ? -t : t]));
-            const real a = w.load_row(x, p.first + t, there), b = w.load_row(y, p.first + t, there);
-            sum[0] = fma(tap, a, sum[0]);
-            sum[1] = fma(tap, b, sum[1]);
-            sum[2] = fma(tap * a, a, sum[2]);
-            sum[3] = fma(tap * b, b, sum[3]);
-            sum[4] = fma(tap * a, b, sum[4]);
-        }
-        for (int m = 0; m < 5; ++m) w.store_row(moments[m], p.first, sum[m], p.inside);
+        const Real* const pictures[] = {x, y};
+        real mean[2];
+        p.template blur<false>(w, window, pictures, mean);
+        real variance(0), difference(0);
+        p.template for_each_tap<false>(w, window, pictures, [&](const real& tap, const real(&at)[2]) {
+            const real a = at[0] - mean[0], b = at[1] - mean[1], d = a - b;
+            variance = fma(tap, fma(a, a, b * b), variance);
+            difference = fma(tap * d, d, difference);
+        });
+        w.store_row(moments[mean_x], p.first, mean[0], p.inside);
+        w.store_row(moments[mean_d], p.first, mean[0] - mean[1], p.inside);
+        w.store_row(moments[variance_sum], p.first, variance, p.inside);
+        w.store_row(moments[variance_d], p.first, difference, p.inside);
     }
 };
 
 /// Where the second pass adds up what it finds over all pixels and channels.
-enum loss_sum { sum_absolute, sum_square, sum_ssim, loss_sum_count };
+enum loss_sum { sum_absolute, sum_square, sum_ssim, sum_values, loss_sum_count };
 
-/// Second pass: the means along the columns, the similarity of each pixel, and its derivatives by the mean of
-/// x, of x^2 and of xy. Adds the absolute and square errors and the similarity to `totals`.
+/// Second pass: the moments of the whole window, the similarity of each pixel, and its derivatives by the
+/// mean of x, and by x through the variances, which are proportional to x and to d. Adds the absolute and
+/// square errors, the similarity and the number of values to `totals`.
 template <class Real>
 struct ssim_compare {
     const Real* x;
     const Real* y;
     int width, height;
     ssim_window window;
-    const Real* moments[5];
+    const Real* moments[ssim_moment_count];
     Real* derivatives[3];
     double* totals;  ///< `loss_sum_count`
+    raster::list_room room;
 
     template <class W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
         using real = value_t<W, Real>;
         const pixel_row<W> p(w, index, width, height);
-        real m[5] = {real(0), real(0), real(0), real(0), real(0)};
-        p.template blur<true>(w, window, moments, m);
+        real mx(0), md(0);
+        p.template for_each_tap<true>(w, window, moments, [&](const real& tap, const auto& at) {
+            mx = fma(tap, at[mean_x], mx);
+            md = fma(tap, at[mean_d], md);
+        });
+        // The variance of the whole is the mean of the rows' variances and the variance of the rows' means.
+        real variances(0), difference(0);
+        const real my = mx - md;
+        p.template for_each_tap<true>(w, window, moments, [&](const real& tap, const auto& at) {
+            const real a = at[mean_x] - mx, d = at[mean_d] - md, b = at[mean_x] - at[mean_d] - my;
+            variances = fma(tap, at[variance_sum] + fma(a, a, b * b), variances);
+            difference = fma(tap, fma(d, d, at[variance_d]), difference);
+        });
 
-        // S = (2 mx my + C1)(2 cov + C2) / ((mx^2 + my^2 + C1)(vx + vy + C2)), with vx = m[2] - mx^2 and so
-        // on.
+        // Wang et al.'s (2 mx my + C1)(2 cov + C2) / ((mx^2 + my^2 + C1)(vx + vy + C2)), as
+        // (1 - (mx - my)^2 / b1)(1 - var(x - y) / b2): each factor is at most 1.
         constexpr auto C1 = static_cast<Real>(0.01 * 0.01), C2 = static_cast<Real>(0.03 * 0.03);
-        const real mean_product = m[0] * m[1], squares = fma(m[0], m[0], m[1] * m[1]);
-        const real a1 = mean_product + mean_product + C1, b1 = squares + C1;
-        const real covariance = m[4] - mean_product;
-        const real a2 = covariance + covariance + C2, b2 = m[2] + m[3] - squares + C2;
-        const real inverse = Real(1) / (b1 * b2);
-        const real s = a1 * a2 * inverse;
-        const real by_square = -s / b2;
-        const real by_product = (a1 + a1) * inverse;
-        const real by_mean =
-            (m[1] + m[1]) * (a2 - a1) * inverse + (m[0] + m[0]) * s * (Real(1) / b2 - Real(1) / b1);
+        const real r1 = Real(1) / (fma(mx, mx, my * my) + C1), r2 = Real(1) / (variances + C2);
+        const real t1 = md * r1, t2 = difference * r2;  // of what is lost
+        const real like1 = Real(1) - md * t1, like2 = Real(1) - t2;
+        const real s = like1 * like2;
+        const real by_d = (like1 + like1) * r2, by_x = by_d * t2;
+        const real by_mean = (t1 + t1) * like2 * (t1 * mx - Real(1)) + by_d * md - by_x * mx;
         w.store_row(derivatives[0], p.first, by_mean, p.inside);
-        w.store_row(derivatives[1], p.first, by_square, p.inside);
-        w.store_row(derivatives[2], p.first, by_product, p.inside);
+        w.store_row(derivatives[1], p.first, by_x, p.inside);
+        w.store_row(derivatives[2], p.first, -by_d, p.inside);
 
+        if (room.exceeded()) return;
         const real error = w.load_row(x, p.first, p.inside) - w.load_row(y, p.first, p.inside);
         const value_t<W, double> found[loss_sum_count] = {
             warpagg::math::convert<double>(warpagg::math::max(error, -error)),
-            warpagg::math::convert<double>(error * error), warpagg::math::convert<double>(s)};
+            warpagg::math::convert<double>(error * error), warpagg::math::convert<double>(s),
+            value_t<W, double>(1)};
         warpagg::warp_reduce_atomic(w, totals, found, p.inside);
     }
 };
@@ -179,7 +205,7 @@ struct ssim_spread {
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
         using real = value_t<W, Real>;
         const pixel_row<W> p(w, index, width, height);
-        real sum[3] = {real(0), real(0), real(0)};
+        real sum[3];
         p.template blur<false>(w, window, derivatives, sum);
         for (int m = 0; m < 3; ++m) w.store_row(spread[m], p.first, sum[m], p.inside);
     }
@@ -200,10 +226,10 @@ struct loss_gradient {
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
         using real = value_t<W, Real>;
         const pixel_row<W> p(w, index, width, height);
-        real sum[3] = {real(0), real(0), real(0)};
+        real sum[3];
         p.template blur<true>(w, window, spread, sum);
         const real a = w.load_row(x, p.first, p.inside), b = w.load_row(y, p.first, p.inside);
-        const real similarity = sum[0] + (a + a) * sum[1] + b * sum[2];
+        const real similarity = sum[0] + a * sum[1] + (a - b) * sum[2];
         const Real each = Real(1) / (Real(3) * Real(width) * Real(height));
         const real sign = select(a > b, real(1), select(a < b, real(-1), real(0)));
         const real g = sign * (each * (Real(1) - ssim_weight)) - similarity * (each * ssim_weight);

@@ -31,23 +31,25 @@ class photometric {
             n, composite<Real>{rgba, {background[0], background[1], background[2]}, n, photo_.data()});
     }
 
-    /// Adds the picture's measures to the running ones. The first half of `gradient`.
-    void compare(const Real* picture) {
+    /// Adds the picture's measures to the running ones, if there was room for all of it. The first half of
+    /// `gradient`.
+    void compare(const Real* picture, const raster::list_room& room = {}) {
         const std::size_t n = 3 * pixels();
         for (auto& m : moments_) m.resize(n);
         for (auto& d : derivatives_) d.resize(n);
         ssim_moments<Real> across{picture, photo_.data(), width_, height_, window_, {}};
-        ssim_compare<Real> down{picture, photo_.data(), width_, height_, window_, {}, {}, totals_.data()};
-        for (std::size_t i = 0; i < 5; ++i) down.moments[i] = across.moments[i] = moments_[i].data();
+        ssim_compare<Real> down{picture, photo_.data(),  width_, height_, window_, {},
+                                {},      totals_.data(), room};
+        for (std::size_t i = 0; i < ssim_moment_count; ++i)
+            down.moments[i] = across.moments[i] = moments_[i].data();
         for (std::size_t i = 0; i < 3; ++i) down.derivatives[i] = derivatives_[i].data();
         device_.for_each_warp(rows(), across);
         device_.for_each_warp(rows(), down);
-        compared_ += static_cast<double>(n);
     }
 
     /// dL/dpicture for L = (1 - ssim_weight) L1 + ssim_weight (1 - SSIM), on the device. Compares as well.
-    const Real* gradient(const Real* picture, double ssim_weight) {
-        compare(picture);
+    const Real* gradient(const Real* picture, double ssim_weight, const raster::list_room& room = {}) {
+        compare(picture, room);
         ssim_spread<Real> spread{width_, height_, window_, {}, {}};
         loss_gradient<Real> last{
             picture, photo_.data(), width_, height_, window_, {}, static_cast<Real>(ssim_weight), nullptr};
@@ -63,13 +65,14 @@ class photometric {
         return gradient_.data();
     }
 
+    /// On the device: what `take` takes, `loss_sum_count` sums.
+    const double* totals() const { return totals_.data(); }
     /// The means over all pictures compared since the last call. Waits for the device.
     quality take() {
         double totals[loss_sum_count];
         device_.download(totals, totals_.data(), loss_sum_count);
         device_.zero(totals_.data(), loss_sum_count);
-        const double n = compared_;
-        compared_ = 0;
+        const double n = totals[sum_values];
         return {totals[sum_absolute] / n, totals[sum_square] / n, totals[sum_ssim] / n};
     }
 
@@ -83,10 +86,9 @@ class photometric {
     ssim_window window_ = ssim_window::make();
     int width_ = 0, height_ = 0;
     buffer<Real> photo_, gradient_;
-    std::array<buffer<Real>, 5> moments_;
+    std::array<buffer<Real>, ssim_moment_count> moments_;
     std::array<buffer<Real>, 3> derivatives_;
     buffer<double> totals_;
-    double compared_ = 0;
 };
 
 }  // namespace gs::train

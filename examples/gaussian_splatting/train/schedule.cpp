@@ -12,22 +12,26 @@ int schedule::sh_degree_at(int iteration) const {
 }
 
 std::array<float, 8> schedule::rates_at(int iteration) const {
-    constexpr double first = 1.6e-4, last = 1.6e-6;
     const double t = std::min(1.0, static_cast<double>(iteration) / iterations);
-    const double mean = extent * std::exp(std::log(first) * (1 - t) + std::log(last) * t);
-    constexpr float scale = 5e-3f, rotation = 1e-3f, opacity = 2.5e-2f, sh = 2.5e-3f;
-    return {static_cast<float>(mean), scale, rotation, opacity, sh, sh / 20, sh / 20, sh / 20};
+    const double mean =
+        extent * std::exp(std::log(position_lr_init) * (1 - t) + std::log(position_lr_final) * t);
+    const double sh = feature_lr, band = feature_lr / 20;
+    std::array<float, 8> rates{};
+    std::ranges::transform(std::array{mean, scaling_lr, rotation_lr, opacity_lr, sh, band, band, band},
+                           rates.begin(), [](double rate) { return static_cast<float>(rate); });
+    return rates;
 }
 
-int schedule::densify_until() const { return std::min(15000, iterations / 2); }
+int schedule::densify_until() const { return densify_until_iter.value_or(std::min(15000, iterations / 2)); }
 
 bool schedule::densifies(int iteration) const {
-    return iteration > densify_from && iteration < densify_until() && iteration % densify_every == 0;
+    return iteration > densify_from_iter && iteration < densify_until() &&
+           iteration % densification_interval == 0;
 }
 
 bool schedule::resets_opacity(int iteration) const {
     if (iteration >= densify_until()) return false;
-    return iteration % opacity_reset_every == 0 || (white && iteration == densify_from);
+    return iteration % opacity_reset_interval == 0 || (white && iteration == densify_from_iter);
 }
 
 }  // namespace gs::train

@@ -4,11 +4,12 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 namespace gs::train {
 
 /// What happens when, and at which rates: the reference implementation's (Kerbl et al. 2023), its 30,000
-/// iterations scaled to any number of them.
+/// iterations scaled to any number of them. Rates and intervals are positive.
 struct schedule {
     int iterations = 7000;
     int sh_degree = 3;
@@ -16,21 +17,29 @@ struct schedule {
     double extent = 1;              ///< of the scene
     bool white = false;             ///< photos without a background, shown on white
 
+    /// Of Adam. Those of positions are by extent and fall from `init` to `final`, geometrically.
+    double position_lr_init = 1.6e-4, position_lr_final = 1.6e-6;
+    double feature_lr = 2.5e-3;  ///< of the constant colour; a twentieth of it for what depends on direction
+    double opacity_lr = 2.5e-2, scaling_lr = 5e-3, rotation_lr = 1e-3;
+
+    int opacity_reset_interval = 3000;
+    int densification_interval = 100;
+    int densify_from_iter = 500;
+    std::optional<int> densify_until_iter;  ///< half of the iterations, at most 15,000, where it is not said
+
     static constexpr double ssim_weight = 0.2;
-    static constexpr int densify_from = 500, densify_every = 100, opacity_reset_every = 3000;
     static constexpr float reset_opacity = 0.01f;
 
     int sh_degree_at(int iteration) const;
     /// Adam's rates by `parameter`.
     std::array<float, 8> rates_at(int iteration) const;
-    /// Half of the iterations, at most 15,000.
     int densify_until() const;
     bool watches(int iteration) const { return iteration < densify_until(); }
     bool densifies(int iteration) const;
     bool resets_opacity(int iteration) const;
     /// Gaussians that are large in the world are dropped once opacities have been reset. Those that are large
     /// on the screen are not: that costs lego 1.7 dB.
-    bool drops_large(int iteration) const { return iteration > opacity_reset_every; }
+    bool drops_large(int iteration) const { return iteration > opacity_reset_interval; }
 };
 
 }  // namespace gs::train

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <random>
 
+#include "../error.hpp"
+
 namespace gs::train {
 
 namespace {
@@ -55,6 +57,41 @@ densify_rule rule_at(int iteration, const schedule& schedule, const train_option
     return rule;
 }
 
+/// What an engine found not to be finite, with the view it was found in.
+class finite_watch {
+  public:
+    void shows(std::size_t view) { views_.push_back(view); }
+
+    /// Of the iterations since the last look, the last of which is `iteration`: see `train`.
+    void look(engine& engine, const scene& scene, int iteration, const train_events& events,
+              train_result& result) {
+        const findings found = engine.take_findings();
+        const auto& loss = found[static_cast<std::size_t>(fault::loss)];
+        const auto& value = found[static_cast<std::size_t>(fault::parameter)];
+        const auto& gradient = found[static_cast<std::size_t>(fault::gradient)];
+        const auto where = [&](const finding& f) {
+            const std::size_t back = static_cast<std::size_t>(iteration - f.iteration) + 1;
+            return "iteration " + std::to_string(f.iteration) + ", view " +
+                   scene.train[views_[views_.size() - back]].name;
+        };
+        const auto of = [](const finding& f) {
+            return std::string(parameter_names[static_cast<std::size_t>(f.parameter)]) + " of Gaussian " +
+                   std::to_string(f.gaussian);
+        };
+        if (gradient.count > 0 && result.left_out_gradients == 0)
+            events.warn(where(gradient) + ": the gradient of " + of(gradient) +
+                        " is not finite or too large to square; such gradients are left out");
+        result.left_out_gradients += gradient.count;
+        if (value.count > 0)
+            throw error(where(value) + ": " + of(value) + " would not be finite; training ends here");
+        if (loss.count > 0) throw error(where(loss) + ": the loss is not finite; training ends here");
+        views_.clear();
+    }
+
+  private:
+    std::vector<std::size_t> views_;  ///< of the iterations since the last look
+};
+
 }  // namespace
 
 std::size_t default_cap(const scene& scene) {
@@ -66,10 +103,7 @@ std::size_t default_cap(const scene& scene) {
 
 train_result train(engine& engine, const scene& scene, const train_options& options,
                    const train_events& events) {
-    schedule schedule;
-    schedule.iterations = options.iterations;
-    schedule.sh_degree = options.sh_degree;
-    schedule.sh_degree_interval = options.sh_degree_interval;
+    schedule schedule = options.schedule;
     schedule.extent = scene.extent();
     schedule.white = scene.has_alpha && options.background.colour == std::array<float, 3>{1, 1, 1};
 
@@ -77,13 +111,14 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     constexpr int reserve_every = 500;  // between densifications lists grow slowly
     view_order order(scene.train.size(), options.seed);
     std::mt19937_64 colours(options.seed + 1);
+    finite_watch watch;
     train_result result;
     engine.reserve();
     engine.wait();
     const auto start = clock::now();
     double outside = 0;  // in callbacks
 
-    for (int iteration = 1; iteration <= options.iterations; ++iteration) {
+    for (int iteration = 1; iteration <= schedule.iterations; ++iteration) {
         step_plan plan;
         plan.view = order.next();
         plan.sh_degree = schedule.sh_degree_at(iteration);
@@ -92,23 +127,28 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
         plan.rates = schedule.rates_at(iteration);
         plan.ssim_weight = schedule::ssim_weight;
         plan.watch = schedule.watches(iteration);
+        plan.iteration = iteration;
         engine.step(plan);
+        watch.shows(plan.view);
 
         if (schedule.densifies(iteration) || iteration % reserve_every == 0) {
             engine.wait();
             const auto from = clock::now();
-            if (schedule.densifies(iteration)) engine.densify(rule_at(iteration, schedule, options));
+            if (schedule.densifies(iteration))
+                result.silent_gaussians = engine.densify(rule_at(iteration, schedule, options));
             engine.reserve();
             result.densify_seconds += seconds_since(from);
         }
         if (schedule.resets_opacity(iteration)) engine.reset_opacity(schedule::reset_opacity);
 
-        const bool last = iteration == options.iterations;
+        const bool last = iteration == schedule.iterations;
         const bool tests = options.test_iterations.contains(iteration);
         const bool saves = options.save_iterations.contains(iteration);
+        if (iteration % report_every == 0 || last || tests || saves)
+            watch.look(engine, scene, iteration, events, result);
         if (iteration % report_every == 0 || last || tests) {
             const quality q = engine.take_training_quality();
-            events.report({iteration, options.iterations, q.loss(schedule::ssim_weight), q.psnr(),
+            events.report({iteration, schedule.iterations, q.loss(schedule::ssim_weight), q.psnr(),
                            engine.count(), seconds_since(start) - outside});
         }
         if (tests || saves) {

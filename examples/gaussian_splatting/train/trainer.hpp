@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "engine.hpp"
@@ -20,9 +21,7 @@ struct background_choice {
 };
 
 struct train_options {
-    int iterations = 7000;
-    int sh_degree = 3;
-    int sh_degree_interval = 1000;
+    train::schedule schedule;  ///< but for what the scene says: extent and white
     float densify_gradient = densify_rule{}.gradient;
     std::size_t max_cap = 0;  ///< most Gaussians
     std::uint64_t seed = 0;
@@ -44,6 +43,8 @@ struct train_result {
     double seconds = 0;          ///< in the loop
     double densify_seconds = 0;  ///< of these, for densification and for sizing the lists
     std::uint64_t skipped_steps = 0;
+    std::uint64_t left_out_gradients = 0;  ///< elements that were not finite
+    std::uint64_t silent_gaussians = 0;    ///< before the last densification: see `engine::densify`
 };
 
 /// What the loop calls back for.
@@ -51,9 +52,14 @@ struct train_events {
     std::function<void(const progress&)> report;
     std::function<void(int iteration)> save;
     std::function<void(int iteration)> test;
+    std::function<void(const std::string&)> warn = [](const std::string&) {};
 };
 
 /// Trains what `engine` holds. Precondition: `engine` has the scene's views and a model.
+/// The device notes what is not finite in the iteration where it appears; that is looked at every 100
+/// iterations and before anything is tested or saved. An element of a gradient that is not finite is left out
+/// of its step, and a warning names the first. A loss that is not finite, or a parameter that would not be,
+/// ends training: throws `error` naming iteration, view, parameter and Gaussian; what was saved before stays.
 train_result train(engine& engine, const scene& scene, const train_options& options,
                    const train_events& events);
 

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <warpagg/simt/atomic_memory.hpp>
+#include <warpagg/simt/target.hpp>
+
+namespace gs::device {
+
+/// What rare events are counted with, from kernels over an index: no warp is there to add up first.
+WARPAGG_HD void atomic_add(unsigned long long* to, unsigned long long value) {
+#if defined(__CUDA_ARCH__)
+    atomicAdd(to, value);
+#else
+    warpagg::emulator::detail::atomic(warpagg::operation::sum{}, to, value);
+#endif
+}
+WARPAGG_HD void atomic_min(unsigned long long* to, unsigned long long value) {
+#if defined(__CUDA_ARCH__)
+    atomicMin(to, value);
+#else
+    warpagg::emulator::detail::atomic(warpagg::operation::minimum{}, to, value);
+#endif
+}
+
+}  // namespace gs::device

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <warpagg/simt/target.hpp>
+
+namespace gs::raster {
+
+/// The bits of a float as a sort key: non-negative floats sort as their bits do.
+WARPAGG_HD std::uint32_t bits_of(float x) {
+#if defined(__CUDA_ARCH__)
+    return __float_as_uint(x);
+#else
+    return __builtin_bit_cast(std::uint32_t, x);
+#endif
+}
+
+WARPAGG_HD unsigned lowest_bit(std::uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+    return static_cast<unsigned>(__ffs(static_cast<int>(bits)) - 1);
+#else
+    return static_cast<unsigned>(__builtin_ctz(bits));
+#endif
+}
+WARPAGG_HD unsigned highest_bit(std::uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+    return static_cast<unsigned>(31 - __clz(static_cast<int>(bits)));
+#else
+    return static_cast<unsigned>(31 - __builtin_clz(bits));
+#endif
+}
+
+}  // namespace gs::raster

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "vectors.hpp"
+
+namespace gs::raster {
+
+/// Pixels; what the covariance of a splat is widened by, the variance of a pixel's filter (Kerbl et al.
+/// 2023).
+inline constexpr double pixel_variance = 0.3;
+/// The shape of a splat: the Cholesky factor of the inverse of its covariance over 2 ln 2, from the vectors
+/// whose Gram matrix the covariance is before it is widened. The determinant is a square by Lagrange's
+/// identity and what the widening adds: a sum of positive terms, so nothing cancels. Sizes are divided out
+/// first, so nothing overflows either. NaN where the vectors are not finite.
+template <class Real>
+struct ellipse {
+    Real p, q, r;           ///< see `splat`
+    Real slope_x, slope_y;  ///< see `splat`
+    Real width, height;     ///< half the bounding box's sides where the exponent is 1
+
+    ellipse() = default;
+    WARPAGG_HD ellipse(const vec3<Real>& ax, const vec3<Real>& ay) {
+        using warpagg::math::max;
+        using warpagg::math::sqrt;
+        constexpr Real two_ln2 = Real(1.3862943611198906), added = Real(pixel_variance);
+        // The covariance is size^2 times what follows, its determinant (size * across)^2 times `determinant`.
+        const Real size = max(max(Real(1), largest(ax)), largest(ay));
+        const vec3<Real> bx = ax / size, by = ay / size;
+        const Real inverse = 1 / size, widening = added * inverse * inverse;
+        const Real xx = glm::dot(bx, bx) + widening, yy = glm::dot(by, by) + widening, xy = glm::dot(bx, by);
+        const vec3<Real> area = glm::cross(bx, ay);
+        const Real across = max(Real(1), largest(area));
+        const vec3<Real> part = area / across;
+        const Real determinant =
+            glm::dot(part, part) + added / across / across * (glm::dot(bx, bx) + glm::dot(by, by) + widening);
+        const Real k = sqrt(two_ln2) * size;
+        width = k * sqrt(xx);
+        height = k * sqrt(yy);
+        slope_x = xy / yy;
+        slope_y = xy / xx;
+        p = 1 / width;
+        q = sqrt(xx / (two_ln2 * determinant)) / across;
+        r = -q * slope_y;
+    }
+
+    WARPAGG_HD bool is_sound() const {
+        return is_finite(width) && is_finite(height) && is_finite(q) && is_finite(r);
+    }
+};
+
+}  // namespace gs::raster

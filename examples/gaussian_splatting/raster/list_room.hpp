@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <warpagg/simt/target.hpp>
+
+namespace gs::raster {
+
+/// Whether a view's tile lists fit into the memory that was reserved for them, as the device finds out. A
+/// step whose lists do not fit saw half a picture: it is left out, and nothing is learned from it.
+struct list_room {
+    const std::uint64_t* needed = nullptr;  ///< null: there is room enough
+    std::uint64_t reserved = 0;
+
+    WARPAGG_HD bool exceeded() const { return needed != nullptr && *needed > reserved; }
+};
+
+}  // namespace gs::raster

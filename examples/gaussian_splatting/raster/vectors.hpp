@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <warpagg/simt/math.hpp>
+
+namespace gs::raster {
+
+template <class Real>
+using vec2 = glm::vec<2, Real>;
+template <class Real>
+using vec3 = glm::vec<3, Real>;
+template <class Real>
+using vec4 = glm::vec<4, Real>;
+template <class Real>
+using mat3 = glm::mat<3, 3, Real>;
+
+template <class Real>
+WARPAGG_HD bool is_finite(Real x) {
+    return x - x == 0;
+}
+template <class Real>
+WARPAGG_HD bool is_finite(const vec3<Real>& v) {
+    return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
+}
+
+/// The component of largest size.
+template <int N, class Real>
+WARPAGG_HD Real largest(const glm::vec<N, Real>& v) {
+    Real most(0);
+    for (int k = 0; k < N; ++k) most = warpagg::math::max(most, glm::abs(v[k]));
+    return most;
+}
+
+/// Which way a vector points. Its largest component is divided out first, so that no square over- or
+/// underflows: only zero and what is not finite have no direction, and get NaN.
+template <int N, class Real>
+struct unit {
+    glm::vec<N, Real> direction;
+    Real inverse_length;
+
+    WARPAGG_HD explicit unit(const glm::vec<N, Real>& v) {
+        const Real most = largest(v);
+        const glm::vec<N, Real> scaled = v / most;
+        const Real inverse = 1 / warpagg::math::sqrt(glm::dot(scaled, scaled));
+        direction = scaled * inverse;
+        inverse_length = inverse / most;
+    }
+};
+
+template <class Real>
+WARPAGG_HD vec3<Real> load3(const Real* p, unsigned i) {
+    return {p[3 * i], p[3 * i + 1], p[3 * i + 2]};
+}
+template <class Real>
+WARPAGG_HD void store3(Real* p, unsigned i, const vec3<Real>& v) {
+    p[3 * i] = v.x;
+    p[3 * i + 1] = v.y;
+    p[3 * i + 2] = v.z;
+}
+
+template <class Real>
+WARPAGG_HD vec4<Real> load4(const Real* p, unsigned i) {
+    return {p[4 * i], p[4 * i + 1], p[4 * i + 2], p[4 * i + 3]};
+}
+
+}  // namespace gs::raster

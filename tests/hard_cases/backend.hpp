@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/parameters.hpp"
+#include "raster/gradient_policy.hpp"
+#include "scene/scene.hpp"
+#include "train/densify_rule.hpp"
+#include "train/quality.hpp"
+
+/// The hard cases of numerics: one text of tests, put to every device. All numbers are doubles here, and
+/// become the device's own on their way there.
+namespace hard_cases {
+
+using gs::gradient_policy;
+
+/// A picture of a few Gaussians and a photo to compare it with.
+struct question {
+    int sh_degree = 3;
+    std::array<std::vector<double>, gs::parameter_count> parameters;
+    gs::view view;
+    std::array<float, 3> background{};
+    gradient_policy policy = gradient_policy::scatter;
+    std::vector<double> weights;  ///< of the loss's gradient, one a pixel; none for 1 everywhere
+
+    std::size_t count() const { return parameters[3].size(); }
+    std::size_t pixels() const {
+        return static_cast<std::size_t>(view.camera.width) * static_cast<std::size_t>(view.camera.height);
+    }
+};
+
+/// What densification is told of a Gaussian.
+struct sighting {
+    double gradient = 0, seen = 0;
+};
+
+struct answer {
+    std::vector<double> picture;  ///< three planes, as all pictures here
+    double loss = 0;
+    std::array<std::vector<double>, gs::parameter_count> gradients;
+    std::vector<sighting> sightings;
+};
+
+/// A Gaussian in the picture, as the renderer's `splat`.
+struct projected_splat {
+    bool drawn;
+    std::uint32_t depth;  ///< sort key
+    double x, y, reach, opacity, p, q, r, red, green, blue;
+
+    bool operator==(const projected_splat&) const = default;
+};
+
+/// A splat made by hand: the covariance is the Gram matrix of `across` and `down`, in pixels, widened by the
+/// pixel's filter.
+struct flat_splat {
+    double x, y, opacity;
+    std::array<double, 3> across{}, down{};
+    std::array<double, 3> colour{};
+};
+
+/// Splats to be blended, without Gaussians behind them.
+struct blend_question {
+    int width, height;
+    std::array<float, 3> background{};
+    std::vector<flat_splat> splats;
+    std::vector<std::vector<std::uint32_t>> lists;  ///< front to back, one a tile; none for all in each
+    std::vector<double> gradient;                   ///< by the picture; empty: forward only
+    gradient_policy policy = gradient_policy::scatter;
+};
+
+struct blend_answer {
+    std::vector<double> picture, transmittance;
+    std::vector<std::uint32_t> last;
+    /// By splat: of red, green, blue, of dL/dalpha alpha, and its five moments.
+    std::vector<std::array<double, 9>> sums;
+};
+
+/// A picture beside a photo, premultiplied RGBA over a background.
+struct compare_question {
+    int width, height;
+    std::vector<double> picture;
+    std::vector<std::uint8_t> rgba;
+    std::array<float, 3> background{};
+};
+
+struct compare_answer {
+    gs::train::quality quality;
+    std::vector<double> gradient;  ///< of the training loss, by the picture
+};
+
+/// Who stays and how urgently each wants to grow: the smaller the key the more.
+struct judgement {
+    std::vector<std::uint32_t> stays, urgency;
+    std::uint64_t silent;  ///< were drawn and took no gradient
+};
+
+/// The kernels on one device. Each function waits for its result.
+struct backend {
+    std::string name;
+
+    answer (*ask)(const question&);
+    double (*loss)(const question&);  ///< that of `ask`, without gradients
+    std::vector<projected_splat> (*project)(const question&);
+    blend_answer (*blend)(const blend_question&);
+    compare_answer (*compare)(const compare_question&);
+    /// Values after each step of Adam from 0: `gradients[step][value]`.
+    std::vector<std::vector<double>> (*descend)(const std::vector<std::vector<double>>& gradients,
+                                                double rate);
+    judgement (*judge)(const std::vector<sighting>&, const std::vector<double>& opacities,
+                       const gs::train::densify_rule&);
+    std::vector<std::uint64_t> (*prefix_sum)(const std::vector<std::uint32_t>&);
+    /// What a renderer says to this many instances of a view; nothing if it takes them.
+    std::string (*complaint_about_instances)(std::uint64_t);
+    /// The library's sum of all values into one address.
+    double (*sum)(const std::vector<double>&, gradient_policy);
+};
+
+/// Double, one lane a warp: what the others are measured by.
+const backend& reference();
+/// Those in float that are to be measured: lanes, serial, and the GPU where the build has one.
+const std::vector<backend>& backends();
+
+backend lanes_backend();
+backend serial_backend();
+backend cuda_backend();
+
+}  // namespace hard_cases

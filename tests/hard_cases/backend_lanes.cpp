@@ -1,0 +1,10 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "device/cpu.hpp"
+#include "on_device.hpp"
+
+namespace hard_cases {
+
+backend lanes_backend() { return backend_on<gs::device::cpu, float>::make("lanes"); }
+
+}  // namespace hard_cases

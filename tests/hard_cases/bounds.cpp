@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+#include "questions.hpp"
+#include "raster/splat.hpp"
+
+namespace hard_cases {
+
+namespace {
+
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
+               return x == y || (std::isnan(x) && std::isnan(y));
+           });
+}
+
+/// The photo over the background, as the loss sees it.
+double photo_at(const question& q, std::size_t channel, std::size_t pixel) {
+    const std::uint8_t* p = q.view.pixels.rgba.data() + 4 * pixel;
+    return (p[channel] + (255 - p[3]) * static_cast<double>(q.background[channel])) / 255;
+}
+
+}  // namespace
+
+double largest(const std::vector<double>& a) {
+    double most = 0;
+    for (const double x : a) most = std::max(most, std::abs(x));
+    return most;
+}
+
+bool all_finite(const std::vector<double>& a) {
+    return std::all_of(a.begin(), a.end(), [](double x) { return std::isfinite(x); });
+}
+
+bool all_finite(const answer& a) {
+    return all_finite(a.picture) && std::isfinite(a.loss) &&
+           std::all_of(a.gradients.begin(), a.gradients.end(),
+                       [](const std::vector<double>& g) { return all_finite(g); });
+}
+
+bool same(const answer& a, const answer& b) {
+    if (!same(a.picture, b.picture) || a.loss != b.loss) return false;
+    for (std::size_t p = 0; p < gs::parameter_count; ++p)
+        if (!same(a.gradients[p], b.gradients[p])) return false;
+    return true;
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+    double most = a.size() == b.size() ? 0 : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        const double d = std::abs(a[i] - b[i]);
+        most = std::isfinite(d) ? std::max(most, d) : std::numeric_limits<double>::infinity();
+    }
+    return most;
+}
+
+double distance(const answer& a, const answer& b, const question& q) {
+    if (q.weights.empty()) return distance(a.picture, b.picture);
+    std::vector<double> x = a.picture, y = b.picture;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (q.weights[i % q.pixels()] == 0) x[i] = y[i] = 0;
+    return distance(x, y);
+}
+
+std::string excess(const std::vector<double>& got, const std::vector<double>& expected) {
+    constexpr std::size_t least_for_bias = 32;
+    std::ostringstream said;
+    if (got.size() != expected.size()) return "of other sizes";
+    const double most = largest(expected);
+    double product = 0, square = 0, expected_square = 0, bias = 0, mass = 0;
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < got.size(); ++i) {
+        const double a = got[i], b = expected[i];
+        if (!(std::abs(a - b) <= 1e-3 * std::abs(b) + 1e-5 * most)) {
+            if (wrong++ == 0) said << "element " << i << " is " << a << " instead of " << b << "; ";
+        }
+        product += a * b;
+        square += a * a;
+        expected_square += b * b;
+        bias += a - b;
+        mass += std::abs(b);
+    }
+    if (wrong > 0) said << wrong << " of " << got.size() << " off, the largest is " << most << "; ";
+    if (!(product >= 0.99999 * std::sqrt(square * expected_square)))
+        said << "cosine " << product / std::sqrt(square * expected_square) << "; ";
+    if (got.size() >= least_for_bias && !(std::abs(bias) <= 1e-4 * mass))
+        said << "bias " << bias / mass << "; ";
+    return said.str();
+}
+
+std::string excess(const answer& got, const answer& expected) {
+    std::string said;
+    for (std::size_t p = 0; p < gs::parameter_count; ++p) {
+        const std::string here = excess(got.gradients[p], expected.gradients[p]);
+        if (!here.empty()) said += parameter_names[p] + ": " + here;
+    }
+    return said;
+}
+
+std::vector<double> off_thresholds(const question& q, double margin) {
+    using namespace gs::raster;
+    const int width = q.view.camera.width, height = q.view.camera.height;
+    std::vector<double> weights(q.pixels(), 1.0), behind(q.pixels(), 1.0);
+    std::vector<projected_splat> splats = reference().project(q);
+    std::erase_if(splats, [](const projected_splat& s) { return !s.drawn; });
+    std::stable_sort(splats.begin(), splats.end(),
+                     [](const auto& a, const auto& b) { return a.depth < b.depth; });
+    const auto near = [margin](double value, double threshold) {
+        return std::abs(value / threshold - 1) < margin;
+    };
+    const auto from = [](double first, int end) {
+        return static_cast<int>(std::clamp(std::floor(first), 0.0, static_cast<double>(end)));
+    };
+    for (const projected_splat& s : splats) {
+        // u = p dx and v = q dy + r dx, neither further from 0 than the root of the reach.
+        const double far = std::sqrt(s.reach) * (1 + margin), dx = far / s.p,
+                     dy = (far + std::abs(s.r) * dx) / s.q;
+        for (int y = from(s.y - dy - 1, height); y < from(s.y + dy + 2, height); ++y)
+            for (int x = from(s.x - dx - 1, width); x < from(s.x + dx + 2, width); ++x) {
+                const auto pixel = static_cast<std::size_t>(y * width + x);
+                double& T = behind[pixel];
+                if (T == 0) continue;
+                const double u = s.p * (x + 0.5 - s.x), v = s.q * (y + 0.5 - s.y) + s.r * (x + 0.5 - s.x);
+                const double full = s.opacity * std::exp2(-(u * u + v * v));
+                const double next = T * (1 - std::min(full, most_alpha));
+                if (near(full, least_alpha) || near(full, most_alpha) ||
+                    (full >= least_alpha && near(next, least_transmittance)))
+                    weights[pixel] = 0;
+                if (full >= least_alpha) T = next < least_transmittance ? 0 : next;
+            }
+    }
+    const std::vector<double> picture = reference().ask(q).picture;
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+        const double apart = std::abs(picture[i] - photo_at(q, i / q.pixels(), i % q.pixels()));
+        // Nothing seen, or nothing but black on black, is the same in every precision.
+        if (apart != 0 && behind[i % q.pixels()] < 1 && apart < 0.1 * margin) weights[i % q.pixels()] = 0;
+    }
+    return weights;
+}
+
+}  // namespace hard_cases

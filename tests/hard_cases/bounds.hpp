@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "backend.hpp"
+
+namespace hard_cases {
+
+/// The bounds of an answer in float: each gradient to 1e-3 of itself and 1e-5 of the largest of its
+/// parameter, all of a parameter together to a cosine of 0.99999 and, if they are 32 or more, a signed bias
+/// of 1e-4 of the sum of their sizes. What exceeds them, in words; nothing if nothing does.
+std::string excess(const answer& got, const answer& expected);
+
+/// The same for one array.
+std::string excess(const std::vector<double>& got, const std::vector<double>& expected);
+
+/// The largest distance between elements; infinite where one is not finite or the sizes differ.
+double distance(const std::vector<double>& a, const std::vector<double>& b);
+
+/// The same of two pictures, where the question has weights only in the pixels that have one.
+double distance(const answer& a, const answer& b, const question& q);
+
+/// The largest |a|.
+double largest(const std::vector<double>& a);
+
+bool all_finite(const std::vector<double>& a);
+/// Picture, loss and gradients.
+bool all_finite(const answer& a);
+
+/// Bit for bit, but that all NaN are alike.
+bool same(const answer& a, const answer& b);
+
+/// Weights of 0 for the pixels in which float and double may decide differently for their rounding: where a
+/// splat's alpha lies within a relative `margin` of the least that is drawn or of the cap, the transmittance
+/// within that of the least that goes on, or a channel under some splat within a tenth of `margin` of its
+/// photo, where the loss has its kink. 1 elsewhere. The decisions are looked for in double.
+std::vector<double> off_thresholds(const question& q, double margin);
+
+}  // namespace hard_cases

@@ -1,0 +1,356 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <cfloat>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+
+#include "bounds.hpp"
+#include "differences.hpp"
+#include "healthy.hpp"
+#include "questions.hpp"
+#include "table.hpp"
+
+using namespace hard_cases;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+constexpr std::size_t crowd = 30, victim = 15;
+
+double* values_of(question& q, gs::parameter p, std::size_t i) {
+    const auto k = static_cast<std::size_t>(p);
+    return q.parameters[k].data() + i * static_cast<std::size_t>(gs::parameter_width[k]);
+}
+
+/// What the other parameters make of Gaussian `victim` must not be drawn, and nobody else may notice.
+void check_culled(const question& asked) {
+    question q = asked;
+    const question rest = without(q, victim);
+    on_each_variant([&](const backend& b, gradient_policy policy) {
+        question r = rest;
+        q.policy = r.policy = policy;
+        REQUIRE_FALSE(b.project(q)[victim].drawn);
+        CHECK(harm(b.ask(q), b.ask(r), victim, is_loose(b, policy)) == "");
+    });
+}
+
+/// A photo of noise, for the gradients' sake.
+void paint_photo(question& q, unsigned seed) {
+    q.view.pixels = random_question(seed, 0, q.view.camera.width, q.view.camera.height, 0).view.pixels;
+}
+
+std::array<double, 4> turned(double angle, const glm::dvec3& axis) {
+    const glm::dquat q = glm::angleAxis(angle, glm::normalize(axis));
+    return {q.w, q.x, q.y, q.z};
+}
+
+/// Drawn, finite, and the picture to 1e-3 of the reference's; the gradients within the bounds if they are
+/// asked for.
+void check_drawn(question q, bool with_gradients) {
+    q.weights = off_thresholds(q, 1e-4);
+    const answer expected = reference().ask(q);
+    const std::vector<projected_splat> splats = reference().project(q);
+    on_each_variant([&](const backend& b, gradient_policy policy) {
+        q.policy = policy;
+        const answer a = b.ask(q);
+        const std::vector<projected_splat> drawn = b.project(q);
+        for (std::size_t i = 0; i < drawn.size(); ++i) CHECK(drawn[i].drawn == splats[i].drawn);
+        CHECK(all_finite(a));
+        CHECK(distance(a, expected, q) <= 1e-3);
+        if (with_gradients) CHECK(excess(a, expected) == "");
+    });
+}
+
+}  // namespace
+
+TEST_CASE("case 8: far outside the picture, where the Jacobian of the projection is held") {
+    for (const auto& [side_x, side_y] :
+         {std::pair{2.0, 0.02}, {-2.0, 0.02}, {0.05, 2.0}, {0.05, -2.0}, {2.0, -2.0}}) {
+        CAPTURE(side_x);
+        CAPTURE(side_y);
+        question q = random_question(8, 1, 16, 16, 0);
+        q.view.camera.rotation = glm::dmat3(1);
+        q.view.camera.translation = glm::dvec3(0);
+        // Twice the bound on either side: the picture and 15 % of it.
+        const gs::camera& c = q.view.camera;
+        const double limit_x = (side_x < 0 ? 0.15 * 16 + c.cx : 1.15 * 16 - c.cx) / c.fx,
+                     limit_y = (side_y < 0 ? 0.15 * 16 + c.cy : 1.15 * 16 - c.cy) / c.fy;
+        q.parameters[0] = {side_x * limit_x * 2, side_y * limit_y * 2, 2};
+        q.parameters[1] = {0.3, 0.1, -0.2};
+        q.parameters[3] = {2};
+        for (double& x : q.parameters[0]) x = static_cast<float>(x);
+        const answer exact = reference().ask(q);
+        REQUIRE(std::abs(exact.gradients[0][0]) > 1e-6);
+        const verdict v = check_by_differences(q, {0}, 8);
+        CHECK_MESSAGE(v.wrong == 0, v.first_wrong);
+        CHECK(v.straddling == 0);
+        check_drawn(q, true);
+    }
+}
+
+TEST_CASE("case 9: needles, flat ones, and what is not a number") {
+    SUBCASE("needles of aspect 1e6, and flat ones on edge: drawn") {
+        // Standard deviations in the world; the picture has 16 pixels a unit at their depth. How a needle's
+        // picture moves when it turns is as many times less certain as it is longer than wide: its gradients
+        // are finite, and no more is asked of them.
+        struct shape {
+            glm::dvec3 scale;
+            bool needle;
+        };
+        const shape shapes[] = {{{2e4, 0.02, 0.02}, true}, {{1e6, 1, 1}, true},
+                                {{30, 3e-5, 3e-5}, true},  {{1, 1e-6, 1e-6}, true},
+                                {{1e3, 1e3, 1e-3}, true},  {{1e5, 1e5, 1e-25}, true},
+                                {{1, 1, 1e-30}, false},    {{1e-6, 1e-6, 1e-12}, false}};
+        for (const auto& [scale, needle] : shapes)
+            for (const double angle : {0.0, 0.3, 1.2}) {
+                CAPTURE(scale.x);
+                CAPTURE(scale.z);
+                CAPTURE(angle);
+                question q = empty_question(64, 48);
+                paint_photo(q, 9);
+                gaussian g;
+                g.mean = {0.13, -0.21, 4};
+                g.log_scale = glm::log(scale);
+                g.quaternion = turned(angle, {angle > 1 ? 0.5 : 0, angle > 1 ? 1 : 0, 1});
+                g.opacity = 1;
+                g.colour = {0.9, 0.5, 0.2};
+                add(q, g);
+                check_drawn(q, !needle);
+            }
+        SUBCASE("and a plane seen from its edge") {
+            question q = empty_question(64, 48);
+            paint_photo(q, 10);
+            gaussian g;
+            g.log_scale = {1, 1, -60};
+            g.quaternion = turned(std::acos(-1.0) / 2, {0.3, 1, 0});
+            add(q, g);
+            check_drawn(q, false);
+        }
+    }
+    SUBCASE("NaN in any parameter: culled, and nobody else changes by a bit") {
+        const question healthy = faint_crowd(9, crowd);
+        for (std::size_t p = 0; p < gs::parameter_count; ++p)
+            for (const int k : {0, gs::parameter_width[p] - 1}) {
+                CAPTURE(parameter_names[p]);
+                question q = healthy;
+                values_of(q, static_cast<gs::parameter>(p), victim)[k] = not_a_number;
+                check_culled(q);
+            }
+    }
+}
+
+TEST_CASE("case 10: a quaternion of no length, and of any") {
+    SUBCASE("zero is culled") {
+        for (const double zero : {0.0, -0.0}) {
+            question q = faint_crowd(10, crowd);
+            for (std::size_t k = 0; k < 4; ++k) values_of(q, gs::parameter::quaternion, victim)[k] = zero;
+            check_culled(q);
+        }
+    }
+    SUBCASE("the length changes nothing") {
+        question unit = random_question(11, 5, 24, 20, 1);
+        unit.weights = off_thresholds(unit, 1e-4);
+        const answer exact = reference().ask(unit);
+        for (const double scale : {1e-36, 1e-20, 0x1p-60, 0x1p60, 1e20, 1e38}) {
+            CAPTURE(scale);
+            question q = unit;
+            for (double& x : q.parameters[2]) x *= scale;
+            on_each_variant([&](const backend& b, gradient_policy policy) {
+                q.policy = policy;
+                answer a = b.ask(q);
+                CHECK(distance(a, exact, q) < 1e-5);
+                // Lengths at the ends of the range have gradients beyond it.
+                if (scale > 1e-36 && scale < 1e38)
+                    for (double& g : a.gradients[2]) g *= scale;
+                else
+                    a.gradients[2] = exact.gradients[2];
+                CHECK(excess(a, exact) == "");
+            });
+        }
+    }
+}
+
+TEST_CASE("case 11: huge and tiny scales") {
+    question healthy = faint_crowd(11, crowd);
+    SUBCASE("from exp(-30) to exp(40) and below: drawn") {
+        for (const double s : {-static_cast<double>(FLT_MAX), -120.0, -30.0, -10.0, 0.0, 10.0, 25.0, 40.0})
+            for (const bool all : {true, false}) {
+                CAPTURE(s);
+                CAPTURE(all);
+                question q = healthy;
+                double* mean = values_of(q, gs::parameter::mean, victim);
+                for (std::size_t k = 0; k < 3; ++k) mean[k] = 0;  // before the camera
+                double* scale = values_of(q, gs::parameter::log_scale, victim);
+                for (std::size_t k = 0; k < (all ? 3 : 1); ++k) scale[k] = s;
+                REQUIRE(reference().project(q)[victim].drawn);
+                check_drawn(q, false);
+            }
+    }
+    SUBCASE("exp(120), which no float holds: culled") {
+        for (std::size_t k = 0; k < 3; ++k) {
+            CAPTURE(k);
+            question q = healthy;
+            values_of(q, gs::parameter::log_scale, victim)[k] = 120;
+            check_culled(q);
+        }
+    }
+}
+
+TEST_CASE("case 12: an infinite scale harms nobody else") {
+    for (const double s : {infinity, 1e30, static_cast<double>(FLT_MAX), 89.0})
+        for (const bool all : {true, false}) {
+            CAPTURE(s);
+            CAPTURE(all);
+            question q = faint_crowd(12, crowd);
+            for (std::size_t k = 0; k < (all ? 3 : 1); ++k)
+                values_of(q, gs::parameter::log_scale, victim)[k] = s;
+            check_culled(q);
+        }
+}
+
+TEST_CASE("case 15: nothing to draw") {
+    for (const auto& [width, height] : {std::pair{1, 1}, {16, 16}, {20, 10}, {50, 40}}) {
+        const question crowded = random_question(9, 3, width, height, 1);
+        std::vector<question> empty(4, crowded);
+        for (auto& p : empty[0].parameters) p.clear();
+        empty[1].view.camera.translation = glm::dvec3(0, 0, -9);                  // behind the camera
+        empty[2].parameters[3].assign(3, -20.0);                                  // transparent
+        for (std::size_t i = 0; i < 3; ++i) empty[3].parameters[0][3 * i] = 1e4;  // beside the picture
+        for (question& q : empty) {
+            CAPTURE(width);
+            CAPTURE(&q - empty.data());
+            on_each_variant([&](const backend& b, gradient_policy policy) {
+                q.policy = policy;
+                const answer a = b.ask(q);
+                REQUIRE(a.picture.size() == 3 * q.pixels());
+                std::size_t other = 0;
+                for (std::size_t i = 0; i < a.picture.size(); ++i)
+                    other += a.picture[i] == static_cast<double>(q.background[i / q.pixels()]) ? 0 : 1;
+                CHECK(other == 0);
+                CHECK(all_finite(a));
+                for (const auto& gradients : a.gradients) CHECK(largest(gradients) == 0);
+            });
+        }
+    }
+}
+
+TEST_CASE("case 16: opacities at the least that is drawn") {
+    // In the middle of a pixel, where alpha is the opacity.
+    question q = faint_crowd(16, crowd);
+    q.view.camera = empty_question(8, 4).view.camera;
+    double* mean = values_of(q, gs::parameter::mean, victim);
+    mean[0] = mean[1] = 0.25;
+    mean[2] = 4;
+    const auto least = static_cast<float>(-std::log(254.0));
+    std::vector<double> logits{-5.6, -6, -20, -89, -104, -static_cast<double>(FLT_MAX)};
+    float above = least, below = least;
+    for (int ulps = 0; ulps <= 8; ++ulps) {
+        logits.push_back(above);
+        logits.push_back(below);
+        above = std::nextafter(above, 0.0f);
+        below = std::nextafter(below, -10.0f);
+    }
+    logits.push_back(-5.5);
+    on_each_variant([&](const backend& b, gradient_policy policy) {
+        question rest = without(q, victim);
+        q.policy = rest.policy = policy;
+        const answer alone = b.ask(rest);
+        bool was_drawn = false;
+        for (const double logit : logits) {
+            CAPTURE(logit);
+            values_of(q, gs::parameter::opacity, victim)[0] = logit;
+            const answer a = b.ask(q);
+            const bool drawn = b.project(q)[victim].drawn;
+            was_drawn = drawn;
+            CHECK(all_finite(a));
+            if (std::abs(logit - static_cast<double>(least)) > 1e-5) CHECK(drawn == (logit > least));
+            if (!drawn) CHECK(harm(a, alone, victim, is_loose(b, policy)) == "");
+            // Its alpha is 1/255 at most here, its share of the picture no more than that.
+            CHECK(distance(a.picture, alone.picture) < 2.0 / 255);
+        }
+        CHECK(was_drawn);
+    });
+}
+
+TEST_CASE("case 17: depths of zero and of either sign, and at the near plane") {
+    constexpr float near = 0.2f;
+    const auto at_depth = [](question& q, double z, double opacity, double red) {
+        gaussian g;
+        g.mean = {0, 0, z};
+        g.log_scale = glm::dvec3(std::max(std::log(std::abs(z) * 100 + 1e-20), -20.0));
+        g.opacity = opacity;
+        g.colour = {red, 1 - red, 0.5};
+        add(q, g);
+    };
+    SUBCASE("not in front of it: culled") {
+        for (const double z : {-0.0, 0.0, 1e-30, -1e-30, -0.2, -4.0, static_cast<double>(near),
+                               static_cast<double>(std::nextafter(near, 0.0f))}) {
+            CAPTURE(z);
+            question q = faint_crowd(17, crowd);
+            q.view.camera.rotation = glm::dmat3(1);
+            q.view.camera.translation = glm::dvec3(0);
+            for (std::size_t i = 0; i < crowd; ++i) values_of(q, gs::parameter::mean, i)[2] += 4;
+            double* mean = values_of(q, gs::parameter::mean, victim);
+            mean[0] = mean[1] = 0;
+            mean[2] = z;
+            check_culled(q);
+        }
+    }
+    SUBCASE("in front of it: in the order of their depth") {
+        // An ulp apart, and very far apart; put down in no order.
+        std::vector<double> depths;
+        float z = near;
+        for (int i = 0; i < 8; ++i) depths.push_back(z = std::nextafter(z, 1.0f));
+        for (const double far : {0.3, 1.0, 1e3, 1e8}) depths.push_back(far);
+        question q = empty_question(8, 4);
+        paint_photo(q, 17);
+        for (std::size_t i = 0; i < depths.size(); ++i) {
+            const std::size_t rank = i * 5 % depths.size();
+            at_depth(q, depths[rank], 0, static_cast<double>(rank) / 12);
+        }
+        double T = 1, red = 0;
+        for (std::size_t rank = 0; rank < depths.size(); ++rank) {
+            red += 0.5 * T * static_cast<double>(rank) / 12;
+            T *= 0.5;
+        }
+        on_each_variant([&](const backend& b, gradient_policy policy) {
+            q.policy = policy;
+            const answer a = b.ask(q);
+            for (std::size_t i = 0; i < q.pixels(); ++i)
+                CHECK(a.picture[i] == doctest::Approx(red).epsilon(1e-3));
+            CHECK(all_finite(a));
+        });
+    }
+}
+
+TEST_CASE("case 19: a scale of 1e-4 is drawn through the pixel's filter") {
+    for (const double offset : {0.0, 0.03}) {
+        question q = empty_question(16, 12);
+        paint_photo(q, 19);
+        for (int i = 0; i < 4; ++i) {
+            gaussian g;
+            g.mean = {offset + 0.4 * i, 0.3 - 0.2 * i, 4 + 0.5 * i};
+            g.log_scale = glm::log(glm::dvec3(1e-4, 2e-4, 5e-5));
+            g.quaternion = turned(0.4 * i, {1, 2, 3});
+            g.opacity = i - 1;
+            add(q, g);
+        }
+        check_drawn(q, true);
+    }
+    remark("there is no antialiasing factor yet: what is tested is the filter of a fixed width");
+}
+
+TEST_CASE("case 25: pictures of odd sizes") {
+    for (const auto& [width, height] :
+         {std::pair{1, 1}, {1, 17}, {17, 1}, {15, 15}, {16, 16}, {17, 17}, {33, 47}, {257, 257}}) {
+        CAPTURE(width);
+        CAPTURE(height);
+        question q = random_question(25, 20, width, height, 2);
+        // As wide for thin pictures as for others.
+        q.view.camera.fx = q.view.camera.fy = std::max(width, height);
+        check_drawn(q, true);
+    }
+}

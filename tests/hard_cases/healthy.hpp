@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "backend.hpp"
+
+namespace hard_cases {
+
+/// A picture of one patch, whose sums have one order on every device, of a crowd of faint Gaussians: a NaN
+/// that becomes the cap of alpha shows.
+question faint_crowd(unsigned seed, std::size_t count);
+
+/// What a Gaussian that must not be drawn did to a crowd all the same: `with` is the answer with it, at
+/// `index`, `rest` the one without. Pictures and gradients have to be equal to the bit, and its own gradients
+/// zero; where `loosely`, since the order of atomics is nobody's, gradients to 1e-5 of the largest. Empty if
+/// it did nothing.
+std::string harm(const answer& with, const answer& rest, std::size_t index, bool loosely);
+
+/// Whether a backend adds up in an order of its own from run to run, even in one patch.
+bool is_loose(const backend& b, gradient_policy policy);
+
+}  // namespace hard_cases

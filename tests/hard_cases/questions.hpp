@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <string>
+
+#include "backend.hpp"
+
+namespace hard_cases {
+
+/// Parameters are floats, as the trainer's are: every device is asked about the same numbers.
+
+/// A crowd of Gaussians before a camera, some of them half out of the picture, with a random photo behind.
+question random_question(unsigned seed, std::size_t splats, int width, int height, int sh_degree);
+
+/// No Gaussians yet, degree 0, black background and photo, before a camera at the origin that looks along z,
+/// with the focal length of the picture's width and its axis through the middle of the picture.
+question empty_question(int width, int height);
+
+/// A Gaussian of degree 0. The quaternion is w x y z.
+struct gaussian {
+    glm::dvec3 mean{0, 0, 4};
+    glm::dvec3 log_scale{-1};
+    std::array<double, 4> quaternion{1, 0, 0, 0};
+    double opacity = 0;  ///< logit
+    glm::dvec3 colour{1};
+};
+void add(question& q, const gaussian& g);
+
+/// The question without one of its Gaussians.
+question without(const question& q, std::size_t index);
+
+/// Moves the colours that lie within 1e-5 of black, where float and double may hold them or not, a thousandth
+/// away. Returns how many.
+std::size_t move_off_black(question& q);
+
+/// The logit of an opacity, in double.
+double logit_of(double opacity);
+
+inline const std::array<std::string, gs::parameter_count> parameter_names{
+    "mean", "log_scale", "quaternion", "opacity", "sh0", "sh1", "sh2", "sh3"};
+
+}  // namespace hard_cases
