@@ -140,7 +140,8 @@ void run(trial& t, gs::train::engine& engine, ordered_json& row) {
 
 bool is_sound(const ordered_json& row) {
     return !row.contains("error") && row["finite_parameters"] && row["finite_pictures"] &&
-           row["ply_in_place"] && !std::isnan(row["training_psnr"].get<double>());
+           row["ply_in_place"] && !std::isnan(row["training_psnr"].get<double>()) &&
+           !std::isnan(row["ply_training_psnr"].get<double>());
 }
 
 int bench(const options& o) {
@@ -188,7 +189,8 @@ int bench(const options& o) {
         std::fflush(stdout);
         json["rows"].push_back(std::move(row));
     }
-    if (!o.output.empty()) std::ofstream(o.output) << json.dump(2) << '\n';
+    if (!o.output.empty() && !(std::ofstream(o.output) << json.dump(2) << '\n').flush())
+        throw gs::error("cannot write " + o.output);
     return all_sound ? 0 : 1;
 }
 

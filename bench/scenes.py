@@ -15,25 +15,11 @@ import subprocess
 import sys
 import tempfile
 
+from environment import environment
+
 KEPT = ["psnr", "ssim", "training_psnr", "gaussians", "iterations", "iterations_per_second", "seconds", "densify_seconds",
         "skipped_steps", "pairs_per_iteration", "stages", "peak_host_bytes", "peak_device_bytes", "seed", "device",
         "gradient"]
-
-
-def first_line(*command):
-    try:
-        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip().splitlines()[0]
-    except (OSError, subprocess.CalledProcessError, IndexError):
-        return None
-
-
-def environment(commit):
-    nvcc = first_line("sh", "-c", "nvcc --version | grep release")
-    return {"commit": commit or first_line("git", "describe", "--always", "--dirty", "--abbrev=12"),
-            "gpu_and_driver": first_line("nvidia-smi", "--query-gpu=name,driver_version", "--format=csv,noheader"),
-            "nvcc": nvcc,
-            "compiler": first_line("c++", "--version"),
-            "processor": first_line("sh", "-c", "grep -m1 'model name' /proc/cpuinfo | cut -d: -f2")}
 
 
 def train(program, data, scene, seed, options):

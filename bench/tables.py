@@ -167,6 +167,35 @@ def stability():
     )
 
 
+def hard_cases():
+    f = results("hard_cases")
+    devices = [name for name in f["rows"][0]["cells"] if " " not in name]
+
+    def cell(row, device):
+        cells = [c for name, c in row["cells"].items() if name.split()[0] == device and c != "n/a"]
+        good = cells.count("ok")
+        if good < len(cells):
+            return f"**{len(cells) - good} of {len(cells)} fail**"
+        return "ok" if good == 1 else f"ok, {good} variants"
+
+    rows = [[row["case"]] + [cell(row, d) for d in devices] + [row["remarks"]] for row in f["rows"]]
+    return markdown(["case"] + devices + ["remarks"], rows) + f"\n{machine(f)}\n"
+
+
+def against_double():
+    f = results("hard_cases")
+    rows = [
+        [r["scene"], r["column"], f"{r['error_over_bound']:.2f}", f"{1 - r['cosine']:.1e}", f"{r['bias']:.1e}"]
+        for r in f["against_double"]
+    ]
+    head = ["scenes", "device and variant", "largest error / (1e-3 relative + 1e-5 of the largest)", "1 - least cosine"]
+    return markdown(head + ["largest signed bias"], rows) + f"\n{machine(f)}\n"
+
+
+def machine(figures):
+    return f"{figures['gpu_and_driver']}, {figures['nvcc']}, commit {figures['commit']}."
+
+
 EXAMPLES = {
     "histogram": "Histogram",
     "embedding_gradient": "Gradient of an embedding",
@@ -176,7 +205,8 @@ EXAMPLES = {
     "torch": "PyTorch",
 }
 
-TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability)}
+TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability, hard_cases,
+                                 against_double)}
 TABLES.update({f"{name}_{m}": example(m, title) for name, title in EXAMPLES.items() for m in ("emulator", "gpu")})
 
 

@@ -447,6 +447,12 @@ TEST_CASE("a number that makes no sense is refused") {
                                     {long_name.empty() ? option : long_name, value});
 }
 
+TEST_CASE("training that would not stay finite ends, and touches no earlier result") {
+    check_refusal_without_trace({"train", "-d", "synthetic:spheres", "-r", "32", "-i", "20", "--device",
+                                 "cpu", "-q", "--opacity-lr", "1e38"},
+                                {"iteration 1", "view ", "opacity of Gaussian"});
+}
+
 TEST_CASE("--device cuda is refused where there is no GPU") {
     std::string reason;
     if (gs::train::cuda_is_available(reason)) {

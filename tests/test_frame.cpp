@@ -142,7 +142,7 @@ TEST_CASE("a scene without an extent has a frame all the same") {
     SUBCASE("a single camera, and its points") {
         gs::scene s = seen_from({{7, 8, 9}});
         s.points = {{{7, 8, 29}, {}}};
-        CHECK(gs::frame_of(s).scale == doctest::Approx(5));
+        CHECK(gs::frame_of(s).scale == doctest::Approx(20 / gs::internal_extent));
         CHECK(gs::frame_of(s).origin == glm::dvec3(7, 8, 9));
         gs::recentre(s, silent);
         CHECK(s.extent() == doctest::Approx(gs::internal_extent));

@@ -139,15 +139,18 @@ TEST_CASE("training, test and validation files with and without eval") {
 
 TEST_CASE("file_path with or without its ending") {
     const temporary_folder folder;
-    json file = transforms(folder.path(), "train", 3);
+    json file = transforms(folder.path(), "train", 4);
     file["frames"][0]["file_path"] = "train/train_0.png";
     file["frames"][1]["file_path"] = "train/photo.v1";  // a dot that is no ending
     write_photo(folder / "train/photo.v1.png");
+    file["frames"][3]["file_path"] = "train/\\ Infinity";  // which is no number here
+    write_photo(folder / "train/\\ Infinity.png");
     write_json(folder / "transforms_train.json", file);
     const gs::scene scene = load(folder.path());
     CHECK(scene.train[0].name == "train/train_0.png");
     CHECK(scene.train[1].name == "train/photo.v1.png");
     CHECK(scene.train[2].name == "train/train_2.png");
+    CHECK(scene.train[3].name == "train/\\ Infinity.png");
 }
 
 TEST_CASE("intrinsics that are written down are preferred to the angle") {
@@ -240,11 +243,17 @@ TEST_CASE("transforms files that say something impossible") {
         {"array", [](json& f) { f = json::array(); }, {"not a JSON object"}},
         {"no frames", [](json& f) { f.erase("frames"); }, {"field frames is missing"}},
         {"frames", [](json& f) { f["frames"] = 3; }, {"frames is not an array"}},
+        {"number", [](json& f) { f = 3; }, {"not a JSON object"}},
+        {"frames", [](json& f) { f["frames"] = json::object(); }, {"frames is not an array"}},
         {"frame", [](json& f) { f["frames"][1] = 3; }, {"frame 1", "not a JSON object"}},
+        {"frame", [](json& f) { f["frames"][1] = json::array(); }, {"frame 1", "not a JSON object"}},
         {"no path", [](json& f) { f["frames"][1].erase("file_path"); }, {"frame 1", "file_path is missing"}},
         {"path", [](json& f) { f["frames"][1]["file_path"] = 3; }, {"frame 1", "file_path", "not a string"}},
+        {"path",
+         [](json& f) { f["frames"][1]["file_path"] = {"a"}; },
+         {"frame 1", "file_path", "not a string"}},
         {"photo", [](json& f) { f["frames"][1]["file_path"] = "none"; }, {"frame 1", "none", "missing"}},
-        {"long", [](json& f) { f["frames"][1]["file_path"] = std::string(5000, 'x'); }, {"cannot read"}},
+        {"long", [](json& f) { f["frames"][1]["file_path"] = std::string(5000, 'x'); }, {"too long"}},
         {"no angle", [](json& f) { f.erase("camera_angle_x"); }, {"frame 0", "camera_angle_x", "missing"}},
         {"angle",
          [](json& f) { f["camera_angle_x"] = 0; },
@@ -262,6 +271,28 @@ TEST_CASE("transforms files that say something impossible") {
          [](json& f) { f["frames"][1].erase("transform_matrix"); },
          {"frame 1", "train_1", "transform_matrix is missing"}},
         {"3 rows", set_matrix({{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}), {"frame 1", "4x4 finite numbers"}},
+        {"5 rows",
+         set_matrix({{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}, {0, 0, 0, 1}}),
+         {"frame 1", "4x4 finite numbers"}},
+        {"5 columns",
+         set_matrix({{1, 0, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}),
+         {"frame 1", "4x4 finite numbers"}},
+        {"3 columns",
+         set_matrix({{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 1}}),
+         {"frame 1", "4x4 finite numbers"}},
+        {"a number among rows",
+         set_matrix({{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}, 1}),
+         {"frame 1", "4x4 finite numbers"}},
+        {"a row in a row",
+         set_matrix({{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1, {1}}}),
+         {"frame 1", "4x4 finite numbers"}},
+        {"no array", set_matrix("identity"), {"frame 1", "4x4 finite numbers"}},
+        {"object",
+         set_matrix({{"a", {1, 0, 0, 0}}, {"b", {0, 1, 0, 0}}, {"c", {0, 0, 1, 0}}, {"d", {0, 0, 0, 1}}}),
+         {"frame 1", "4x4 finite numbers"}},
+        {"an object among rows",
+         set_matrix({{1, 0, 0, 0}, {0, 1, 0, 0}, {{"a", 0}, {"b", 0}, {"c", 1}, {"d", 0}}, {0, 0, 0, 1}}),
+         {"frame 1", "4x4 finite numbers"}},
         {"null",
          set_matrix({{1, 0, 0, nullptr}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}),
          {"frame 1", "train_1", "4x4 finite numbers"}},
@@ -293,6 +324,8 @@ TEST_CASE("transforms files that say something impossible") {
          },
          {"frame 1", "transform_matrix is missing"}},
         {"null number", [](json& f) { f["frames"][1]["cx"] = nullptr; }, {"frame 1", "cx is not a number"}},
+        {"array", [](json& f) { f["frames"][1]["cx"] = {9}; }, {"frame 1", "cx is not a number"}},
+        {"object", [](json& f) { f["cx"] = {{"cx", 9}}; }, {"frame 0", "cx is not a number"}},
     };
     for (const wrong_file& wrong : cases) {
         const temporary_folder folder;
@@ -316,6 +349,9 @@ TEST_CASE("NaN and infinity, as Python writes them, are traced to their frame") 
         text.replace(text.find("\"here\""), 6, word);
         write_file(folder / "transforms_train.json", text);
         CHECK(says(error_of_loading(folder.path()), {"frame 1", "train_1", "transform_matrix", "finite"}));
+        const std::string frames = "{\"camera_angle_x\":1,\"frames\":[{\"file_path\":";
+        write_file(folder / "transforms_train.json", frames + word + "}]}");
+        CHECK(says(error_of_loading(folder.path()), {"frame 0", "file_path is not a string"}));
     }
 }
 
@@ -328,7 +364,7 @@ TEST_CASE("what is not JSON is named by file, line and byte") {
     write_file(file, "");
     CHECK(says(error_of_loading(folder.path()), {"transforms_train.json", "not valid JSON", "line 1"}));
     write_file(file, "{\"camera_angle_x\": 1e999, \"frames\": []}");
-    CHECK(says(error_of_loading(folder.path()), {"transforms_train.json", "too large"}));
+    CHECK(says(error_of_loading(folder.path()), {"transforms_train.json", "too large", "line 1", "byte 24"}));
     const std::string whole = transforms(folder.path(), "train", 1).dump();
     for (std::size_t length = 0; length < whole.size(); ++length) {
         write_file(file, whole.substr(0, length));
@@ -342,11 +378,12 @@ TEST_CASE("what is not JSON is named by file, line and byte") {
 TEST_CASE("a transforms file may spell its texts and numbers as JSON allows, and nest what is not read") {
     const temporary_folder folder;
     write_photo(folder / "caf\xC3\xA9 \xF0\x9F\x98\x80/a\"b.png");
-    write_file(folder / "transforms_train.json",
-               "{\"camera_angle_x\":8e-1 , \"frames\" :\r\n[\t{\"file_path\": "
-               "\"caf\\u00e9 \\uD83D\\uDE00\\/a\\\"b\", \"transform_matrix\": "
-               "[[1,-0,0E0,1e-400],[0,1.0,0,2.5e+0],[0,0,1,-3],[0,0,0,1]], \"cx\": 7, \"c\\u0078\": 9}],"
-               "\"unread\": [[], {}, [{\"\": [null, true, false, \"\\u0000\"]}]]}");
+    write_file(
+        folder / "transforms_train.json",
+        "{\"camera_angle_x\":8e-1 , \"frames\" :\r\n[\t{\"file_path\": "
+        "\"caf\\u00e9 \\uD83D\\uDE00\\/a\\\"b\", \"transform_matrix\": "
+        "[[1,-0,0E0,1e-400],[0,1.0,0,2.5e+0],[0,0,1,-3],[0,0,0,1]], \"cx\": 7, \"c\\u0078\": 9}],"
+        "\"unread\": [[], {}, [{\"\": [null, true, false, \"\\u0000\"]}], {\"frames\": 1, \"cx\": {}}]}");
     const gs::scene scene = load(folder.path());
     REQUIRE(scene.train.size() == 1);
     CHECK(scene.train[0].name == "caf\xC3\xA9 \xF0\x9F\x98\x80/a\"b.png");
@@ -358,90 +395,98 @@ TEST_CASE("a transforms file may spell its texts and numbers as JSON allows, and
     CHECK(says(error_of_loading(folder.path()), {"transforms_train.json", "frames twice"}));
 }
 
-TEST_CASE("what nlohmann's library takes for JSON, and nothing else, is JSON") {
-    // Each a value, within an array: that is a transforms file only if it is no object.
-    const char* texts[] = {"0",
-                           "-0",
-                           "01",
-                           "-",
-                           "+1",
-                           ".5",
-                           "1.",
-                           "1.5",
-                           "1e",
-                           "1e+",
-                           "1E-2",
-                           "1e5.5",
-                           "0x10",
-                           "1 2",
-                           "1,",
-                           ",1",
-                           "1,,2",
-                           "",
-                           "[",
-                           "]",
-                           "[]]",
-                           "[1,]",
-                           "{",
-                           "{}",
-                           "{1:2}",
-                           "{\"a\"}",
-                           "{\"a\":}",
-                           "{\"a\":1,}",
-                           "{,}",
-                           "{\"a\"1}",
-                           "\"",
-                           "\"\\\"",
-                           "\"\\x\"",
-                           "\"\t\"",
-                           "\"\\t\"",
-                           "\"\\u\"",
-                           "\"\\u12\"",
-                           "\"\\u12g4\"",
-                           "\"\\u1aF4\"",
-                           "\"\\ud800\"",
-                           "\"\\ud800\\u0041\"",
-                           "\"\\udc00\"",
-                           "\"\\ud834\\udd1e\"",
-                           "\"\\u+123\"",
-                           "tru",
-                           "true",
-                           "True",
-                           "nul",
-                           "nullx",
-                           "falsee",
-                           "1 // x",
-                           "'a'",
-                           "\"a\" \"b\"",
-                           "[1 2]",
-                           "{\"a\":1 \"b\":2}",
-                           "\v1",
-                           "--1",
-                           "1-",
-                           "-a",
-                           "[}",
-                           "{]"};
+TEST_CASE("what nests in a value that is not read is not taken for what is") {
     const temporary_folder folder;
-    std::size_t taken = 0;
-    for (const char* text : texts) {
-        CAPTURE(text);
-        const std::string whole = "[" + std::string(text) + "]";
-        write_file(folder / "transforms_train.json", whole);
-        const bool valid = json::accept(whole);
-        taken += valid;
-        CHECK(says(error_of_loading(folder.path()), {valid ? "is not a JSON object" : "is not valid JSON"}));
-    }
-    CHECK(taken == 10);
+    json file = transforms(folder.path(), "train", 1);
+    const json nested = {{"file_path", 3}, {"transform_matrix", {{1, 2}}}, {"cx", nullptr}, {"frames", 3}};
+    file["a"] = file["z"] = nested;
+    file["frames"][0]["a"] = file["frames"][0]["z"] = {nested, {nested}};
+    write_json(folder / "transforms_train.json", file);
+    const gs::scene scene = load(folder.path());
+    REQUIRE(scene.train.size() == 1);
+    CHECK(scene.train[0].camera.centre() == glm::dvec3(0, 0, 3));
+    CHECK(scene.train[0].camera.cx == 10);
 }
 
-TEST_CASE("a transforms file that nests too deeply is refused before the stack overflows") {
+TEST_CASE("of a transform_matrix that is said twice the last one counts") {
     const temporary_folder folder;
-    for (const std::string opening : {"[", "{\"a\":"}) {
-        std::string text = "{\"a\":";
-        for (int i = 0; i < 100000; ++i) text += opening;
-        write_file(folder / "transforms_train.json", text);
-        CHECK(says(error_of_loading(folder.path()), {"transforms_train.json", "100 deep", "line 1"}));
+    write_photo(folder / "a.png");
+    const std::string sound = matrix_at(1, 2, 3).dump();
+    const auto load_with = [&](const std::string& first, const std::string& second) {
+        write_file(folder / "transforms_train.json",
+                   R"({"camera_angle_x":1,"frames":[{"file_path":"a","transform_matrix":)" + first +
+                       R"(,"transform_matrix":)" + second + "}]}");
+        return load(folder.path());
+    };
+    for (const std::string wrong : {"[[1]]", "3", "{}", "[]"}) {
+        CHECK(load_with(wrong, sound).train[0].camera.centre() == glm::dvec3(1, 2, 3));
+        CHECK(says(error_of([&] { load_with(sound, wrong); }), {"frame 0", "4x4 finite numbers"}));
     }
+}
+
+TEST_CASE("values of a transforms file may nest as deep as they like") {
+    const temporary_folder folder;
+    std::string text = transforms(folder.path(), "train", 1).dump();
+    text.pop_back();
+    text += ",\"unread\":";
+    for (int i = 0; i < 100000; ++i) text += "[1,{\"a\":";
+    text += "1";
+    for (int i = 0; i < 100000; ++i) text += "},1]";
+    write_file(folder / "transforms_train.json", text + "}");
+    CHECK(load(folder.path()).train.size() == 1);
+    write_file(folder / "transforms_train.json", text);
+    CHECK(says(error_of_loading(folder.path()), {"transforms_train.json", "not valid JSON"}));
+}
+
+TEST_CASE("a text, a number or a gap of a transforms file may take some kilobytes") {
+    const auto strings = [](std::size_t size) { return '"' + std::string(size - 2, 'x') + '"'; };
+    const auto escapes = [](std::size_t size) {
+        std::string text = "\"";
+        while (text.size() + 2 < size) text += "\\\"";
+        return text + (text.size() + 1 < size ? "x\"" : "\"");
+    };
+    const auto numbers = [](std::size_t size) { return "0." + std::string(size - 2, '1'); };
+    const auto blanks = [](std::size_t size) { return "1" + std::string(size - 1, ' '); };
+    const auto lines = [](std::size_t size) { return "1" + std::string(size / 8, '\n'); };
+    const auto brackets = [](std::size_t size) {
+        return "1," + std::string(size / 2 - 2, '[') + std::string(size / 2 - 2, ']');
+    };
+    const auto infinities = [](std::size_t size) {
+        std::string text = "1";
+        while (text.size() + 10 < size) text += ",-Infinity";
+        return text;
+    };
+    const auto literals = [](std::size_t size) {
+        std::string text = "1";
+        while (text.size() + 5 < size) text += ",null";
+        return text;
+    };
+    const auto digits = [](std::size_t size) {
+        std::string text = "\"";
+        while (text.size() + 3 < size) text += ",1";
+        return text + "\"";
+    };
+    const auto before_blanks = [=](std::size_t size) {
+        return strings(size / 2) + std::string(size - size / 2, ' ');
+    };
+    const temporary_folder folder;
+    const std::string whole = transforms(folder.path(), "train", 1).dump();
+    const std::function<std::string(std::size_t)> kinds[] = {
+        strings, escapes, numbers, blanks, lines, brackets, infinities, literals, digits, before_blanks};
+    for (const auto& kind : kinds) {
+        CAPTURE(kind(100));
+        const auto load_with = [&](const std::string& values) {
+            write_file(folder / "transforms_train.json",
+                       whole.substr(0, whole.size() - 1) + ",\n\"unread\":[" + values + ",1]}");
+            load(folder.path());
+        };
+        CHECK_NOTHROW(load_with(kind(4080)));
+        CHECK_NOTHROW(load_with(kind(3000) + "," + kind(3000)));  // each counts for itself
+        const std::string problem = error_of([&] { load_with(kind(4120)); });
+        CHECK(says(problem, {"transforms_train.json", "too long"}));
+    }
+    write_file(folder / "transforms_train.json", "{\n\"" + std::string(5000, 'x') + "\": 1}");
+    CHECK(says(error_of_loading(folder.path()), {"too long", "line 2", "byte 4099"}));
 }
 
 TEST_CASE("photos of a Blender scene that are damaged or of no known kind") {

@@ -18,7 +18,7 @@ out=$(realpath -m "${OUT:-build/fuzz}")
 mkdir -p "$out"
 
 trainer=examples/gaussian_splatting
-sources=("$trainer"/scene/{colmap_{binary,records,text},image,json_reader,shrink,transforms,undistort,views}.cpp
+sources=("$trainer"/scene/{colmap_{binary,records,text},image,json_text,shrink,transforms{,_pose},undistort,views}.cpp
     "$trainer"/model/ply.cpp tests/fuzz/{budget,colmap,harness,image,ply,transforms}.cpp)
 flags=(-std=c++20 -O1 -g -fno-omit-frame-pointer -I"$trainer" -Itests/fuzz
     -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)

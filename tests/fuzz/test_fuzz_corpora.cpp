@@ -65,12 +65,13 @@ std::vector<dense_file> dense_files() {
     using namespace gs_fuzz;
     const std::string one = raw(1.0), zero = raw(0.0);
     const std::string frame =
-        R"({"file_path":"a","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])";
-    const std::string all_numbers =
-        R"(,"k1":0,"k2":0,"p1":0,"p2":0,"w":1,"h":1,"cx":1,"cy":1,"fl_x":1,"fl_y":1,"camera_angle_x":1)";
+        R"({"file_path":"","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])";
+    const std::string nine_numbers = R"(,"k1":0,"k2":0,"p1":0,"p2":0,"w":1,"h":1,"cx":1,"cy":1,"fl_x":1)";
+    const std::string all_numbers = nine_numbers + R"(,"fl_y":1,"camera_angle_x":1)";
     const auto frames = [](const std::string& of) {
         return "{\"frames\":[" + repeated(of + ",", 20000) + of + "]}";
     };
+    const auto unread = [](const std::string& values) { return "{\"frames\":[],\"unread\":[" + values; };
     std::string bytes_for_floats = "ply\nformat binary_little_endian 1.0\nelement vertex 50000\n";
     for (const char* name : {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1",
                              "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
@@ -97,13 +98,23 @@ std::vector<dense_file> dense_files() {
         {"lines of one digit", colmap_text, '0' + repeated("1\n", 300000)},
         {"frames", transforms, frames(frame + "}")},
         {"frames that say all", transforms, frames(frame + all_numbers + "}")},
+        {"frames that say nine", transforms, frames(frame + nine_numbers + "}")},
         {"frames that say nothing", transforms,
          "{" + frame.substr(1) + ",\"frames\":[" + repeated("{},", 100000) + "{}]}"},
+        {"frames with long paths", transforms,
+         frames(R"({"file_path":")" + std::string(100, 'a') + frame.substr(14) + "}")},
+        {"long texts", transforms, unread(repeated('"' + std::string(4090, 'a') + "\",", 300) + "1]}")},
         {"a long path", transforms, "{\"frames\":[{\"file_path\":\"" + repeated("a/", 500000)},
-        {"a long number", transforms, '[' + repeated("1", 1000000)},
-        {"numbers", transforms, '[' + repeated("1,", 500000) + "1]"},
-        {"nesting", transforms, repeated("[", 1000000)},
-        {"nesting objects", transforms, repeated("{\"\":", 300000)},
+        {"a long number", transforms, unread(repeated("1", 1000000))},
+        {"a number cut off", transforms, unread(repeated("1", 4090) + ".")},
+        {"a text cut off", transforms, unread("\"" + repeated("a", 4090))},
+        {"a wrong character", transforms, unread("1" + repeated("\n", 510) + "\x01")},
+        {"numbers", transforms, unread(repeated("1,", 500000) + "1]}")},
+        {"lines", transforms, unread(repeated("\n", 1000000) + "1]}")},
+        {"brackets", transforms, unread(repeated("[],", 300000) + "1]}")},
+        {"infinities", transforms, unread(repeated("-Infinity,", 100000) + "1]}")},
+        {"nesting", transforms, unread(repeated("[1,", 400000))},
+        {"nesting objects", transforms, unread(repeated("{\"\":", 300000))},
         {"bytes for floats", ply, bytes_for_floats + "end_header\n" + std::string(14 * 50000, '\1')},
         {"many properties", ply, many_properties + "end_header\n"},
         {"a long line", ply, "ply\n" + std::string(1 << 20, 'a')},

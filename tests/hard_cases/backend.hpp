@@ -103,6 +103,7 @@ struct judgement {
 struct backend {
     std::string name;
 
+    std::string (*device_name)();
     answer (*ask)(const question&);
     double (*loss)(const question&);  ///< that of `ask`, without gradients
     std::vector<projected_splat> (*project)(const question&);

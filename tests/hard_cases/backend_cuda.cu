@@ -5,6 +5,6 @@
 
 namespace hard_cases {
 
-backend cuda_backend() { return backend_on<gs::device::cuda, float>::make("cuda"); }
+backend cuda_backend() { return make_backend<gs::device::cuda, float>("cuda"); }
 
 }  // namespace hard_cases

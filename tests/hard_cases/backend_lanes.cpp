@@ -5,6 +5,6 @@
 
 namespace hard_cases {
 
-backend lanes_backend() { return backend_on<gs::device::cpu, float>::make("lanes"); }
+backend lanes_backend() { return make_backend<gs::device::cpu, float>("lanes"); }
 
 }  // namespace hard_cases

@@ -9,10 +9,10 @@ namespace hard_cases {
 
 using one_lane = gs::device::basic_cpu<warpagg::emulator::serial>;
 
-backend serial_backend() { return backend_on<one_lane, float>::make("serial"); }
+backend serial_backend() { return make_backend<one_lane, float>("serial"); }
 
 const backend& reference() {
-    static const backend b = backend_on<one_lane, double>::make("double");
+    static const backend b = make_backend<one_lane, double>("double");
     return b;
 }
 

@@ -69,29 +69,49 @@ double distance(const answer& a, const answer& b, const question& q) {
     return distance(x, y);
 }
 
+void agreement::operator+=(const agreement& other) {
+    error_over_bound = std::max(error_over_bound, other.error_over_bound);
+    cosine = std::min(cosine, other.cosine);
+    bias = std::max(bias, other.bias);
+}
+
+agreement compare(const std::vector<double>& got, const std::vector<double>& expected) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (got.size() != expected.size() || !all_finite(got)) return {infinity, -1, infinity};
+    const double most = largest(expected);
+    agreement a;
+    double product = 0, square = 0, expected_square = 0, error = 0, mass = 0;
+    for (std::size_t i = 0; i < got.size(); ++i) {
+        const double x = got[i], y = expected[i], bound = 1e-3 * std::abs(y) + 1e-5 * most;
+        if (x != y) a.error_over_bound = std::max(a.error_over_bound, std::abs(x - y) / bound);
+        product += x * y;
+        square += x * x;
+        expected_square += y * y;
+        error += x - y;
+        mass += std::abs(y);
+    }
+    if (square > 0 && expected_square > 0)
+        a.cosine = product / (std::sqrt(square) * std::sqrt(expected_square));
+    else if (square > 0 || expected_square > 0)
+        a.cosine = 0;
+    if (error != 0) a.bias = std::abs(error) / mass;
+    return a;
+}
+
+agreement compare(const answer& got, const answer& expected) {
+    agreement all;
+    for (std::size_t p = 0; p < gs::parameter_count; ++p)
+        all += compare(got.gradients[p], expected.gradients[p]);
+    return all;
+}
+
 std::string excess(const std::vector<double>& got, const std::vector<double>& expected) {
     constexpr std::size_t least_for_bias = 32;
+    const agreement a = compare(got, expected);
     std::ostringstream said;
-    if (got.size() != expected.size()) return "of other sizes";
-    const double most = largest(expected);
-    double product = 0, square = 0, expected_square = 0, bias = 0, mass = 0;
-    std::size_t wrong = 0;
-    for (std::size_t i = 0; i < got.size(); ++i) {
-        const double a = got[i], b = expected[i];
-        if (!(std::abs(a - b) <= 1e-3 * std::abs(b) + 1e-5 * most)) {
-            if (wrong++ == 0) said << "element " << i << " is " << a << " instead of " << b << "; ";
-        }
-        product += a * b;
-        square += a * a;
-        expected_square += b * b;
-        bias += a - b;
-        mass += std::abs(b);
-    }
-    if (wrong > 0) said << wrong << " of " << got.size() << " off, the largest is " << most << "; ";
-    if (!(product >= 0.99999 * std::sqrt(square * expected_square)))
-        said << "cosine " << product / std::sqrt(square * expected_square) << "; ";
-    if (got.size() >= least_for_bias && !(std::abs(bias) <= 1e-4 * mass))
-        said << "bias " << bias / mass << "; ";
+    if (!(a.error_over_bound <= 1)) said << "an error of " << a.error_over_bound << " times its bound; ";
+    if (!(a.cosine >= 0.99999)) said << "a cosine of " << a.cosine << "; ";
+    if (got.size() >= least_for_bias && !(a.bias <= 1e-4)) said << "a bias of " << a.bias << "; ";
     return said.str();
 }
 

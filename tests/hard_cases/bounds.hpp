@@ -9,9 +9,22 @@
 
 namespace hard_cases {
 
-/// The bounds of an answer in float: each gradient to 1e-3 of itself and 1e-5 of the largest of its
-/// parameter, all of a parameter together to a cosine of 0.99999 and, if they are 32 or more, a signed bias
-/// of 1e-4 of the sum of their sizes. What exceeds them, in words; nothing if nothing does.
+/// How near one array came to another: the largest error over its bound, which is 1e-3 of the element and
+/// 1e-5 of the largest; the cosine of the angle between them; and the sum of the errors over that of the
+/// sizes.
+struct agreement {
+    double error_over_bound = 0, cosine = 1, bias = 0;
+
+    /// The worse of both.
+    void operator+=(const agreement& other);
+};
+agreement compare(const std::vector<double>& got, const std::vector<double>& expected);
+/// The worst of the parameters.
+agreement compare(const answer& got, const answer& expected);
+
+/// What of an answer in float exceeds the bounds: each gradient that of `agreement`, all of a parameter
+/// together a cosine of 0.99999 and, if they are 32 or more, a bias of 1e-4. In words; nothing if nothing
+/// does.
 std::string excess(const answer& got, const answer& expected);
 
 /// The same for one array.

@@ -107,15 +107,32 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
     // A gradient of 1e30 by the picture, on its way through the backward pass into the statistics.
     on_each_variant([&](const backend& b, gradient_policy policy) {
         question q = faint_crowd(22, 10);
-        q.policy = policy;
-        for (const double size : {1e30, 1e36, infinity}) {
-            CAPTURE(size);
-            q.weights.assign(q.pixels(), size);
-            for (const sighting& s : b.ask(q).sightings) {
+        // One, bright, whose gradient is larger than floats are.
+        question single = empty_question(1, 1);
+        gaussian g;
+        g.mean = {0.5, 0.25, 4};
+        g.colour = {20, 20, 20};
+        add(single, g);
+        single.weights = {3e38};
+        single.policy = q.policy = policy;
+        const auto check_sound = [](const std::vector<sighting>& sightings) {
+            for (const sighting& s : sightings) {
                 CHECK(std::isfinite(s.gradient));
                 CHECK(s.gradient >= 0);
                 CHECK(std::isfinite(s.seen));
             }
+        };
+        check_sound(b.ask(single).sightings);
+        // A gradient that is no number is not counted, and neither is the look.
+        single.weights = {std::nan("")};
+        for (const sighting& s : b.ask(single).sightings) {
+            CHECK(s.gradient == 0);
+            CHECK(s.seen == 0);
+        }
+        for (const double size : {1e30, 1e36, infinity}) {
+            CAPTURE(size);
+            q.weights.assign(q.pixels(), size);
+            check_sound(b.ask(q).sightings);
         }
     });
 }

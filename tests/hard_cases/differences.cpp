@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "bounds.hpp"
+#include "effort.hpp"
 #include "questions.hpp"
 #include "table.hpp"
 
@@ -107,7 +108,7 @@ verdict check_by_differences(const question& asked, const std::vector<std::size_
 using namespace hard_cases;
 
 TEST_CASE("the reference's gradients are those of central differences") {
-    // 100 scenes of 1 to 49 splats, of 8 x 8 to 33 x 47 pixels, every degree; three Gaussians of each.
+    // 100 scenes of 1 to 49 splats, of 8 x 8 to 33 x 47 pixels, every degree; two Gaussians of each.
     constexpr int seeds = 100;
     verdict all;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(omp_get_num_procs())
@@ -124,7 +125,7 @@ TEST_CASE("the reference's gradients are those of central differences") {
         std::vector<std::size_t> some(splats);
         std::iota(some.begin(), some.end(), 0);
         std::shuffle(some.begin(), some.end(), random);
-        some.resize(std::min<std::size_t>(splats, 3));
+        some.resize(std::min<std::size_t>(splats, brief ? 1 : 2));
         const verdict v = check_by_differences(q, some, static_cast<unsigned>(seed));
 #pragma omp critical
         all += v;
@@ -132,7 +133,7 @@ TEST_CASE("the reference's gradients are those of central differences") {
     CAPTURE(all.right);
     CAPTURE(all.straddling);
     CHECK_MESSAGE(all.wrong == 0, all.first_wrong);
-    CHECK(all.right > 8000);
+    CHECK(all.right > (brief ? 2500 : 5000));
     CHECK(static_cast<double>(all.straddling) < 0.02 * static_cast<double>(all.right + all.straddling));
     MESSAGE(all.right << " agree, " << all.straddling << " straddle a threshold");
 }

@@ -9,8 +9,8 @@
 
 namespace hard_cases {
 
-question faint_crowd(unsigned seed, std::size_t count) {
-    question q = random_question(seed, count, 8, 4, 3);
+question faint_crowd(unsigned seed, std::size_t count, int width, int height) {
+    question q = random_question(seed, count, width, height, 3);
     for (double& o : q.parameters[3]) o = static_cast<float>(-3.5 + 0.25 * o);
     return q;
 }

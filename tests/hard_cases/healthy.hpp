@@ -8,9 +8,9 @@
 
 namespace hard_cases {
 
-/// A picture of one patch, whose sums have one order on every device, of a crowd of faint Gaussians: a NaN
-/// that becomes the cap of alpha shows.
-question faint_crowd(unsigned seed, std::size_t count);
+/// A crowd of faint Gaussians: a NaN that becomes the cap of alpha shows. In a picture of one patch, as by
+/// default, sums have one order on every device.
+question faint_crowd(unsigned seed, std::size_t count, int width = 8, int height = 4);
 
 /// What a Gaussian that must not be drawn did to a crowd all the same: `with` is the answer with it, at
 /// `index`, `rest` the one without. Pictures and gradients have to be equal to the bit, and its own gradients

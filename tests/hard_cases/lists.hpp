@@ -50,4 +50,10 @@ inline std::vector<double> one_pixel_a_tile(std::mt19937& random, int width, int
     return gradient;
 }
 
+/// T at the first splat of a list as the backward pass recovers it, over what it is, 1. `alpha` is what the
+/// forward pass gave that splat.
+inline double recovered(const blend_answer& a, std::size_t splat, std::size_t channel, double alpha) {
+    return a.sums[splat][channel] / alpha;
+}
+
 }  // namespace hard_cases

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "backend.hpp"
+#include "bounds.hpp"
 
 namespace hard_cases {
 
@@ -51,5 +52,8 @@ void on_each_variant(const F& test) {
 
 /// A remark for the row of the running test case: what stands in for what, or what was left out and why.
 void remark(const std::string& text);
+
+/// How near gradients in float came to those in double, for the cell that we are in.
+void record(const agreement& against_double);
 
 }  // namespace hard_cases

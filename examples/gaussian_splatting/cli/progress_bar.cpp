@@ -11,6 +11,11 @@ namespace gs::cli {
 
 progress_bar::progress_bar(bool quiet) : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) != 0) {}
 
+progress_bar::~progress_bar() {
+    if (open_) std::printf("\n");
+    std::fflush(stdout);
+}
+
 void progress_bar::show(const train::progress& p) {
     if (quiet_) return;
     const bool last = p.iteration == p.iterations;
@@ -30,14 +35,16 @@ void progress_bar::show(const train::progress& p) {
         const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
                                 std::string(static_cast<std::size_t>(width - full), '.');
         std::printf("\r[%s] %s\x1b[K%s", bar.c_str(), text, last ? "\n" : "");
+        open_ = !last;
     } else {
         std::printf("%s\n", text);
     }
     std::fflush(stdout);
 }
 
-void progress_bar::clear() const {
-    if (terminal_ && !quiet_) std::printf("\r\x1b[K");
+void progress_bar::clear() {
+    if (open_) std::printf("\r\x1b[K");
+    open_ = false;
 }
 
 }  // namespace gs::cli

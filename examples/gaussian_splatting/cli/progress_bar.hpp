@@ -10,12 +10,17 @@ namespace gs::cli {
 class progress_bar {
   public:
     explicit progress_bar(bool quiet);
+    progress_bar(const progress_bar&) = delete;
+    progress_bar& operator=(const progress_bar&) = delete;
+    /// What comes next has a line of its own, also after an error.
+    ~progress_bar();
     void show(const train::progress& p);
     /// Makes room for a line of another's.
-    void clear() const;
+    void clear();
 
   private:
     bool quiet_, terminal_;
+    bool open_ = false;  ///< the cursor is in the bar's line
     int lines_ = 0;
 };
 

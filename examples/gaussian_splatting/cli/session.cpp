@@ -4,6 +4,8 @@
 
 #include <cstdio>
 #include <fstream>
+#include <ranges>
+#include <vector>
 
 #include "../error.hpp"
 #include "../write_aside.hpp"
@@ -53,11 +55,13 @@ output_folder::output_folder(const fs::path& path) : path_(path) {
 }
 
 output_folder::~output_folder() {
+    if (made_.empty()) return;
     std::error_code ignored;
-    for (fs::path p = fs::absolute(path_).lexically_normal(); !made_.empty(); p = p.parent_path()) {
-        if (!p.has_filename()) continue;
-        if (!fs::is_empty(p, ignored) || !fs::remove(p, ignored) || p == made_) return;
-    }
+    std::vector<fs::path> folders{made_};
+    for (const auto& entry : fs::recursive_directory_iterator(made_, ignored))
+        if (entry.is_directory(ignored)) folders.push_back(entry.path());
+    // From the innermost out; one that holds something cannot be removed.
+    for (const fs::path& folder : folders | std::views::reverse) fs::remove(folder, ignored);
 }
 
 nlohmann::ordered_json to_json(const evaluate::test_report& report) {

@@ -46,7 +46,8 @@ class output_folder {
     std::filesystem::path made_;  ///< the topmost folder that was not there before; empty if none
 };
 
-/// The measures of a report, as metrics.json holds them: mean and per view, null where there is no test view.
+/// The measures of a report, as metrics.json holds them: mean and per view, null where there is no test
+/// view, or the value is not finite.
 nlohmann::ordered_json to_json(const evaluate::test_report& report);
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
 

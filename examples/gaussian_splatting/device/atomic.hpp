@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <warpagg/simt/atomic_memory.hpp>
-#include <warpagg/simt/target.hpp>
+#include <warpagg/simt/serial.hpp>
 
 namespace gs::device {
 
@@ -12,14 +11,16 @@ WARPAGG_HD void atomic_add(unsigned long long* to, unsigned long long value) {
 #if defined(__CUDA_ARCH__)
     atomicAdd(to, value);
 #else
-    warpagg::emulator::detail::atomic(warpagg::operation::sum{}, to, value);
+    warpagg::emulator::serial{}.atomic(
+        warpagg::operation::sum{}, [to](unsigned) { return to; }, 0, value, true);
 #endif
 }
 WARPAGG_HD void atomic_min(unsigned long long* to, unsigned long long value) {
 #if defined(__CUDA_ARCH__)
     atomicMin(to, value);
 #else
-    warpagg::emulator::detail::atomic(warpagg::operation::minimum{}, to, value);
+    warpagg::emulator::serial{}.atomic(
+        warpagg::operation::minimum{}, [to](unsigned) { return to; }, 0, value, true);
 #endif
 }
 

@@ -16,13 +16,6 @@ WARPAGG_HD std::uint32_t bits_of(float x) {
 #endif
 }
 
-WARPAGG_HD unsigned lowest_bit(std::uint32_t bits) {
-#if defined(__CUDA_ARCH__)
-    return static_cast<unsigned>(__ffs(static_cast<int>(bits)) - 1);
-#else
-    return static_cast<unsigned>(__builtin_ctz(bits));
-#endif
-}
 WARPAGG_HD unsigned highest_bit(std::uint32_t bits) {
 #if defined(__CUDA_ARCH__)
     return static_cast<unsigned>(31 - __clz(static_cast<int>(bits)));

@@ -37,7 +37,7 @@ struct blend_forward {
         for (unsigned base = range.begin; base < range.end && w.any(alive); base += W::size) {
             std::uint32_t hits = p.reached_by(w, splats, gaussian_of, base, range.end);
             for (; hits != 0; hits &= hits - 1, ++walked) {
-                const unsigned place = base + lowest_bit(hits);
+                const unsigned place = base + warpagg::math::countr_zero(hits);
                 const splat<Real>& s = splats[gaussian_of[place]];
                 const coverage<W, Real> seen(s, p);
                 const real behind = T * (Real(1) - seen.alpha);

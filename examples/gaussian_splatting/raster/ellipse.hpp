@@ -9,6 +9,7 @@ namespace gs::raster {
 /// Pixels; what the covariance of a splat is widened by, the variance of a pixel's filter (Kerbl et al.
 /// 2023).
 inline constexpr double pixel_variance = 0.3;
+
 /// The shape of a splat: the Cholesky factor of the inverse of its covariance over 2 ln 2, from the vectors
 /// whose Gram matrix the covariance is before it is widened. The determinant is a square by Lagrange's
 /// identity and what the widening adds: a sum of positive terms, so nothing cancels. Sizes are divided out
@@ -24,28 +25,29 @@ struct ellipse {
         using warpagg::math::max;
         using warpagg::math::sqrt;
         constexpr Real two_ln2 = Real(1.3862943611198906), added = Real(pixel_variance);
-        // The covariance is size^2 times what follows, its determinant (size * across)^2 times `determinant`.
-        const Real size = max(max(Real(1), largest(ax)), largest(ay));
-        const vec3<Real> bx = ax / size, by = ay / size;
-        const Real inverse = 1 / size, widening = added * inverse * inverse;
-        const Real xx = glm::dot(bx, bx) + widening, yy = glm::dot(by, by) + widening, xy = glm::dot(bx, by);
+        // The variances are size_x^2 xx and size_y^2 yy, the determinant (size_x across)^2 times
+        // `determinant`.
+        const Real size_x = max(Real(1), largest(ax)), size_y = max(Real(1), largest(ay));
+        const vec3<Real> bx = ax / size_x, by = ay / size_y;
+        const Real xx = glm::dot(bx, bx) + added / size_x / size_x;
+        const Real yy = glm::dot(by, by) + added / size_y / size_y, xy = glm::dot(bx, by);
         const vec3<Real> area = glm::cross(bx, ay);
-        const Real across = max(Real(1), largest(area));
-        const vec3<Real> part = area / across;
+        const Real ratio = size_y / size_x, across = max(max(Real(1), ratio), largest(area));
+        const vec3<Real> part = area / across, long_y = by * (ratio / across);
         const Real determinant =
-            glm::dot(part, part) + added / across / across * (glm::dot(bx, bx) + glm::dot(by, by) + widening);
-        const Real k = sqrt(two_ln2) * size;
-        width = k * sqrt(xx);
-        height = k * sqrt(yy);
-        slope_x = xy / yy;
-        slope_y = xy / xx;
+            glm::dot(part, part) + added * (xx / across / across + glm::dot(long_y, long_y));
+        const Real k = sqrt(two_ln2);
+        width = k * size_x * sqrt(xx);
+        height = k * size_y * sqrt(yy);
+        slope_x = xy / yy / ratio;
+        slope_y = xy / xx * ratio;
         p = 1 / width;
         q = sqrt(xx / (two_ln2 * determinant)) / across;
         r = -q * slope_y;
     }
 
     WARPAGG_HD bool is_sound() const {
-        return is_finite(width) && is_finite(height) && is_finite(q) && is_finite(r);
+        return is_finite(width) && is_finite(height) && is_finite(q) && is_finite(r) && is_finite(slope_x);
     }
 };
 

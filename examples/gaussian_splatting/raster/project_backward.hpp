@@ -140,7 +140,7 @@ struct project_backward {
             centre * vec2<Real>(Real(0.5) * Real(camera.width), Real(0.5) * Real(camera.height));
         const Real most = largest(halves);
         const auto norm = static_cast<float>(most > 0 ? most * glm::length(halves / most) : most);
-        if (room.exceeded() || !is_finite(norm)) return;
+        if (room.exceeded() || !is_finite(norm) || !is_finite(halves.x) || !is_finite(halves.y)) return;
         seen[i].gradient += norm;
         seen[i].seen += 1;
     }

@@ -115,10 +115,10 @@ class renderer {
     std::size_t warps() const { return tiles() * patch<typename Device::warp, Real>::per_tile; }
 
     void project_all(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
-        // Places in the three planes of a picture are numbers of 32 bits.
-        if (std::int64_t{view.width} * view.height > std::int64_t{1} << 30)
+        // Places in the three planes of a picture are numbers of 31 bits.
+        if (std::int64_t{view.width} * view.height > std::int64_t{1} << 29)
             throw error("a picture of " + std::to_string(view.width) + "x" + std::to_string(view.height) +
-                        " has more than 2^30 pixels: lower --resolution");
+                        " has more than 2^29 pixels: lower --resolution");
         tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
         first_.resize(count + 1);

@@ -4,47 +4,34 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
-#include <glm/matrix.hpp>
 #include <limits>
-#include <utility>
+#include <nlohmann/json.hpp>
 
 #include "../clipped.hpp"
 #include "../error.hpp"
-#include "file_bytes.hpp"
-#include "json_reader.hpp"
-#include "views.hpp"
+#include "json_text.hpp"
+#include "transforms_pose.hpp"
 
 namespace gs {
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+using nlohmann::json;
 
-/// NaN where there is something else.
-double read_number(json_reader& json) {
-    if (json.at_number()) return json.number();
-    json.skip();
-    return not_a_number;
-}
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// The last one said is the one that counts.
 class said_numbers {
   public:
-    /// Reads the value if the field is one of them.
-    bool read(const std::string& field, json_reader& json) {
+    /// Takes the value, NaN for what is no number, if the field is one of them.
+    void take(std::string_view field, double value) {
         const auto found = std::ranges::find(transforms_number_names, field);
-        if (found == transforms_number_names.end()) return false;
-        const double value = read_number(json);
-        values_[static_cast<std::size_t>(found - transforms_number_names.begin())] =
-            std::isfinite(value) ? value : not_a_number;
-        return true;
+        if (found != transforms_number_names.end())
+            values_[static_cast<std::size_t>(found - transforms_number_names.begin())] = value;
     }
 
     std::vector<said_number> list() const {
         std::vector<said_number> said;
-        said.reserve(static_cast<std::size_t>(
-            std::ranges::count_if(values_, [](const auto& value) { return value.has_value(); })));
         for (std::size_t i = 0; i < values_.size(); ++i)
             if (values_[i]) said.push_back({static_cast<transforms_number>(i), *values_[i]});
         return said;
@@ -54,99 +41,172 @@ class said_numbers {
     std::array<std::optional<double>, transforms_number_names.size()> values_;
 };
 
-/// Calls `element(i)` for each of an array's; whether the value is an array, and of `size`.
-template <class Element>
-bool read_array_of(std::size_t size, json_reader& json, const Element& element) {
-    if (!json.at_array()) {
-        json.skip();
-        return false;
+/// How deep the reader is in what it reads: each level is a bracket within the one before.
+enum class level { file, top, frames, frame, matrix, row };
+
+level deeper(level from, int by) { return static_cast<level>(static_cast<int>(from) + by); }
+
+/// Keeps of a file, as nlohmann's parser goes through it, the frames and the numbers alone. A document tree
+/// takes ten times its text; and neither the parser nor this calls itself, however deep the values nest.
+class reader final : public json::json_sax_t {
+  public:
+    /// Both are kept by reference.
+    reader(transforms& into, const std::string& text) : all_(into), text_(text) {}
+
+    void finish() {
+        if (!has_frames_) throw error(all_.where + ": the field frames is missing");
+        all_.numbers = numbers_.list();
     }
-    std::size_t count = 0;
-    json.array([&](std::size_t i) {
-        ++count;
-        i < size ? element(i) : json.skip();
-    });
-    return count == size;
-}
 
-/// Nothing unless it is 4x4 finite numbers.
-std::optional<glm::dmat4> read_matrix(json_reader& json) {
-    glm::dmat4 matrix(0);
-    bool sound = true;
-    const bool square = read_array_of(4, json, [&](std::size_t row) {
-        sound &= read_array_of(4, json, [&](std::size_t column) {
-            double& cell = matrix[static_cast<int>(column)][static_cast<int>(row)];
-            cell = read_number(json);
-            sound &= std::isfinite(cell);
-        });
-    });
-    if (!square || !sound) return std::nullopt;
-    return matrix;
-}
+    bool null() override { return value(not_a_number, nullptr); }
+    bool boolean(bool) override { return value(not_a_number, nullptr); }
+    bool number_integer(number_integer_t number) override {
+        return value(static_cast<double>(number), nullptr);
+    }
+    bool number_unsigned(number_unsigned_t number) override {
+        return value(static_cast<double>(number), nullptr);
+    }
+    bool number_float(number_float_t number, const string_t&) override { return value(number, nullptr); }
+    bool string(string_t& text) override { return value(not_a_number, &text); }
+    bool binary(binary_t&) override { return false; }  // of other formats
+    bool start_object(std::size_t) override { return open(true); }
+    bool end_object() override { return close(); }
+    bool start_array(std::size_t) override { return open(false); }
+    bool end_array() override { return close(); }
 
-bool is_near_rotation(const glm::dmat3& matrix, double tolerance) {
-    const glm::dmat3 product = glm::transpose(matrix) * matrix;
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row)  // written so that NaN fails too
-            if (!(std::abs(product[column][row] - (column == row ? 1.0 : 0.0)) <= tolerance)) return false;
-    return true;
-}
+    bool key(string_t& name) override {
+        field_ = name;
+        return true;
+    }
 
-/// The rotation nearest to a matrix that almost is one (Newton's iteration for the polar decomposition).
-glm::dmat3 nearest_rotation(glm::dmat3 matrix) {
-    for (int i = 0; i < 4; ++i) matrix = 0.5 * (matrix + glm::transpose(glm::inverse(matrix)));
-    return matrix;
-}
+    bool parse_error(std::size_t byte, const std::string&, const json::exception& problem) override {
+        const bool is_range = dynamic_cast<const json::out_of_range*>(&problem) != nullptr;
+        throw error(all_.where + (is_range ? " holds a number that is too large" : " is not valid JSON") +
+                    line_and_byte(text_, byte));
+    }
 
-/// Sets the pose from the file's camera-to-world matrix, whose camera looks along -z with y up.
-void set_pose(transforms_frame& frame, const glm::dmat4& matrix, const std::string& where) {
-    constexpr double tolerance = 1e-3;
-    const glm::dmat3 axes(matrix);
-    const double volume = glm::determinant(axes);
-    if (std::abs(volume) < 1e-9) throw error(where + ": transform_matrix is singular");
-    const glm::dvec4 last_row(matrix[0][3], matrix[1][3], matrix[2][3], matrix[3][3] - 1);
-    if (!(volume > 0 && is_near_rotation(axes, tolerance) && glm::dot(last_row, last_row) <= tolerance))
-        throw error(where + ": transform_matrix is not a rotation and a translation");
-    const glm::dmat3 to_world = nearest_rotation(axes);
-    const glm::dmat3 ours(to_world[0], -to_world[1], -to_world[2]);
-    frame.rotation = glm::transpose(ours);
-    frame.translation = -frame.rotation * glm::dvec3(matrix[3]);
-    if (!is_sound_place(matrix[3]))
-        throw error(where + ": the translation of transform_matrix" + unsound_place);
-}
-
-void read_frame(json_reader& json, transforms& into) {
-    const std::size_t index = into.frames.size();
-    transforms_frame& frame = into.frames.emplace_back();
-    const auto refuse_value = [&](const char* why) {
-        json.skip();  // what is no JSON at all says so first
-        throw error(into.where_is(index) + why);
-    };
-    if (!json.at_object()) refuse_value(" is not a JSON object");
-    said_numbers numbers;
-    bool has_path = false, has_matrix = false;
-    std::optional<glm::dmat4> matrix;
-    json.object([&](const std::string& field) {
-        if (field == "file_path") {
-            if (!json.at_string()) refuse_value(": file_path is not a string");
-            frame.path = json.string();
-            has_path = true;
-        } else if (field == "transform_matrix") {
-            matrix = read_matrix(json);
-            has_matrix = true;
-        } else if (!numbers.read(field, json)) {
-            json.skip();
+  private:
+    bool open(bool is_object) {
+        if (unread_ == 0 && is_expected(is_object)) {
+            enter();
+        } else {
+            value(not_a_number, nullptr);
+            ++unread_;
         }
-    });
-    if (!has_path) throw error(into.where_is(index) + ": the field file_path is missing");
-    const std::string where = into.where_is(index);
-    if (frame.path.size() > longest_path)
-        throw error("cannot read the photo of " + where + ": its path is too long");
-    if (!has_matrix) throw error(where + ": the field transform_matrix is missing");
-    if (!matrix) throw error(where + ": transform_matrix is not 4x4 finite numbers");
-    set_pose(frame, *matrix, where);
-    frame.numbers = numbers.list();
-}
+        return true;
+    }
+
+    bool is_expected(bool is_object) const {
+        if (at_ == level::file || at_ == level::frames) return is_object;
+        if (at_ == level::top) return !is_object && field_ == "frames";
+        if (at_ == level::frame) return !is_object && field_ == "transform_matrix";
+        return !is_object && at_ == level::matrix;
+    }
+
+    void enter() {
+        at_ = deeper(at_, 1);
+        if (at_ == level::frames) {
+            if (has_frames_) throw error(all_.where + " has the field frames twice");
+            has_frames_ = true;
+        } else if (at_ == level::frame) {
+            all_.frames.emplace_back();
+            frame_ = {};
+        } else if (at_ == level::matrix) {
+            frame_.has_matrix = frame_.is_sound = true;
+            frame_.row = 0;
+        } else if (at_ == level::row) {
+            frame_.column = 0;
+        }
+    }
+
+    bool close() {
+        if (unread_ > 0) {
+            --unread_;
+            return true;
+        }
+        if (at_ == level::row) {
+            frame_.is_sound &= frame_.column == 4;
+            ++frame_.row;
+        } else if (at_ == level::matrix) {
+            frame_.is_sound &= frame_.row == 4;
+        } else if (at_ == level::frame) {
+            finish_frame();
+        }
+        at_ = deeper(at_, -1);
+        return true;
+    }
+
+    /// Of any value that is not entered: what number it is, or NaN; what text it is, or null.
+    bool value(double number, const std::string* text) {
+        if (unread_ > 0) return true;
+        switch (at_) {
+            case level::file:
+                throw error(all_.where + " is not a JSON object");
+            case level::top:
+                if (field_ == "frames") throw error(all_.where + ": frames is not an array");
+                numbers_.take(field_, number);
+                break;
+            case level::frames:
+                all_.frames.emplace_back();
+                throw error(where() + " is not a JSON object");
+            case level::frame:
+                take_field(number, text);
+                break;
+            case level::matrix:
+                frame_.is_sound = false;
+                break;
+            case level::row:
+                take_cell(number);
+                break;
+        }
+        return true;
+    }
+
+    void take_field(double number, const std::string* text) {
+        if (field_ == "file_path") {
+            if (!text) throw error(where() + ": file_path is not a string");
+            all_.frames.back().path = *text;
+            frame_.has_path = true;
+        } else if (field_ == "transform_matrix") {
+            frame_.has_matrix = true;
+            frame_.is_sound = false;
+        } else {
+            frame_.numbers.take(field_, number);
+        }
+    }
+
+    void take_cell(double number) {
+        frame_.is_sound &= std::isfinite(number);
+        if (frame_.row < 4 && frame_.column < 4)
+            frame_.matrix[static_cast<int>(frame_.column)][static_cast<int>(frame_.row)] = number;
+        ++frame_.column;
+    }
+
+    void finish_frame() {
+        transforms_frame& frame = all_.frames.back();
+        if (!frame_.has_path) throw error(where() + ": the field file_path is missing");
+        if (!frame_.has_matrix) throw error(where() + ": the field transform_matrix is missing");
+        if (!frame_.is_sound) throw error(where() + ": transform_matrix is not 4x4 finite numbers");
+        set_pose(frame, frame_.matrix, where());
+        frame.numbers = frame_.numbers.list();
+    }
+
+    std::string where() const { return all_.where_is(all_.frames.size() - 1); }
+
+    transforms& all_;
+    const std::string& text_;
+    level at_ = level::file;
+    std::size_t unread_ = 0;  ///< brackets that are open within a value that nobody reads
+    std::string field_;       ///< the last one, which is what a value at the top or of a frame is for
+    said_numbers numbers_;
+    bool has_frames_ = false;
+    struct {
+        said_numbers numbers;
+        glm::dmat4 matrix{0};
+        std::size_t row = 0, column = 0;
+        bool has_path = false, has_matrix = false, is_sound = false;  ///< the last two: of the matrix
+    } frame_;  ///< what the last of the frames has said so far
+};
 
 std::optional<double> find_in(const std::vector<said_number>& numbers, transforms_number which) {
     const auto found = std::ranges::find(numbers, which, &said_number::which);
@@ -174,31 +234,10 @@ std::optional<double> transforms::number(std::size_t index, transforms_number wh
 transforms read_transforms(const std::filesystem::path& file) {
     transforms result;
     result.where = file.string();
-    const std::string text = file_bytes(file);
-    json_reader json(result.where, text);
-    if (!json.at_object()) {
-        json.skip();
-        json.end();
-        throw error(result.where + " is not a JSON object");
-    }
-    said_numbers numbers;
-    bool has_frames = false;
-    json.object([&](const std::string& field) {
-        if (field == "frames") {
-            if (has_frames) throw error(result.where + " has the field frames twice");
-            if (!json.at_array()) {
-                json.skip();
-                throw error(result.where + ": frames is not an array");
-            }
-            json.array([&](std::size_t) { read_frame(json, result); });
-            has_frames = true;
-        } else if (!numbers.read(field, json)) {
-            json.skip();
-        }
-    });
-    json.end();
-    if (!has_frames) throw error(result.where + ": the field frames is missing");
-    result.numbers = numbers.list();
+    const std::string text = json_text(file);
+    reader all(result, text);
+    json::sax_parse(text, &all);
+    all.finish();
     return result;
 }
 

@@ -25,7 +25,7 @@ struct judge_gaussians {
     std::uint32_t* large;    ///< 1 or 0
     std::uint32_t* urgency;  ///< sort key: the more urgent the growth the smaller; all ones for none
     std::uint32_t* identities;
-    unsigned long long* silent;  ///< those that were drawn and took no gradient, added to
+    unsigned long long* silent;  ///< those drawn whose centres took no gradient, added to
 
     WARPAGG_HD void operator()(std::size_t index) const {
         const auto i = static_cast<unsigned>(index);

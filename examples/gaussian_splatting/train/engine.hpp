@@ -47,7 +47,7 @@ class engine {
 
     virtual void step(const step_plan& plan) = 0;
     /// Copies, splits and drops Gaussians by what `step`s have seen since the last call. Returns how many
-    /// were drawn but took no gradient at all, as those whose alpha is too low everywhere.
+    /// were drawn while their centres took no gradient, as where alpha is too low everywhere.
     virtual std::uint64_t densify(const densify_rule& rule) = 0;
     virtual void reset_opacity(float most) = 0;
     /// Makes room for the longest lists of the training views, and half as much again for what they grow to.

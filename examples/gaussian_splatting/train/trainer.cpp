@@ -113,6 +113,7 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     std::mt19937_64 colours(options.seed + 1);
     finite_watch watch;
     train_result result;
+    engine.take_findings();  // of steps that are not ours
     engine.reserve();
     engine.wait();
     const auto start = clock::now();
@@ -135,7 +136,8 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
             engine.wait();
             const auto from = clock::now();
             if (schedule.densifies(iteration))
-                result.silent_gaussians = engine.densify(rule_at(iteration, schedule, options));
+                result.silent_gaussians =
+                    std::max(result.silent_gaussians, engine.densify(rule_at(iteration, schedule, options)));
             engine.reserve();
             result.densify_seconds += seconds_since(from);
         }

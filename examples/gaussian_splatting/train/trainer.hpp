@@ -44,7 +44,7 @@ struct train_result {
     double densify_seconds = 0;  ///< of these, for densification and for sizing the lists
     std::uint64_t skipped_steps = 0;
     std::uint64_t left_out_gradients = 0;  ///< elements that were not finite
-    std::uint64_t silent_gaussians = 0;    ///< before the last densification: see `engine::densify`
+    std::uint64_t silent_gaussians = 0;    ///< the most at any densification: see `engine::densify`
 };
 
 /// What the loop calls back for.
@@ -59,7 +59,8 @@ struct train_events {
 /// The device notes what is not finite in the iteration where it appears; that is looked at every 100
 /// iterations and before anything is tested or saved. An element of a gradient that is not finite is left out
 /// of its step, and a warning names the first. A loss that is not finite, or a parameter that would not be,
-/// ends training: throws `error` naming iteration, view, parameter and Gaussian; what was saved before stays.
+/// ends training: throws `error` naming iteration and view, and which parameter of which Gaussian; what was
+/// saved before stays.
 train_result train(engine& engine, const scene& scene, const train_options& options,
                    const train_events& events);
 

@@ -1,0 +1,20 @@
+# SPDX-FileCopyrightText: 2026 The warpagg authors
+# SPDX-License-Identifier: MIT
+"""What a figure belongs to: commit, GPU, compilers, processor."""
+import subprocess
+
+
+def first_line(*command):
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip().splitlines()[0]
+    except (OSError, subprocess.CalledProcessError, IndexError):
+        return None
+
+
+def environment(commit):
+    nvcc = first_line("sh", "-c", "nvcc --version | grep release")
+    return {"commit": commit or first_line("git", "describe", "--always", "--dirty", "--abbrev=12"),
+            "gpu_and_driver": first_line("nvidia-smi", "--query-gpu=name,driver_version", "--format=csv,noheader"),
+            "nvcc": nvcc,
+            "compiler": first_line("c++", "--version"),
+            "processor": first_line("sh", "-c", "grep -m1 'model name' /proc/cpuinfo | cut -d: -f2")}

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "backend.hpp"
+
+namespace hard_cases {
+
+/// Where these tests put what is not as it should be: one of a crowd.
+inline constexpr std::size_t crowd = 30, victim = 15;
+
+/// The values of one parameter of a Gaussian.
+double* values_of(question& q, gs::parameter p, std::size_t i);
+
+/// A photo of noise, for the gradients' sake.
+void paint_photo(question& q, unsigned seed);
+
+/// The quaternion of a turn about an axis.
+std::array<double, 4> turned(double angle, const glm::dvec3& axis);
+
+/// With each variant on each backend: `victim` must not be drawn, and nobody else may notice.
+void check_culled(const question& q);
+
+/// With each variant on each backend: drawn as the reference draws, finite, and the picture to 1e-3 of the
+/// reference's; the gradients within the bounds if they are asked for.
+void check_drawn(const question& q, bool with_gradients);
+
+}  // namespace hard_cases

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "backend.hpp"
+#include "memory_on.hpp"
+#include "raster/bin.hpp"
+#include "raster/blend_backward.hpp"
+#include "raster/blend_forward.hpp"
+#include "raster/with_policy.hpp"
+
+namespace hard_cases {
+
+/// Sums 32 values, or one, into one address.
+template <class Real, class Policy>
+struct sum_values {
+    const Real* values;
+    unsigned count;
+    Real* to;
+
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        const auto place = w.lane() + index * W::size;
+        const warpagg::mask_t<W> active = place < count;
+        const warpagg::value_t<W, Real> one[1] = {w.load(values, place, active)};
+        warpagg::warp_reduce_atomic(w, to, one, active, Policy{});
+    }
+};
+
+/// What a backend does with splats, and with numbers.
+template <class Device, class Real>
+class lists_on {
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+    using memory = memory_on<Device, Real>;
+
+  public:
+    static blend_answer blend(const blend_question& q) {
+        using namespace gs::raster;
+        Device device;
+        memory on(device);
+        std::vector<splat<Real>> made;
+        for (const flat_splat& s : q.splats) made.push_back(splat_of(s));
+        const auto across = static_cast<unsigned>((q.width + tile_size - 1) / tile_size);
+        const auto down = static_cast<unsigned>((q.height + tile_size - 1) / tile_size);
+        std::vector<std::uint32_t> order;
+        std::vector<tile_range> tiles(across * down);
+        for (std::size_t t = 0; t < tiles.size(); ++t) {
+            tiles[t].begin = static_cast<std::uint32_t>(q.lists.empty() ? 0 : order.size());
+            if (!q.lists.empty())
+                order.insert(order.end(), q.lists[t].begin(), q.lists[t].end());
+            else if (t == 0)
+                for (std::uint32_t i = 0; i < made.size(); ++i) order.push_back(i);
+            tiles[t].end = static_cast<std::uint32_t>(order.size());
+        }
+
+        buffer<splat<Real>> splats;
+        buffer<std::uint32_t> gaussian_of, last;
+        buffer<tile_range> ranges;
+        buffer<Real> picture, transmittance, gradient, sums;
+        buffer<unsigned long long> pairs;
+        on.put_as_they_are(splats, made);
+        on.put_as_they_are(gaussian_of, order);
+        on.put_as_they_are(ranges, tiles);
+        const auto pixels = static_cast<std::size_t>(q.width) * static_cast<std::size_t>(q.height);
+        picture.resize(3 * pixels);
+        transmittance.resize(pixels);
+        last.resize(pixels);
+        pairs.resize(1);
+        device.zero(pairs.data(), 1);
+        const vec3<Real> background(q.background[0], q.background[1], q.background[2]);
+        const std::size_t warps = tiles.size() * patch<typename Device::warp, Real>::per_tile;
+        device.for_each_warp(warps, blend_forward<Real>{splats.data(), gaussian_of.data(), ranges.data(),
+                                                        across, q.width, q.height, background, picture.data(),
+                                                        transmittance.data(), last.data(), pairs.data()});
+        blend_answer a;
+        a.picture = on.get(picture.data(), 3 * pixels);
+        a.transmittance = on.get(transmittance.data(), pixels);
+        a.last = on.get_as_they_are(last.data(), pixels);
+        if (q.gradient.empty()) return a;
+
+        on.put(gradient, q.gradient);
+        sums.resize(made.size() * record_stride);
+        device.zero(sums.data(), sums.size());
+        gs::raster::with_policy(q.policy, [&](auto policy, auto ask_first) {
+            device.for_each_warp(
+                warps, blend_backward<Real, decltype(policy), ask_first.value>{
+                           splats.data(), gaussian_of.data(), ranges.data(), across, q.width, q.height,
+                           background, transmittance.data(), last.data(), gradient.data(), sums.data()});
+        });
+        const std::vector<double> records = on.get(sums.data(), sums.size());
+        static_assert(sum_count == 9);
+        a.sums.resize(made.size());
+        for (std::size_t i = 0; i < made.size(); ++i)
+            std::copy_n(records.data() + i * record_stride, 9, a.sums[i].data());
+        return a;
+    }
+
+    static std::vector<std::uint64_t> prefix_sum(const std::vector<std::uint32_t>& values) {
+        Device device;
+        memory on(device);
+        buffer<std::uint32_t> in;
+        buffer<std::uint64_t> out;
+        on.put_as_they_are(in, values);
+        out.resize(values.size() + 1);
+        device.prefix_sum(in, out, values.size());
+        return on.get_as_they_are(out.data(), out.size());
+    }
+
+    static double sum(const std::vector<double>& values, gradient_policy policy) {
+        Device device;
+        memory on(device);
+        buffer<Real> in, to;
+        on.put(in, values);
+        on.put(to, {0.0});
+        constexpr std::size_t lanes = Device::warp::size;
+        gs::raster::with_policy(policy, [&](auto p, auto) {
+            device.for_each_warp(
+                (values.size() + lanes - 1) / lanes,
+                sum_values<Real, decltype(p)>{in.data(), static_cast<unsigned>(values.size()), to.data()});
+        });
+        return on.get(to.data(), 1)[0];
+    }
+
+  private:
+    static gs::raster::splat<Real> splat_of(const flat_splat& s) {
+        const auto vector = [](const std::array<double, 3>& v) {
+            return glm::vec<3, Real>(glm::dvec3(v[0], v[1], v[2]));
+        };
+        const gs::raster::ellipse<Real> shape(vector(s.across), vector(s.down));
+        gs::raster::splat<Real> made{};
+        made.x = static_cast<Real>(s.x);
+        made.y = static_cast<Real>(s.y);
+        made.opacity = static_cast<Real>(s.opacity);
+        made.reach = static_cast<Real>(std::log2(static_cast<double>(made.opacity) * 255));
+        made.p = shape.p;
+        made.q = shape.q;
+        made.r = shape.r;
+        made.slope_x = shape.slope_x;
+        made.slope_y = shape.slope_y;
+        made.red = static_cast<Real>(s.colour[0]);
+        made.green = static_cast<Real>(s.colour[1]);
+        made.blue = static_cast<Real>(s.colour[2]);
+        return made;
+    }
+};
+
+}  // namespace hard_cases

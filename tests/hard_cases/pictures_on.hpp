@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+
+#include "backend.hpp"
+#include "memory_on.hpp"
+#include "raster/renderer.hpp"
+#include "train/photometric.hpp"
+#include "train/schedule.hpp"
+
+namespace hard_cases {
+
+/// The gradient by the picture, pixel by pixel more or less of it.
+template <class Real>
+struct weigh_pixels {
+    const Real* gradient;
+    const Real* weights;
+    std::size_t pixels;
+    Real* weighed;
+
+    WARPAGG_HD void operator()(std::size_t i) const { weighed[i] = gradient[i] * weights[i % pixels]; }
+};
+
+/// What a backend does with Gaussians.
+template <class Device, class Real>
+class pictures_on {
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+    using memory = memory_on<Device, Real>;
+    using parameters = std::array<buffer<Real>, gs::parameter_count>;
+
+    struct session {
+        Device device;
+        memory on{device};
+        gs::raster::renderer<Device, Real> renderer{device};
+        gs::train::photometric<Device, Real> photometric{device};
+        parameters values, gradients;
+        buffer<std::uint8_t> photo;
+
+        void draw(const question& q) {
+            for (std::size_t p = 0; p < gs::parameter_count; ++p) {
+                on.put(values[p], q.parameters[p]);
+                gradients[p].resize(q.parameters[p].size());
+            }
+            const auto model = read(values);
+            const gs::camera& camera = q.view.camera;
+            // Room to spare, as in training: places that stay empty are part of the lists.
+            const std::uint64_t needed = renderer.count_instances(model, q.count(), camera, q.sh_degree);
+            renderer.reserve_instances(needed, needed / 2 + 64);
+            renderer.forward(model, q.count(), camera, q.sh_degree, q.background);
+            on.put_bytes(photo, q.view.pixels.rgba);
+            photometric.set_photo(photo.data(), camera.width, camera.height, q.background);
+        }
+    };
+
+  public:
+    static answer ask(const question& q) {
+        session s;
+        s.draw(q);
+        const std::size_t values = 3 * q.pixels();
+        const Real* by_picture =
+            s.photometric.gradient(s.renderer.picture(), gs::train::schedule::ssim_weight);
+        buffer<Real> weights, weighed;
+        if (!q.weights.empty()) {
+            s.on.put(weights, q.weights);
+            weighed.resize(values);
+            s.device.for_each_index(
+                values, weigh_pixels<Real>{by_picture, weights.data(), q.pixels(), weighed.data()});
+            by_picture = weighed.data();
+        }
+        buffer<gs::raster::visibility> seen;
+        seen.resize(q.count());
+        s.device.zero(seen.data(), q.count());
+        s.renderer.backward(by_picture, q.policy, write(s.gradients), seen.data());
+
+        answer a;
+        a.picture = s.on.get(s.renderer.picture(), values);
+        a.loss = s.photometric.take().loss(gs::train::schedule::ssim_weight);
+        for (std::size_t p = 0; p < gs::parameter_count; ++p)
+            a.gradients[p] = s.on.get(s.gradients[p].data(), s.gradients[p].size());
+        const auto sightings = s.on.get_as_they_are(seen.data(), q.count());
+        a.sightings.resize(sightings.size());
+        std::ranges::transform(sightings, a.sightings.begin(), [](const gs::raster::visibility& v) {
+            return sighting{static_cast<double>(v.gradient), static_cast<double>(v.seen)};
+        });
+        return a;
+    }
+
+    static double loss(const question& q) {
+        session s;
+        s.draw(q);
+        s.photometric.compare(s.renderer.picture());
+        return s.photometric.take().loss(gs::train::schedule::ssim_weight);
+    }
+
+    static std::vector<projected_splat> project(const question& q) {
+        Device device;
+        memory on(device);
+        parameters values;
+        for (std::size_t p = 0; p < gs::parameter_count; ++p) on.put(values[p], q.parameters[p]);
+        buffer<gs::raster::splat<Real>> splats;
+        buffer<gs::raster::tile_box> boxes;
+        buffer<std::uint32_t> depths, identities, tiles;
+        const std::size_t n = q.count();
+        splats.resize(n);
+        boxes.resize(n);
+        identities.resize(n);
+        // What a frame before left there.
+        on.put_as_they_are(depths, std::vector<std::uint32_t>(n, 0));
+        on.put_as_they_are(tiles, std::vector<std::uint32_t>(n, 1));
+        const auto tiles_along = [](int pixels) {
+            return static_cast<unsigned>((pixels + gs::raster::tile_size - 1) / gs::raster::tile_size);
+        };
+        const gs::camera& camera = q.view.camera;
+        device.for_each_index(
+            n, gs::raster::project<Real>{read(values), gs::raster::for_device<Real>(camera), q.sh_degree,
+                                         tiles_along(camera.width), tiles_along(camera.height), splats.data(),
+                                         boxes.data(), depths.data(), identities.data(), tiles.data()});
+        const auto host = on.get_as_they_are(splats.data(), n);
+        const auto depth = on.get_as_they_are(depths.data(), n), met = on.get_as_they_are(tiles.data(), n);
+        std::vector<projected_splat> found(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            const gs::raster::splat<double> s = widen(host[i]);
+            found[i] = {met[i] > 0, depth[i], s.x, s.y,   s.reach, s.opacity,
+                        s.p,        s.q,      s.r, s.red, s.green, s.blue};
+        }
+        return found;
+    }
+
+    static std::string complaint_about_instances(std::uint64_t instances) {
+        Device device;
+        gs::raster::renderer<Device, Real> renderer(device);
+        try {
+            renderer.reserve_instances(instances);
+        } catch (const gs::error& e) {
+            return e.what();
+        }
+        return "";
+    }
+
+  private:
+    template <class To, class From>
+    static gs::parameter_arrays<To> pointers(From& a) {
+        return {a[0].data(),
+                a[1].data(),
+                a[2].data(),
+                a[3].data(),
+                {a[4].data(), a[5].data(), a[6].data(), a[7].data()}};
+    }
+    static gs::parameter_arrays<const Real> read(const parameters& a) { return pointers<const Real>(a); }
+    static gs::parameter_arrays<Real> write(parameters& a) { return pointers<Real>(a); }
+
+    static gs::raster::splat<double> widen(const gs::raster::splat<Real>& s) {
+        gs::raster::splat<double> d{};
+        d.x = s.x;
+        d.y = s.y;
+        d.reach = s.reach;
+        d.opacity = s.opacity;
+        d.p = s.p;
+        d.q = s.q;
+        d.r = s.r;
+        d.red = s.red;
+        d.green = s.green;
+        d.blue = s.blue;
+        return d;
+    }
+};
+
+}  // namespace hard_cases

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+
+#include "backend.hpp"
+#include "memory_on.hpp"
+#include "train/adam.hpp"
+#include "train/densify.hpp"
+#include "train/photometric.hpp"
+#include "train/schedule.hpp"
+
+namespace hard_cases {
+
+/// What a backend does to train.
+template <class Device, class Real>
+class training_on {
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+    using memory = memory_on<Device, Real>;
+
+  public:
+    static compare_answer compare(const compare_question& q) {
+        Device device;
+        memory on(device);
+        gs::train::photometric<Device, Real> photometric(device);
+        buffer<std::uint8_t> photo;
+        buffer<Real> picture;
+        on.put_bytes(photo, q.rgba);
+        on.put(picture, q.picture);
+        photometric.set_photo(photo.data(), q.width, q.height, q.background);
+        const Real* gradient = photometric.gradient(picture.data(), gs::train::schedule::ssim_weight);
+        compare_answer a;
+        a.gradient = on.get(gradient, q.picture.size());
+        a.quality = photometric.take();
+        return a;
+    }
+
+    static std::vector<std::vector<double>> descend(const std::vector<std::vector<double>>& gradients,
+                                                    double rate) {
+        using adam = gs::train::adam<float>;
+        Device device;
+        memory_on<Device, float> on(device);
+        const std::size_t n = gradients.front().size();
+        buffer<float> values, first, second, gradient;
+        for (auto* b : {&values, &first, &second}) on.put(*b, std::vector<double>(n, 0.0));
+        buffer<gs::train::watch::memory> found;
+        on.put_as_they_are(found, std::vector{gs::train::watch::clean()});
+        std::vector<std::vector<double>> path;
+        for (const auto& g : gradients) {
+            on.put(gradient, g);
+            const auto t = static_cast<double>(path.size() + 1);
+            adam step{};
+            step.watch.found = found.data();
+            step.width = 1;
+            step.values = values.data();
+            step.first = first.data();
+            step.second = second.data();
+            step.gradients = gradient.data();
+            step.rate = static_cast<float>(rate / (1 - std::pow(adam::beta1, t)));
+            step.correction = static_cast<float>(1 / std::sqrt(1 - std::pow(adam::beta2, t)));
+            device.for_each_element(n, step);
+            path.push_back(on.get(values.data(), n));
+        }
+        return path;
+    }
+
+    static judgement judge(const std::vector<sighting>& sightings, const std::vector<double>& opacities,
+                           const gs::train::densify_rule& rule) {
+        Device device;
+        memory_on<Device, float> on(device);
+        const std::size_t n = sightings.size();
+        std::vector<gs::raster::visibility> host;
+        for (const sighting& s : sightings)
+            host.push_back({static_cast<float>(s.gradient), static_cast<float>(s.seen)});
+        buffer<gs::raster::visibility> seen;
+        buffer<float> log_scale, opacity;
+        buffer<std::uint32_t> stays, large, urgency, identities;
+        buffer<unsigned long long> silent;
+        on.put_as_they_are(seen, host);
+        on.put(log_scale, std::vector<double>(3 * n, -3.0));
+        on.put(opacity, opacities);
+        for (auto* b : {&stays, &large, &urgency, &identities}) b->resize(n);
+        silent.resize(1);
+        device.zero(silent.data(), 1);
+        gs::parameter_arrays<const float> model;
+        model.log_scale = log_scale.data();
+        model.opacity = opacity.data();
+        device.for_each_index(n,
+                              gs::train::judge_gaussians{model, seen.data(), rule, stays.data(), large.data(),
+                                                         urgency.data(), identities.data(), silent.data()});
+        return {on.get_as_they_are(stays.data(), n), on.get_as_they_are(urgency.data(), n),
+                on.get_as_they_are(silent.data(), 1)[0]};
+    }
+};
+
+}  // namespace hard_cases
