@@ -154,14 +154,13 @@ def stability():
             db(r["held_out_psnr"]),
             db(r["ply_training_psnr"]),
             str(r["skipped_steps"]),
-            f"{r['seconds']:.0f}",
         ]
         for r in f["rows"]
         if r["sound"]
     ]
     head = ["what is hard", "iterations", "Gaussians at first", "at the end", "training PSNR, dB", "held-out", "training, from the `.ply`"]
     unsound = [r["name"] for r in f["rows"] if not r["sound"]]
-    return markdown(head + ["skipped steps", "s"], rows) + (
+    return markdown(head + ["skipped steps"], rows) + (
         f"\nNot finite, or not in place: {', '.join(unsound) or 'none'}. {f['device']}, driver {f['driver']}, nvcc {f['nvcc']}, "
         f"commit {f['commit']}, seed {f['seed']}, photos of {f['resolution']} pixels a side.\n"
     )
