@@ -132,9 +132,11 @@ std::vector<double> off_thresholds(const question& q, double margin) {
     std::erase_if(splats, [](const projected_splat& s) { return !s.drawn; });
     std::stable_sort(splats.begin(), splats.end(),
                      [](const auto& a, const auto& b) { return a.depth < b.depth; });
-    const auto near = [margin](double value, double threshold) {
-        return std::abs(value / threshold - 1) < margin;
+    const auto near = [](double value, double threshold, double within) {
+        return std::abs(value / threshold - 1) < within;
     };
+    // Of alpha; in 1 - alpha, and so in T, an error grows up to a hundred times.
+    const double margin_of_T = 100 * margin;
     const auto from = [](double first, int end) {
         return static_cast<int>(std::clamp(std::floor(first), 0.0, static_cast<double>(end)));
     };
@@ -150,8 +152,8 @@ std::vector<double> off_thresholds(const question& q, double margin) {
                 const double u = s.p * (x + 0.5 - s.x), v = s.q * (y + 0.5 - s.y) + s.r * (x + 0.5 - s.x);
                 const double full = s.opacity * std::exp2(-(u * u + v * v));
                 const double next = T * (1 - std::min(full, most_alpha));
-                if (near(full, least_alpha) || near(full, most_alpha) ||
-                    (full >= least_alpha && near(next, least_transmittance)))
+                if (near(full, least_alpha, margin) || near(full, most_alpha, margin) ||
+                    (full >= least_alpha && near(next, least_transmittance, margin_of_T)))
                     weights[pixel] = 0;
                 if (full >= least_alpha) T = next < least_transmittance ? 0 : next;
             }
