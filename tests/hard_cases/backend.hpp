@@ -27,6 +27,8 @@ struct question {
     std::array<float, 3> background{};
     gradient_policy policy = gradient_policy::scatter;
     std::vector<double> weights;  ///< of the loss's gradient, one a pixel; none for 1 everywhere
+    /// The picture at which the loss's gradient is taken; none for the one that is drawn.
+    std::vector<double> gradient_at;
 
     std::size_t count() const { return parameters[3].size(); }
     std::size_t pixels() const {

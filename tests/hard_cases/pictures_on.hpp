@@ -60,8 +60,10 @@ class pictures_on {
         session s;
         s.draw(q);
         const std::size_t values = 3 * q.pixels();
-        const Real* by_picture =
-            s.photometric.gradient(s.renderer.picture(), gs::train::schedule::ssim_weight);
+        buffer<Real> given;
+        if (!q.gradient_at.empty()) s.on.put(given, q.gradient_at);
+        const Real* by_picture = s.photometric.gradient(
+            q.gradient_at.empty() ? s.renderer.picture() : given.data(), gs::train::schedule::ssim_weight);
         buffer<Real> weights, weighed;
         if (!q.weights.empty()) {
             s.on.put(weights, q.weights);
