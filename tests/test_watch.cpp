@@ -40,6 +40,16 @@ gs::gaussians one_short_quaternion(const gs::scene& scene, std::size_t which) {
     return model;
 }
 
+/// An engine that has the training views and a model, and room for its lists.
+std::unique_ptr<gs::train::engine> ready(make_engine make, const gs::scene& scene,
+                                         const gs::gaussians& model) {
+    auto e = make();
+    e->set_views(scene.train, {});
+    e->set_model(model);
+    e->reserve();
+    return e;
+}
+
 gs::train::train_options short_run(int iterations) {
     gs::train::train_options o;
     o.schedule.iterations = iterations;
@@ -53,10 +63,7 @@ gs::train::train_options short_run(int iterations) {
 TEST_CASE("a sound step leaves nothing to find") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {
-        const auto e = make();
-        e->set_views(scene.train, {});
-        e->set_model(few(scene));
-        e->reserve();
+        const auto e = ready(make, scene, few(scene));
         e->step(plan_for(0));
         for (const finding& f : e->take_findings()) CHECK(f.count == 0);
     }
@@ -66,10 +73,7 @@ TEST_CASE("a gradient that is not finite is left out, and found where it appears
     const gs::scene scene = small_scene();
     const gs::gaussians model = one_short_quaternion(scene, 17);
     for (const auto make : engines()) {
-        const auto e = make();
-        e->set_views(scene.train, {});
-        e->set_model(model);
-        e->reserve();
+        const auto e = ready(make, scene, model);
         for (int iteration = 41; iteration <= 43; ++iteration) {
             auto plan = plan_for(0);
             plan.iteration = iteration;
@@ -96,10 +100,7 @@ TEST_CASE("a loss that is not finite is found where it appears, and moves nothin
     const gs::scene scene = small_scene();
     const gs::gaussians model = few(scene);
     for (const auto make : engines()) {
-        const auto e = make();
-        e->set_views(scene.train, {});
-        e->set_model(model);
-        e->reserve();
+        const auto e = ready(make, scene, model);
         auto plan = plan_for(0);
         plan.iteration = 6;
         plan.background = {infinity, 0, 0};
@@ -117,10 +118,7 @@ TEST_CASE("a rate that would drive a parameter out of range moves nothing") {
     const gs::scene scene = small_scene();
     const gs::gaussians model = few(scene);
     for (const auto make : engines()) {
-        const auto e = make();
-        e->set_views(scene.train, {});
-        e->set_model(model);
-        e->reserve();
+        const auto e = ready(make, scene, model);
         auto plan = plan_for(0);
         plan.iteration = 9;
         plan.rates = {};
@@ -141,9 +139,7 @@ TEST_CASE("a rate that would drive a parameter out of range moves nothing") {
 TEST_CASE("training says what it leaves out, once, and goes on") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {
-        const auto e = make();
-        e->set_views(scene.train, {});
-        e->set_model(one_short_quaternion(scene, 5));
+        const auto e = ready(make, scene, one_short_quaternion(scene, 5));
         std::vector<std::string> warnings;
         bool saved = false;
         const gs::train::train_events events{[](const gs::train::progress&) {},
@@ -164,9 +160,7 @@ TEST_CASE("training says what it leaves out, once, and goes on") {
 TEST_CASE("training ends where the loss is not finite, and names the view") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {
-        const auto e = make();
-        e->set_views(scene.train, {});
-        e->set_model(few(scene));
+        const auto e = ready(make, scene, few(scene));
         bool saved = false;
         const gs::train::train_events events{[](const gs::train::progress&) {}, [&](int) { saved = true; },
                                              [](int) {}};
@@ -186,10 +180,7 @@ TEST_CASE("Gaussians that take no gradient are counted") {
     // Just above 1/255 at their centres, below it half a pixel away: drawn, but hardly ever hit.
     model.opacity.assign(model.count(), gs::logit(1.0f / 254));
     for (const auto make : engines()) {
-        const auto e = make();
-        e->set_views(scene.train, {});
-        e->set_model(model);
-        e->reserve();
+        const auto e = ready(make, scene, model);
         e->step(plan_for(0));
         gs::train::densify_rule rule;
         rule.gradient = 1e9f;

@@ -4,6 +4,7 @@
 
 #include <warpagg/atomic.hpp>
 
+#include "bits.hpp"
 #include "patch.hpp"
 #include "project_backward.hpp"
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "bin.hpp"
-#include "bits.hpp"
 #include "geometry.hpp"
 #include "splat.hpp"
 
