@@ -25,7 +25,7 @@ struct question {
     std::array<std::vector<double>, gs::parameter_count> parameters;
     gs::view view;
     std::array<float, 3> background{};
-    gradient_policy policy = gradient_policy::scatter;
+    gradient_policy policy = gradient_policy::split;
     std::vector<double> weights;  ///< of the loss's gradient, one a pixel; none for 1 everywhere
     /// The picture at which the loss's gradient is taken; none for the one that is drawn.
     std::vector<double> gradient_at;
@@ -72,7 +72,7 @@ struct blend_question {
     std::vector<flat_splat> splats;
     std::vector<std::vector<std::uint32_t>> lists;  ///< front to back, one a tile; none for all in each
     std::vector<double> gradient;                   ///< by the picture; empty: forward only
-    gradient_policy policy = gradient_policy::scatter;
+    gradient_policy policy = gradient_policy::split;
 };
 
 struct blend_answer {

@@ -124,10 +124,11 @@ std::string excess(const answer& got, const answer& expected) {
     return said;
 }
 
-std::vector<double> off_thresholds(const question& q, double margin) {
+std::vector<double> off_thresholds(const question& q, double margin, std::uint32_t depth_margin) {
     using namespace gs::raster;
     const int width = q.view.camera.width, height = q.view.camera.height;
     std::vector<double> weights(q.pixels(), 1.0), behind(q.pixels(), 1.0);
+    std::vector<std::uint32_t> depths(q.pixels(), 0);  // of the last splat that a pixel saw
     std::vector<projected_splat> splats = reference().project(q);
     std::erase_if(splats, [](const projected_splat& s) { return !s.drawn; });
     std::stable_sort(splats.begin(), splats.end(),
@@ -155,7 +156,11 @@ std::vector<double> off_thresholds(const question& q, double margin) {
                 if (near(full, least_alpha, margin) || near(full, most_alpha, margin) ||
                     (full >= least_alpha && near(next, least_transmittance, margin_of_T)))
                     weights[pixel] = 0;
-                if (full >= least_alpha) T = next < least_transmittance ? 0 : next;
+                if (full < least_alpha) continue;
+                // The sort key is a float: rounding may swap two of almost one depth.
+                if (s.depth - depths[pixel] < depth_margin) weights[pixel] = 0;
+                depths[pixel] = s.depth;
+                T = next < least_transmittance ? 0 : next;
             }
     }
     const std::vector<double> picture = reference().ask(q).picture;

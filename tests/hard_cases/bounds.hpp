@@ -48,8 +48,9 @@ bool same(const answer& a, const answer& b);
 
 /// Weights of 0 for the pixels in which float and double may decide differently for their rounding: where a
 /// splat's alpha lies within a relative `margin` of the least that is drawn or of the cap, the transmittance
-/// within a hundred times that of the least that goes on, or a channel under some splat within a tenth of
-/// `margin` of its photo, where the loss has its kink. 1 elsewhere. The decisions are looked for in double.
-std::vector<double> off_thresholds(const question& q, double margin);
+/// within a hundred times that of the least that goes on, a channel under some splat within a tenth of
+/// `margin` of its photo, where the loss has its kink, or the depths of two splats in a row less than
+/// `depth_margin` ulp apart. 1 elsewhere. The decisions are looked for in double.
+std::vector<double> off_thresholds(const question& q, double margin, std::uint32_t depth_margin = 0);
 
 }  // namespace hard_cases

@@ -49,18 +49,18 @@ class lists_on {
         std::vector<std::uint32_t> order;
         std::vector<tile_range> tiles(across * down);
         for (std::size_t t = 0; t < tiles.size(); ++t) {
-            tiles[t].begin = static_cast<std::uint32_t>(q.lists.empty() ? 0 : order.size());
+            tiles[t].begin = static_cast<std::uint32_t>(order.size());
             if (!q.lists.empty())
                 order.insert(order.end(), q.lists[t].begin(), q.lists[t].end());
-            else if (t == 0)
+            else
                 for (std::uint32_t i = 0; i < made.size(); ++i) order.push_back(i);
             tiles[t].end = static_cast<std::uint32_t>(order.size());
         }
 
         buffer<splat<Real>> splats;
-        buffer<std::uint32_t> gaussian_of, last;
+        buffer<std::uint32_t> gaussian_of, last, tile_of_segment;
         buffer<tile_range> ranges;
-        buffer<Real> picture, transmittance, gradient, sums;
+        buffer<Real> picture, transmittance, checkpoints, gradient, sums;
         buffer<unsigned long long> pairs;
         on.put_as_they_are(splats, made);
         on.put_as_they_are(gaussian_of, order);
@@ -72,10 +72,19 @@ class lists_on {
         pairs.resize(1);
         device.zero(pairs.data(), 1);
         const vec3<Real> background(q.background[0], q.background[1], q.background[2]);
-        const std::size_t warps = tiles.size() * patch<typename Device::warp, Real>::per_tile;
-        device.for_each_warp(warps, blend_forward<Real>{splats.data(), gaussian_of.data(), ranges.data(),
-                                                        across, q.width, q.height, background, picture.data(),
-                                                        transmittance.data(), last.data(), pairs.data()});
+        using warp = typename Device::warp;
+        using shape = cut_for<warp>;
+        const std::size_t segments = most_segments<shape>(tiles.size(), order.size());
+        checkpoints.resize(segments * checkpoint_values);
+        tile_of_segment.resize(segments);
+        device.zero(tile_of_segment.data(), segments);
+        device.for_each_index(tiles.size(), number_segments<shape>{ranges.data(), tile_of_segment.data()});
+        const tile_lists<Real> lists{splats.data(), gaussian_of.data(), ranges.data(), across, q.width,
+                                     q.height};
+        const blend_forward<Real, shape> forward{
+            lists,       background,         picture.data(), transmittance.data(),
+            last.data(), checkpoints.data(), pairs.data()};
+        device.for_each_warp(forward.template warps<warp>(tiles.size()), forward);
         blend_answer a;
         a.picture = on.get(picture.data(), 3 * pixels);
         a.transmittance = on.get(transmittance.data(), pixels);
@@ -85,11 +94,13 @@ class lists_on {
         on.put(gradient, q.gradient);
         sums.resize(made.size() * record_stride);
         device.zero(sums.data(), sums.size());
-        gs::raster::with_policy(q.policy, [&](auto policy, auto ask_first) {
-            device.for_each_warp(
-                warps, blend_backward<Real, decltype(policy), ask_first.value>{
-                           splats.data(), gaussian_of.data(), ranges.data(), across, q.width, q.height,
-                           background, transmittance.data(), last.data(), gradient.data(), sums.data()});
+        with_policy<Real, shape>(q.policy, [&](auto backward) {
+            backward.lists = lists;
+            backward.view = {background,  picture.data(),     transmittance.data(),
+                             last.data(), checkpoints.data(), gradient.data()};
+            backward.tile_of_segment = tile_of_segment.data();
+            backward.sums = sums.data();
+            device.for_each_warp(backward.template warps<warp>(tiles.size(), segments), backward);
         });
         const std::vector<double> records = on.get(sums.data(), sums.size());
         static_assert(sum_count == 9);
@@ -117,10 +128,10 @@ class lists_on {
         on.put(in, values);
         on.put(to, {0.0});
         constexpr std::size_t lanes = Device::warp::size;
-        gs::raster::with_policy(policy, [&](auto p, auto) {
-            device.for_each_warp(
-                (values.size() + lanes - 1) / lanes,
-                sum_values<Real, decltype(p)>{in.data(), static_cast<unsigned>(values.size()), to.data()});
+        gs::raster::with_policy<Real, gs::raster::cut_for<typename Device::warp>>(policy, [&](auto kernel) {
+            device.for_each_warp((values.size() + lanes - 1) / lanes,
+                                 sum_values<Real, typename decltype(kernel)::policy>{
+                                     in.data(), static_cast<unsigned>(values.size()), to.data()});
         });
         return on.get(to.data(), 1)[0];
     }
@@ -134,8 +145,8 @@ class lists_on {
         gs::raster::splat<Real> made{};
         made.x = static_cast<Real>(s.x);
         made.y = static_cast<Real>(s.y);
-        made.opacity = static_cast<Real>(s.opacity);
-        made.reach = static_cast<Real>(std::log2(static_cast<double>(made.opacity) * 255));
+        made.strength = static_cast<Real>(std::log2(s.opacity));
+        made.reach = static_cast<Real>(std::log2(s.opacity * 255));
         made.p = shape.p;
         made.q = shape.q;
         made.r = shape.r;

@@ -125,7 +125,7 @@ class pictures_on {
         std::vector<projected_splat> found(n);
         for (std::size_t i = 0; i < n; ++i) {
             const gs::raster::splat<double> s = widen(host[i]);
-            found[i] = {met[i] > 0, depth[i], s.x, s.y,   s.reach, s.opacity,
+            found[i] = {met[i] > 0, depth[i], s.x, s.y,   s.reach, std::exp2(s.strength),
                         s.p,        s.q,      s.r, s.red, s.green, s.blue};
         }
         return found;
@@ -159,7 +159,7 @@ class pictures_on {
         d.x = s.x;
         d.y = s.y;
         d.reach = s.reach;
-        d.opacity = s.opacity;
+        d.strength = s.strength;
         d.p = s.p;
         d.q = s.q;
         d.r = s.r;

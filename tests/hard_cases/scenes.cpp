@@ -52,7 +52,7 @@ std::vector<measured> measure(const std::vector<question>& questions, bool one_p
     in_parallel(all.size(), [&](std::size_t i) {
         all[i].q = questions[i];
         all[i].moved = move_off_black(all[i].q);
-        all[i].q.weights = off_thresholds(all[i].q, margin);
+        all[i].q.weights = off_thresholds(all[i].q, margin, 8);
         if (one_picture) {
             all[i].q.gradient_at = reference().ask(all[i].q).picture;
             for (double& x : all[i].q.gradient_at) x = static_cast<float>(x);
@@ -185,7 +185,7 @@ TEST_CASE("a trained scene: gradients in float against double") {
 TEST_CASE("the variants' gradients agree to 1e-5") {
     question q = random_question(7, 300, 64, 48, 3);
     on_each_variant([&](const backend& b, gradient_policy policy) {
-        q.policy = gradient_policy::scatter;
+        q.policy = gradient_policy::split;
         const answer ours = b.ask(q);
         q.policy = policy;
         const answer theirs = b.ask(q);

@@ -26,7 +26,7 @@ struct settings {
     train::schedule schedule;
     float densify_grad_threshold = train::densify_rule{}.gradient;
     std::size_t max_cap = 0;  ///< 0: by the photos
-    std::string gradient = "scatter";
+    std::string gradient = "split";
     std::set<int> save_iterations;
     std::set<int> test_iterations;
 

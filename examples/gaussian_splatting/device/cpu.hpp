@@ -17,6 +17,7 @@
 #include <vector>
 #include <warpagg/simt/lanes.hpp>
 
+#include "scratch.hpp"
 #include "stages.hpp"
 
 namespace gs::device {
@@ -57,6 +58,9 @@ class basic_cpu {
 
     std::string name() const { return "cpu, " + std::to_string(omp_get_max_threads()) + " threads"; }
 
+    /// About as many warps as run at once: a thread runs one.
+    std::size_t resident_warps() const { return static_cast<std::size_t>(omp_get_max_threads()); }
+
     /// f(i) for each i in [0, n).
     template <class F>
     void for_each_index(std::size_t n, const F& f) {
@@ -79,11 +83,18 @@ class basic_cpu {
                 if (wrong[i] != 0) f.report(first + i);
         }
     }
-    /// f(warp, i) for each i in [0, n), each on a warp of its own.
+    /// f(warp, i) for each i in [0, n), each on a warp of its own; f(warp, i, scratch) if it has scratch.
     template <class F>
     void for_each_warp(std::size_t n, const F& f) {
 #pragma omp parallel for schedule(dynamic, 8)
-        for (std::size_t i = 0; i < n; ++i) f(Warp{}, static_cast<unsigned>(i));
+        for (std::size_t i = 0; i < n; ++i) {
+            if constexpr (has_scratch<F, Warp>) {
+                typename F::template scratch<Warp> scratch;
+                f(Warp{}, static_cast<unsigned>(i), scratch);
+            } else {
+                f(Warp{}, static_cast<unsigned>(i));
+            }
+        }
     }
 
     template <class T>

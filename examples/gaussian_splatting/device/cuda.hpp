@@ -16,6 +16,7 @@
 #include <warpagg/atomic.hpp>
 
 #include "../error.hpp"
+#include "scratch.hpp"
 #include "stages.hpp"
 
 namespace gs::device {
@@ -50,7 +51,13 @@ __global__ void for_each_element(std::size_t n, F f) {
 template <class F>
 __global__ void __launch_bounds__(block_size) for_each_warp(unsigned n, F f) {
     const unsigned i = blockIdx.x * warps_per_block + threadIdx.x / 32;
-    if (i < n) f(warpagg::cuda::warp{}, i);
+    using warp = warpagg::cuda::warp;
+    if constexpr (has_scratch<F, warp>) {
+        __shared__ typename F::template scratch<warp> scratch[warps_per_block];
+        if (i < n) f(warp{}, i, scratch[threadIdx.x / 32]);
+    } else {
+        if (i < n) f(warp{}, i);
+    }
 }
 
 }  // namespace detail
@@ -105,6 +112,9 @@ class cuda {
 
     cuda() {
         check(cudaStreamCreate(&stream_));
+        int processors = 0;
+        check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, 0));
+        resident_warps_ = 32 * static_cast<std::size_t>(processors);
         for (auto& e : marks_) check(cudaEventCreate(&e));
     }
     cuda(const cuda&) = delete;
@@ -119,6 +129,9 @@ class cuda {
         check(cudaGetDeviceProperties(&properties, 0));
         return std::string("cuda, ") + properties.name;
     }
+
+    /// About as many warps as run at once: more of them wait, fewer leave the device idle.
+    std::size_t resident_warps() const { return resident_warps_; }
 
     /// f(i) for each i in [0, n).
     template <class F>
@@ -135,7 +148,7 @@ class cuda {
         detail::for_each_element<<<blocks(n, detail::block_size), detail::block_size, 0, stream_>>>(n, f);
         check(cudaGetLastError());
     }
-    /// f(warp, i) for each i in [0, n), each on a warp of its own.
+    /// f(warp, i) for each i in [0, n), each on a warp of its own; f(warp, i, scratch) if it has scratch.
     template <class F>
     void for_each_warp(std::size_t n, const F& f) {
         if (n == 0) return;
@@ -253,6 +266,7 @@ class cuda {
     }
 
     cudaStream_t stream_{};
+    std::size_t resident_warps_ = 0;
     buffer<std::uint32_t> other_keys_, other_values_;
     buffer<char> scratch_;
     std::array<cudaEvent_t, static_cast<std::size_t>(stage::count) + 1> marks_{};

@@ -3,13 +3,9 @@
 #pragma once
 
 #include "project.hpp"
+#include "tile_lists.hpp"
 
 namespace gs::raster {
-
-/// The instances of one tile in the sorted list: [begin, end).
-struct tile_range {
-    std::uint32_t begin, end;
-};
 
 /// The tiles of the Gaussians in the order of their depth: what the prefix sum runs over.
 struct gather_tiles {

@@ -4,80 +4,176 @@
 
 #include <warpagg/atomic.hpp>
 
-#include "bits.hpp"
-#include "patch.hpp"
+#include "list_reader.hpp"
 #include "project_backward.hpp"
 
 namespace gs::raster {
 
+/// What the backward blending reads beside the lists: what the forward one came to, and what comes back.
+template <class Real>
+struct blended {
+    glm::vec<3, Real> background;
+    const Real* picture;        ///< three planes
+    const Real* transmittance;  ///< and what else `blend_forward` writes
+    const std::uint32_t* last;
+    Real* checkpoints;
+    const Real* gradient;  ///< dL/dpicture: three planes
+};
+
 /// The gradient of `blend_forward`: back to front over what each pixel saw, T recovered by division, nine
 /// sums a Gaussian (see `sum`) handed to `warp_reduce_atomic` with `Policy`. With g = dL/dC and B_i the
 /// colour behind splat i per unit of transmittance, background included, dL/dalpha_i = T_i g (c_i - B_i): one
-/// scalar g B is carried instead of three channels, and nothing is divided by 1 - alpha but T. `AskFirst`:
-/// skip what no pixel of the patch sees before any of it is computed (the paper, Figure 8).
-template <class Real, class Policy, bool AskFirst>
+/// scalar g B is carried instead of three channels, and nothing is divided by 1 - alpha but T. A lane's
+/// pixels lie in a column, where u is the same: it is multiplied into the sums once. `Split`: one warp a
+/// patch and segment, else one a patch. `AskFirst`: skip what no pixel of the patch sees before any of it is
+/// computed (the paper, Figure 8).
+template <class Real, class Cut, bool Split, class Policy, bool AskFirst>
 struct blend_backward {
-    const splat<Real>* splats;
-    const std::uint32_t* gaussian_of;
-    const tile_range* ranges;
-    unsigned tiles_across;
-    int width, height;
-    glm::vec<3, Real> background;
-    const Real* transmittance;
-    const std::uint32_t* last;
-    const Real* gradient;  ///< dL/dC: three planes
+    using policy = Policy;
+
+    tile_lists<Real> lists;
+    blended<Real> view;
+    const std::uint32_t* tile_of_segment;  ///< see `number_segments`
 
     Real* sums;  ///< `record_stride` a Gaussian, added to
 
     template <class W>
-    WARPAGG_HD void operator()(const W& w, unsigned warp_index) const {
+    static std::size_t warps(std::size_t tiles, std::size_t segments) {
+        return (Split ? segments : tiles) * patch<W, Real, Cut>::per_tile;
+    }
+    template <class W>
+    using scratch = splat_stage<W, Real>;
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned warp_index, splat_stage<W, Real>& stage) const {
+        using patch = raster::patch<W, Real, Cut>;
+        const unsigned unit = warp_index / patch::per_tile, in_tile = warp_index % patch::per_tile;
+        if constexpr (Split) {
+            const std::uint32_t after = tile_of_segment[unit];
+            if (after == 0) return;
+            const std::uint32_t tile = after - 1;
+            const tile_range r = lists.ranges[tile];
+            const unsigned first = (unit - tile) * Cut::segment;
+            walk<W, patch>(w, stage, tile, in_tile, r.begin, warpagg::math::max(r.begin, first),
+                           warpagg::math::min(r.end, first + Cut::segment));
+        } else {
+            const tile_range r = lists.ranges[unit];
+            walk<W, patch>(w, stage, unit, in_tile, r.begin, r.begin, r.end);
+        }
+    }
+
+  private:
+    /// A pixel on its way to the front.
+    template <class real>
+    struct pixel_state {
+        real g[3];
+        real T, behind;
+    };
+
+    /// Over the places [from, to) of a tile's list, which begins at `begin`.
+    template <class W, class Patch>
+    WARPAGG_HD void walk(const W& w, splat_stage<W, Real>& stage, unsigned tile, unsigned in_tile,
+                         unsigned begin, unsigned from, unsigned to) const {
         using real = value_t<W, Real>;
-        const patch<W, Real> p(w, warp_index, tiles_across, width, height);
-        const tile_range range = ranges[p.tile];
-        const auto plane = static_cast<unsigned>(width * height);
+        constexpr unsigned rows = Cut::rows;
+        const Patch p(w, tile, in_tile, lists.tiles_across, lists.width, lists.height);
+        value_t<W, unsigned> end[rows];  // the rank of the last splat that counted
+        mask_t<W> lives[rows];
+        for (unsigned k = 0; k < rows; ++k) end[k] = w.load(view.last, p.pixel + k * p.step, p.inside[k]);
+        const auto some_pass = [&](unsigned place) {
+            for (unsigned k = 0; k < rows; ++k) lives[k] = end[k] > place - begin;
+            return w.any(any_of(lives));
+        };
+        if (!some_pass(from)) return;
+        pixel_state<real> pixels[rows];
+        begin_pixels(w, p, tile, in_tile, to - begin, to / Cut::segment, end, pixels);
 
-        const real g0 = w.load(gradient, p.pixel, p.inside);
-        const real g1 = w.load(gradient, p.pixel + plane, p.inside);
-        const real g2 = w.load(gradient, p.pixel + 2 * plane, p.inside);
-        real T = w.load(transmittance, p.pixel, p.inside);
-        real behind = g0 * background[0] + g1 * background[1] + g2 * background[2];
-        const value_t<W, unsigned> end = w.load(last, p.pixel, p.inside);
+        // What lies behind the last splat that counted for any pixel need not be read.
+        unsigned base = (to - 1) - (to - 1) % W::size;
+        while (base > from && !some_pass(base)) base -= W::size;
+        list_reader<W, Real, Patch> reader(w, lists, p, begin, from, to, stage, base, base - W::size);
+        for (;; base -= W::size) {
+            for (unsigned i = reader.stage(w, base, base - W::size, base - 2 * W::size); i-- > 0;)
+                add_splat(w, p, stage.splats[i], stage.ranks[i], end, pixels,
+                          stage.gaussians[i] * record_stride);
+            if (base <= from) break;
+        }
+    }
 
-        const unsigned length = range.end - range.begin;
-        for (unsigned batch = (length + W::size - 1) / W::size; batch-- > 0;) {
-            const unsigned base = range.begin + batch * W::size;
-            if (!w.any(end > batch * W::size)) continue;
-            std::uint32_t hits = p.reached_by(w, splats, gaussian_of, base, range.end);
-            while (hits != 0) {
-                const unsigned bit = highest_bit(hits);
-                hits ^= 1u << bit;
-                const std::uint32_t gaussian = gaussian_of[base + bit];
-                const splat<Real>& s = splats[gaussian];
-                const coverage<W, Real> seen(s, p);
-                const mask_t<W> counts = seen.hit && end > batch * W::size + bit;
-                if constexpr (AskFirst) {
-                    if (warpagg::skip_if_warp_idle(w, counts)) continue;
-                }
-
-                T = select(counts, T / (Real(1) - seen.alpha), T);
-                const real weight = seen.alpha * T;
-                const real own = g0 * s.red + g1 * s.green + g2 * s.blue;
-                const real ds = select(seen.free, weight * (own - behind), real(0));
-                behind = select(counts, fma(seen.alpha, own - behind, behind), behind);
-                const real dsu = ds * seen.at.u, dsv = ds * seen.at.v;
-                real values[sum_count];
-                values[sum_red] = weight * g0;
-                values[sum_green] = weight * g1;
-                values[sum_blue] = weight * g2;
-                values[sum_s] = ds;
-                values[sum_su] = dsu;
-                values[sum_sv] = dsv;
-                values[sum_suu] = dsu * seen.at.u;
-                values[sum_suv] = dsu * seen.at.v;
-                values[sum_svv] = dsv * seen.at.v;
-                warpagg::warp_reduce_atomic(w, sums + gaussian * record_stride, values, counts, Policy{});
+    /// The pixels as they are behind the splat of rank `to`, where block `next` of the list begins.
+    template <class W, class Patch, class real, class ends>
+    WARPAGG_HD void begin_pixels(const W& w, const Patch& p, unsigned tile, unsigned in_tile, unsigned to,
+                                 unsigned next, const ends& end,
+                                 pixel_state<real> (&pixels)[Cut::rows]) const {
+        const auto plane = static_cast<unsigned>(lists.width * lists.height);
+        for (unsigned k = 0; k < Cut::rows; ++k) {
+            const auto at = p.pixel + k * p.step;
+            auto& [g, T, behind] = pixels[k];
+            for (unsigned c = 0; c < 3; ++c) g[c] = w.load(view.gradient, at + c * plane, p.inside[k]);
+            T = w.load(view.transmittance, at, p.inside[k]);
+            behind = g[0] * view.background[0] + g[1] * view.background[1] + g[2] * view.background[2];
+            if constexpr (Split) {
+                const mask_t<W> later = end[k] > to;
+                if (!w.any(later)) continue;
+                real front[4];
+                checkpoint<W, Real, Patch>(view.checkpoints, tile + next, in_tile).load(w, k, front);
+                real rest(0);
+                for (unsigned c = 0; c < 3; ++c)
+                    rest = fma(g[c], w.load(view.picture, at + c * plane, p.inside[k]) - front[c + 1], rest);
+                T = select(later, front[0], T);
+                behind = select(later, rest / front[0], behind);
             }
         }
+    }
+
+    template <class W, class Patch, class real, class ends>
+    WARPAGG_HD void add_splat(const W& w, const Patch& p, const staged_splat<Real>& s, unsigned rank,
+                              const ends& end, pixel_state<real> (&pixels)[Cut::rows],
+                              unsigned record) const {
+        constexpr unsigned rows = Cut::rows;
+        const column_view<W, Real> seen(s, p.x);
+        real v[rows], strength[rows];
+        mask_t<W> counts[rows];
+        for (unsigned k = 0; k < rows; ++k) {
+            v[k] = seen.v(p.y + Real(k * Patch::block));
+            strength[k] = seen.strength(v[k]);
+            counts[k] = is_hit(strength[k]) && end[k] >= rank;
+        }
+        const mask_t<W> active = any_of(counts);
+        if constexpr (AskFirst) {
+            if (warpagg::skip_if_warp_idle(w, active)) return;
+        }
+
+        // red, green, blue, s, s v, s v^2
+        real sum[6];
+        WARPAGG_UNROLL
+        for (unsigned k = 0; k < rows; ++k) {
+            auto& [g, T, behind] = pixels[k];
+            const capped_alpha<W, Real> capped(strength[k]);
+            const real alpha = select(counts[k], capped.alpha, real(0));
+            T = warpagg::math::divide(T, Real(1) - alpha);
+            const real weight = alpha * T;
+            const real own = fma(g[0], real(s.red), fma(g[1], real(s.green), g[2] * s.blue));
+            const real ds = select(capped.free, weight * (own - behind), real(0));
+            behind = fma(alpha, own - behind, behind);
+            const real dsv = ds * v[k];
+            const real terms[] = {weight * g[0], weight * g[1], weight * g[2], ds, dsv, dsv * v[k]};
+            WARPAGG_UNROLL
+            for (unsigned i = 0; i < 6; ++i) sum[i] = k == 0 ? terms[i] : sum[i] + terms[i];
+        }
+        real values[sum_count];
+        values[sum_red] = sum[0];
+        values[sum_green] = sum[1];
+        values[sum_blue] = sum[2];
+        values[sum_s] = sum[3];
+        values[sum_su] = seen.u * sum[3];
+        values[sum_sv] = sum[4];
+        values[sum_suu] = seen.u * values[sum_su];
+        values[sum_suv] = seen.u * sum[4];
+        values[sum_svv] = sum[5];
+        // Lanes that see nothing of it add zeros: several pixels a lane are masked already, by their alpha.
+        const mask_t<W> who = rows > 1 ? mask_t<W>(true) : active;
+        const auto to = [this, record](unsigned i) { return sums + (record + i); };
+        warpagg::warp_reduce_atomic(w, to, values, who, Policy{});
     }
 };
 

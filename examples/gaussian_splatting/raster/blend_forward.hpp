@@ -4,73 +4,101 @@
 
 #include <warpagg/atomic.hpp>
 
-#include "patch.hpp"
+#include "list_reader.hpp"
 
 namespace gs::raster {
 
 /// Front to back over each tile's list: C = sum c_i alpha_i T_i + T b, T_i = prod (1 - alpha_j) (Kerbl et al.
 /// 2023, equation 3). One warp a patch. A pixel ends where a splat would bring T below `least_transmittance`.
-template <class Real>
+template <class Real, class Cut>
 struct blend_forward {
-    const splat<Real>* splats;
-    const std::uint32_t* gaussian_of;
-    const tile_range* ranges;
-    unsigned tiles_across;
-    int width, height;
+    tile_lists<Real> lists;
     glm::vec<3, Real> background;
 
     Real* picture;              ///< three planes
     Real* transmittance;        ///< what is left behind the last splat
     std::uint32_t* last;        ///< one past the place, in the tile's list, of the last splat that counted
+    Real* checkpoints;          ///< by segment: see there
     unsigned long long* pairs;  ///< pixel-Gaussian pairs that were evaluated, added to
 
     template <class W>
-    WARPAGG_HD void operator()(const W& w, unsigned warp_index) const {
+    static std::size_t warps(std::size_t tiles) {
+        return tiles * patch<W, Real, Cut>::per_tile;
+    }
+    template <class W>
+    using scratch = splat_stage<W, Real>;
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned warp_index, splat_stage<W, Real>& stage) const {
         using real = value_t<W, Real>;
-        const patch<W, Real> p(w, warp_index, tiles_across, width, height);
-        const tile_range range = ranges[p.tile];
+        constexpr unsigned rows = Cut::rows;
+        using patch = raster::patch<W, Real, Cut>;
+        const unsigned tile = warp_index / patch::per_tile, in_tile = warp_index % patch::per_tile;
+        const patch p(w, tile, in_tile, lists.tiles_across, lists.width, lists.height);
+        const tile_range range = lists.ranges[tile];
 
-        real T(1), red(0), green(0), blue(0);
-        value_t<W, unsigned> end(0u);
-        mask_t<W> alive = p.inside;
+        real state[rows][4];  // T, negative once the pixel has ended, and the colour so far
+        value_t<W, unsigned> end[rows];
+        for (unsigned k = 0; k < rows; ++k) {
+            state[k][0] = select(p.inside[k], real(1), real(-1));
+            state[k][1] = state[k][2] = state[k][3] = real(0);
+            end[k] = value_t<W, unsigned>(0u);
+        }
         unsigned walked = 0;
-        for (unsigned base = range.begin; base < range.end && w.any(alive); base += W::size) {
-            std::uint32_t hits = p.reached_by(w, splats, gaussian_of, base, range.end);
-            for (; hits != 0; hits &= hits - 1, ++walked) {
-                const unsigned place = base + warpagg::math::countr_zero(hits);
-                const splat<Real>& s = splats[gaussian_of[place]];
-                const coverage<W, Real> seen(s, p);
-                const real behind = T * (Real(1) - seen.alpha);
-                const mask_t<W> reaches = alive && seen.hit;
-                const mask_t<W> ends = reaches && behind < real(Real(least_transmittance));
-                const mask_t<W> counts = reaches && !ends;
-                const real weight = select(counts, seen.alpha * T, real(0));
-                red = fma(weight, real(s.red), red);
-                green = fma(weight, real(s.green), green);
-                blue = fma(weight, real(s.blue), blue);
-                T = select(counts, behind, T);
-                end = select(counts, value_t<W, unsigned>(place + 1 - range.begin), end);
-                alive = alive && !ends;
+        const unsigned first = range.begin - range.begin % W::size;
+        list_reader<W, Real, patch> reader(w, lists, p, range.begin, range.begin, range.end, stage, first,
+                                           first + W::size);
+        for (unsigned base = first; base < range.end; base += W::size) {
+            mask_t<W> alive[rows];
+            for (unsigned k = 0; k < rows; ++k) alive[k] = state[k][0] > real(0);
+            if (!w.any(any_of(alive))) break;
+            if (base % Cut::segment == 0 && base > range.begin)
+                for (unsigned k = 0; k < rows; ++k)
+                    checkpoint<W, Real, patch>(checkpoints, tile + base / Cut::segment, in_tile)
+                        .store(w, k, state[k]);
+            const unsigned staged = reader.stage(w, base, base + W::size, base + 2 * W::size);
+            walked += staged;
+            for (unsigned i = 0; i < staged; ++i) {
+                const staged_splat<Real>& s = stage.splats[i];
+                const value_t<W, unsigned> rank(stage.ranks[i]);
+                const column_view<W, Real> seen(s, p.x);
+                WARPAGG_UNROLL
+                for (unsigned k = 0; k < rows; ++k) {
+                    const real strength = seen.strength(seen.v(p.y + Real(k * patch::block)));
+                    const mask_t<W> hit = is_hit(strength);
+                    const real alpha = capped_alpha<W, Real>(strength).alpha;
+                    real& T = state[k][0];
+                    const real behind = fma(-alpha, T, T);
+                    const mask_t<W> counts = hit && behind >= real(Real(least_transmittance));
+                    const real weight = select(counts, alpha, real(0)) * T;
+                    state[k][1] = fma(weight, real(s.red), state[k][1]);
+                    state[k][2] = fma(weight, real(s.green), state[k][2]);
+                    state[k][3] = fma(weight, real(s.blue), state[k][3]);
+                    T = select(counts, behind, select(hit, -warpagg::math::abs(T), T));
+                    end[k] = select(counts, rank, end[k]);
+                }
             }
         }
 
-        const auto plane = static_cast<unsigned>(width * height);
-        w.store(picture, p.pixel, fma(T, real(background[0]), red), p.inside);
-        w.store(picture, p.pixel + plane, fma(T, real(background[1]), green), p.inside);
-        w.store(picture, p.pixel + 2 * plane, fma(T, real(background[2]), blue), p.inside);
-        w.store(transmittance, p.pixel, T, p.inside);
-        w.store(last, p.pixel, end, p.inside);
-        add_pairs(w, walked);
+        const auto plane = static_cast<unsigned>(lists.width * lists.height);
+        for (unsigned k = 0; k < rows; ++k) {
+            const auto pixel = p.pixel + k * p.step;
+            const real T = warpagg::math::abs(state[k][0]);
+            for (unsigned c = 0; c < 3; ++c)
+                w.store(picture, pixel + c * plane,
+                        fma(T, real(background[static_cast<int>(c)]), state[k][c + 1]), p.inside[k]);
+            w.store(transmittance, pixel, T, p.inside[k]);
+            w.store(last, pixel, end[k], p.inside[k]);
+        }
+        add_pairs(w, walked * rows * W::size);
     }
 
   private:
     template <class W>
-    WARPAGG_HD void add_pairs(const W& w, unsigned walked) const {
+    WARPAGG_HD void add_pairs(const W& w, unsigned evaluated) const {
         unsigned long long* to = pairs;
         w.atomic(
             warpagg::operation::sum{}, [to](unsigned) { return to; }, value_t<W, unsigned>(0u),
-            value_t<W, unsigned long long>(static_cast<unsigned long long>(walked) * W::size),
-            w.lane() == 0u);
+            value_t<W, unsigned long long>(evaluated), w.lane() == 0u);
     }
 };
 

@@ -7,15 +7,17 @@
 
 namespace gs {
 
-/// How the backward blending adds up its gradients: compiled variants of one kernel.
+/// How the backward blending adds up its gradients: compiled variants of one kernel. Each step down the
+/// ladder changes one thing.
 enum class gradient_policy {
-    per_lane,     ///< the original: every pixel its own atomics
+    per_lane,     ///< the original: a pixel a lane, every pixel its own atomics
     reduce,       ///< the paper, Figure 7: shuffles and lane 0, idle warps included
     reduce_skip,  ///< the paper, Figure 8: the same, idle warps skipped
-    scatter       ///< ours: reduce-scatter and one contiguous atomic instruction
+    scatter,      ///< ours: reduce-scatter and one contiguous atomic instruction
+    split         ///< and several pixels a lane, long lists split over warps
 };
 
-inline constexpr std::array<std::string_view, 4> gradient_policy_names{"per-lane", "reduce", "reduce-skip",
-                                                                       "scatter"};
+inline constexpr std::array<std::string_view, 5> gradient_policy_names{"per-lane", "reduce", "reduce-skip",
+                                                                       "scatter", "split"};
 
 }  // namespace gs

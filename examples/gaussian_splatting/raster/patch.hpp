@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "bin.hpp"
 #include "geometry.hpp"
-#include "splat.hpp"
+#include "segments.hpp"
+#include "tile_lists.hpp"
 
 namespace gs::raster {
 
@@ -13,67 +13,67 @@ using warpagg::value_t;
 using warpagg::math::fma;
 using warpagg::math::select;
 
-/// The pixels that a warp owns, one a lane: 8 × 4 for 32 lanes, one for one. A tile is cut into patches.
-template <class W, class Real>
+/// The pixels that a warp owns: blocks of one pixel a lane, one below the other, so that a lane's pixels lie
+/// in one column. A tile is cut into patches.
+template <class W, class Real, class Cut>
 struct patch {
-    static constexpr unsigned across = W::size == 32 ? 8 : 1, down = W::size / across;
-    static_assert(across * down == W::size);
+    static constexpr unsigned across = Cut::across, rows = Cut::rows, block = W::size / across,
+                              down = block * rows;
+    static_assert(W::size % across == 0 && tile_size % across == 0 && tile_size % down == 0);
     static constexpr unsigned per_row = tile_size / across, per_tile = per_row * (tile_size / down);
 
-    unsigned tile;
-    Real left, top;              ///< centre of the first pixel
-    value_t<W, Real> x, y;       ///< centre of the lane's pixel
+    Real tile_left, tile_top;    ///< centre of the tile's first pixel
+    Real left, top;              ///< centre of the patch's first pixel
+    value_t<W, Real> x, y;       ///< the lane's first pixel, from the tile's
     value_t<W, unsigned> pixel;  ///< its place in a plane of the picture
-    mask_t<W> inside;            ///< it is in the picture
+    unsigned step;               ///< from one pixel of the lane to its next
+    mask_t<W> inside[rows];      ///< they are in the picture
 
-    WARPAGG_HD patch(const W& w, unsigned warp_index, unsigned tiles_across, int width, int height)
-        : tile(warp_index / per_tile) {
-        const unsigned in_tile = warp_index % per_tile;
-        const unsigned x0 = tile % tiles_across * tile_size + in_tile % per_row * across;
-        const unsigned y0 = tile / tiles_across * tile_size + in_tile / per_row * down;
-        const value_t<W, unsigned> column = w.lane() % across + x0, row = w.lane() / across + y0;
-        left = Real(x0) + Real(0.5);
-        top = Real(y0) + Real(0.5);
-        x = warpagg::math::convert<Real>(column) + Real(0.5);
-        y = warpagg::math::convert<Real>(row) + Real(0.5);
+    WARPAGG_HD patch(const W& w, unsigned tile, unsigned in_tile, unsigned tiles_across, int width,
+                     int height)
+        : step(block * static_cast<unsigned>(width)) {
+        const unsigned tile_x = tile % tiles_across * tile_size, tile_y = tile / tiles_across * tile_size;
+        const unsigned x0 = in_tile % per_row * across, y0 = in_tile / per_row * down;
+        const value_t<W, unsigned> in_x = w.lane() % across + x0, in_y = w.lane() / across + y0;
+        const value_t<W, unsigned> column = in_x + tile_x, row = in_y + tile_y;
+        tile_left = Real(tile_x) + Real(0.5);
+        tile_top = Real(tile_y) + Real(0.5);
+        left = tile_left + Real(x0);
+        top = tile_top + Real(y0);
+        x = warpagg::math::convert<Real>(in_x);
+        y = warpagg::math::convert<Real>(in_y);
         pixel = row * static_cast<unsigned>(width) + column;
-        inside = column < static_cast<unsigned>(width) && row < static_cast<unsigned>(height);
-    }
-
-    /// Which of W::size instances from `base` on reach the patch: bit i stands for instance base + i. Each
-    /// lane asks for one.
-    WARPAGG_HD std::uint32_t reached_by(const W& w, const splat<Real>* splats,
-                                        const std::uint32_t* gaussian_of, unsigned base, unsigned end) const {
-        using real = value_t<W, Real>;
-        constexpr unsigned stride = sizeof(splat<Real>) / sizeof(Real);
-        const auto place = w.lane() + base;
-        const mask_t<W> valid = place < end;
-        const value_t<W, unsigned> first = w.load(gaussian_of, place, valid) * stride;
-        const auto field = [&](unsigned i) {
-            return w.load(reinterpret_cast<const Real*>(splats), first + i, valid);
-        };
-        const real x0 = left - field(0), y0 = top - field(1), reach = field(2);
-        const real least = least_exponent<real>(field(4), field(5), field(6), field(11), field(7), x0,
-                                                x0 + Real(across - 1), y0, y0 + Real(down - 1));
-        return w.ballot(valid && least <= reach);
+        for (unsigned k = 0; k < rows; ++k)
+            inside[k] =
+                column < static_cast<unsigned>(width) && row + k * block < static_cast<unsigned>(height);
     }
 };
 
-/// What one pixel sees of a splat.
-template <class W, class Real>
-struct coverage {
-    whitened<value_t<W, Real>> at;
-    value_t<W, Real> alpha;
-    mask_t<W> hit;   ///< alpha is at least `least_alpha`
-    mask_t<W> free;  ///< alpha is not capped, so that geometry and opacity move it
+/// Alpha is at least `least_alpha`.
+template <class V>
+WARPAGG_HD auto is_hit(const V& strength) {
+    constexpr double log2_least_alpha = -7.994353436858858;
+    return strength >= V(typename warpagg::detail::scalar_of<V>::type(log2_least_alpha));
+}
 
-    WARPAGG_HD coverage(const splat<Real>& s, const patch<W, Real>& p)
-        : at(s.p, s.q, s.r, p.x - s.x, p.y - s.y) {
-        const value_t<W, Real> sigma = at.exponent();
-        hit = sigma <= value_t<W, Real>(s.reach);
-        const value_t<W, Real> full = s.opacity * warpagg::math::exp2(-sigma);
-        free = full < value_t<W, Real>(Real(most_alpha));
-        alpha = warpagg::math::min(full, value_t<W, Real>(Real(most_alpha)));
+/// Some pixel of the lane.
+template <class Mask, unsigned Rows>
+WARPAGG_HD Mask any_of(const Mask (&masks)[Rows]) {
+    Mask any = masks[0];
+    for (unsigned k = 1; k < Rows; ++k) any = any || masks[k];
+    return any;
+}
+
+/// `free`: alpha is not capped, so that geometry and opacity move it.
+template <class W, class Real>
+struct capped_alpha {
+    value_t<W, Real> alpha;
+    mask_t<W> free;
+
+    WARPAGG_HD explicit capped_alpha(const value_t<W, Real>& strength) {
+        const value_t<W, Real> most{Real(most_alpha)}, full = warpagg::math::exp2(strength);
+        free = full < most;
+        alpha = warpagg::math::min(full, most);
     }
 };
 

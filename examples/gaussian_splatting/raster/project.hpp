@@ -55,8 +55,9 @@ struct project {
         const footprint<Real> f = see(gaussians, i, camera);
         if (!f.drawable || !is_finite(gaussians.opacity[i])) return;
         splat<Real> s{};
-        s.opacity = sigmoid(gaussians.opacity[i]);
-        s.reach = glm::log2(s.opacity * Real(1 / least_alpha));
+        const Real opacity = sigmoid(gaussians.opacity[i]);
+        s.strength = glm::log2(opacity);
+        s.reach = glm::log2(opacity * Real(1 / least_alpha));
         if (!(s.reach > 0)) return;
         s.x = f.x;
         s.y = f.y;

@@ -20,11 +20,12 @@ namespace gs::raster {
 
 /// Gaussians to a picture and, from dL/dpicture, to the gradients of their parameters. Holds what lies in
 /// between.
-template <class Device, class Real>
+template <class Device, class Real, class Cut = cut_for<typename Device::warp>>
 class renderer {
   public:
     template <class T>
     using buffer = typename Device::template buffer<T>;
+    using warp = typename Device::warp;
     using model = parameter_arrays<const Real>;
 
     explicit renderer(Device& device) : device_(device) { device_.zero(reserve(pairs_, 1).data(), 1); }
@@ -66,14 +67,11 @@ class renderer {
         picture_.resize(3 * pixels);
         transmittance_.resize(pixels);
         last_.resize(pixels);
-        blend_forward<Real> blend{splats_.data(),     gaussian_of_.data(), ranges_.data(),
-                                  tiles_across_,      view.width,          view.height,
-                                  colour(background), picture_.data(),     transmittance_.data(),
-                                  last_.data(),       pairs_.data()};
-        device_.for_each_warp(warps(), blend);
+        checkpoints_.resize(segments() * checkpoint_values);
+        camera_ = for_device<Real>(view);
+        blend_forward_by<Cut>(background);
         count_ = count;
         gaussians_ = gaussians;
-        camera_ = for_device<Real>(view);
         sh_degree_ = sh_degree;
         background_ = background;
     }
@@ -82,20 +80,27 @@ class renderer {
     void backward(const Real* picture_gradient, gradient_policy policy,
                   const parameter_arrays<Real>& gradients, visibility* seen) {
         using device::stage;
-        device_.begin(stage::blend_backward);
-        reserve(sums_, count_ * record_stride);
-        device_.zero(sums_.data(), sums_.size());
-        with_policy(policy, [&](auto tags, auto ask_first) {
-            device_.for_each_warp(
-                warps(), blend_backward<Real, decltype(tags), ask_first.value>{
-                             splats_.data(), gaussian_of_.data(), ranges_.data(), tiles_across_,
-                             camera_.width, camera_.height, colour(background_), transmittance_.data(),
-                             last_.data(), picture_gradient, sums_.data()});
-        });
+        with_policy<Real, Cut>(policy, [&](auto kernel) { blend_backward_by(kernel, picture_gradient); });
         device_.begin(stage::project_backward);
         device_.for_each_index(
             count_, project_backward<Real>{gaussians_, camera_, sh_degree_, splats_.data(), tiles_.data(),
                                            sums_.data(), gradients, seen, room()});
+    }
+
+    /// The blending's part of `backward` by this kernel, which is filled in. Returns its sums: see
+    /// `project_backward`.
+    template <class Kernel>
+    const buffer<Real>& blend_backward_by(Kernel kernel, const Real* picture_gradient) {
+        reserve(sums_, count_ * record_stride);
+        device_.zero(sums_.data(), sums_.size());
+        device_.begin(device::stage::blend_backward);
+        kernel.lists = lists();
+        kernel.view = {colour(background_), picture_.data(),     transmittance_.data(),
+                       last_.data(),        checkpoints_.data(), picture_gradient};
+        kernel.tile_of_segment = tile_of_segment_.data();
+        kernel.sums = sums_.data();
+        device_.for_each_warp(kernel.template warps<warp>(tiles(), segments()), kernel);
+        return sums_;
     }
 
     const Real* picture() const { return picture_.data(); }
@@ -112,7 +117,26 @@ class renderer {
     }
 
     std::size_t tiles() const { return std::size_t{tiles_across_} * tiles_down_; }
-    std::size_t warps() const { return tiles() * patch<typename Device::warp, Real>::per_tile; }
+    /// Patches of a pixel a lane are shorter work: they are taken where higher ones would leave the device
+    /// idle.
+    template <class Shape>
+    void blend_forward_by(const std::array<float, 3>& background) {
+        using shorter = pixel_a_lane<Shape>;
+        const blend_forward<Real, Shape> blend{
+            lists(),      colour(background),  picture_.data(), transmittance_.data(),
+            last_.data(), checkpoints_.data(), pairs_.data()};
+        const std::size_t n = blend.template warps<warp>(tiles());
+        if constexpr (!std::is_same_v<Shape, shorter>) {
+            if (n < device_.resident_warps()) return blend_forward_by<shorter>(background);
+        }
+        device_.for_each_warp(n, blend);
+    }
+
+    std::size_t segments() const { return most_segments<Cut>(tiles(), capacity_); }
+    tile_lists<Real> lists() const {
+        return {splats_.data(), gaussian_of_.data(), ranges_.data(),
+                tiles_across_,  camera_.width,       camera_.height};
+    }
 
     void project_all(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         // Places in the three planes of a picture are numbers of 31 bits.
@@ -145,6 +169,8 @@ class renderer {
         device_.sort_pairs(tile_of_, gaussian_of_, capacity_, static_cast<int>(std::bit_width(no_tile)));
         device_.zero(reserve(ranges_, tiles()).data(), tiles());
         device_.for_each_index(capacity_, find_ranges{tile_of_.data(), capacity_, no_tile, ranges_.data()});
+        device_.zero(reserve(tile_of_segment_, segments()).data(), segments());
+        device_.for_each_index(tiles(), number_segments<Cut>{ranges_.data(), tile_of_segment_.data()});
     }
 
     static vec3<Real> colour(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
@@ -156,8 +182,8 @@ class renderer {
     buffer<std::uint64_t> first_;
     buffer<std::uint32_t> tile_of_, gaussian_of_;
     buffer<tile_range> ranges_;
-    buffer<Real> picture_, transmittance_, sums_;
-    buffer<std::uint32_t> last_;
+    buffer<Real> picture_, transmittance_, checkpoints_, sums_;
+    buffer<std::uint32_t> last_, tile_of_segment_;
     buffer<unsigned long long> pairs_;
     std::uint64_t capacity_ = 0;
 

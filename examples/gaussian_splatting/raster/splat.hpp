@@ -8,18 +8,19 @@ namespace gs::raster {
 
 inline constexpr int tile_size = 16;  ///< pixels along a side of a tile, the unit of binning
 
-/// A Gaussian as the picture sees it. Its alpha at offset d from its centre is `opacity * 2^-(u^2 + v^2)`
-/// with u = p dx and v = q dy + r dx, and zero where the exponent exceeds `reach`, where alpha falls below
-/// `least_alpha`. As a sum of squares the exponent is never negative, however long and thin the splat is.
+/// A Gaussian as the picture sees it. Its alpha at offset d from its centre is 2^(strength - u^2 - v^2) with
+/// u = p dx and v = q dy + r dx, and zero where the exponent u^2 + v^2 exceeds `reach`, where alpha falls
+/// below `least_alpha`. As a sum of squares the exponent is never negative, however long and thin the splat
+/// is.
 template <class Real>
 struct alignas(16) splat {
-    Real x, y;   ///< pixels
-    Real reach;  ///< log2(opacity / least_alpha); zero or less draws nothing
-    Real opacity;
-    Real p, q, r;  ///< Cholesky factor of the inverse covariance over 2 ln 2
-    Real slope_y;  ///< the dy of least exponent at a given dx, over dx
+    // The first eight say which pixels it reaches.
+    Real x, y;              ///< pixels
+    Real p, q, r;           ///< Cholesky factor of the inverse covariance over 2 ln 2
+    Real slope_x, slope_y;  ///< the dx of least exponent at a given dy, over dy; and the other way round
+    Real reach;             ///< log2(opacity / least_alpha); zero or less draws nothing
+    Real strength;          ///< log2(opacity)
     Real red, green, blue;
-    Real slope_x;  ///< and the dx at a given dy, over dy
 };
 
 inline constexpr double least_alpha = 1.0 / 255;

@@ -24,7 +24,7 @@ struct step_plan {
     std::size_t view = 0;  ///< of the training views
     int sh_degree = 0;
     std::array<float, 3> background{};
-    gradient_policy gradient = gradient_policy::scatter;
+    gradient_policy gradient = gradient_policy::split;
     std::array<float, 8> rates{};  ///< of Adam, by `parameter`
     double ssim_weight = 0.2;
     bool watch = false;  ///< note what `densify` wants to know

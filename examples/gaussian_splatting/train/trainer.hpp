@@ -25,7 +25,7 @@ struct train_options {
     float densify_gradient = densify_rule{}.gradient;
     std::size_t max_cap = 0;  ///< most Gaussians
     std::uint64_t seed = 0;
-    gradient_policy gradient = gradient_policy::scatter;
+    gradient_policy gradient = gradient_policy::split;
     background_choice background;
     std::set<int> save_iterations;
     std::set<int> test_iterations;

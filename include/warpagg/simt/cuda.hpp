@@ -17,6 +17,12 @@ template <class T>
 using integer = std::conditional_t<sizeof(T) == 8,
                                    std::conditional_t<std::is_signed_v<T>, long long, unsigned long long>, T>;
 
+/// What one instruction loads or stores of 32-bit values, and two of 64-bit ones.
+template <class T>
+struct alignas(16) four {
+    T at[4];
+};
+
 template <class T>
 __device__ __forceinline__ void atomic(operation::sum, T* to, T v) {
     atomicAdd(reinterpret_cast<bits<T>*>(to), static_cast<bits<T>>(v));
@@ -91,6 +97,26 @@ struct warp {
     __device__ __forceinline__ T load(const T* from, unsigned index, bool active) const {
         return active ? from[index] : T{};
     }
+    template <class T, int N>
+    __device__ __forceinline__ void load_packed(const T* from, unsigned index, T (&v)[N], bool active) const {
+        static_assert(N % 4 == 0);
+#pragma unroll
+        for (int i = 0; i < N; i += 4) {
+            detail::four<T> f{};
+            if (active) f = *reinterpret_cast<const detail::four<T>*>(from + index + i);
+#pragma unroll
+            for (int k = 0; k < 4; ++k) v[i + k] = f.at[k];
+        }
+    }
+    template <class T, int N>
+    __device__ __forceinline__ void store_packed(T* to, unsigned index, const T (&v)[N], bool active) const {
+        static_assert(N % 4 == 0);
+        if (!active) return;
+#pragma unroll
+        for (int i = 0; i < N; i += 4)
+            *reinterpret_cast<detail::four<T>*>(to + index + i) = {{v[i], v[i + 1], v[i + 2], v[i + 3]}};
+    }
+    __device__ __forceinline__ void sync() const { __syncwarp(); }
     template <class T>
     __device__ __forceinline__ void store(T* to, unsigned index, T v, bool active) const {
         if (active) to[index] = v;

@@ -135,10 +135,21 @@ struct basic_lanes : Counting {
         }
         return r;
     }
+    template <class T, int N>
+    WARPAGG_HD void load_packed(const T* from, const value<unsigned>& index, value<T> (&v)[N],
+                                const mask& active) const {
+        for (unsigned k = 0; k < N; ++k) v[k] = load(from + k, index, active);
+    }
     template <class T>
     WARPAGG_HD void store(T* to, const value<unsigned>& index, const value<T>& v, const mask& active) const {
         for_each_lane(bits(active), [&](int lane) { to[index[lane]] = v[lane]; });
     }
+    template <class T, int N>
+    WARPAGG_HD void store_packed(T* to, const value<unsigned>& index, const value<T> (&v)[N],
+                                 const mask& active) const {
+        for (unsigned k = 0; k < N; ++k) store(to + k, index, v[k], active);
+    }
+    WARPAGG_HD void sync() const {}
     template <class T>
     WARPAGG_HD value<T> load_row(const T* from, std::ptrdiff_t first, const mask& active) const {
         value<T> r;

@@ -27,6 +27,11 @@ WARPAGG_HD double fma(double a, double b, double c) { return ::fma(a, b, c); }
 WARPAGG_HD float sqrt(float a) { return ::sqrtf(a); }
 WARPAGG_HD double sqrt(double a) { return ::sqrt(a); }
 /// @}
+/// Without the sign.
+/// @{
+WARPAGG_HD float abs(float a) { return ::fabsf(a); }
+WARPAGG_HD double abs(double a) { return ::fabs(a); }
+/// @}
 /// The lesser or the greater of two; the first if either is NaN.
 /// @{
 template <class T>
@@ -47,6 +52,22 @@ WARPAGG_HD float exp2(float a) {
 }
 /// 2^a.
 WARPAGG_HD double exp2(double a) { return ::exp2(a); }
+
+/// a / b. On CUDA the float version is the hardware's approximate reciprocal and one step of Newton's: within
+/// 1 ulp, a / a is 1. Precondition there: b, 1 / b and the quotient are normal numbers.
+/// @{
+WARPAGG_HD float divide(float a, float b) {
+#if defined(__CUDA_ARCH__)
+    float inverse;
+    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(b));
+    const float quotient = a * inverse;
+    return fma(fma(-quotient, b, a), inverse, quotient);
+#else
+    return a / b;
+#endif
+}
+WARPAGG_HD double divide(double a, double b) { return a / b; }
+/// @}
 
 /// Lane-wise conversion.
 template <class To, class From>

@@ -39,10 +39,19 @@ struct serial {
     T load(const T* from, unsigned index, bool active) const {
         return active ? from[index] : T{};
     }
+    template <class T, int N>
+    void load_packed(const T* from, unsigned index, T (&v)[N], bool active) const {
+        for (unsigned k = 0; k < N; ++k) v[k] = load(from, index + k, active);
+    }
     template <class T>
     void store(T* to, unsigned index, T v, bool active) const {
         if (active) to[index] = v;
     }
+    template <class T, int N>
+    void store_packed(T* to, unsigned index, const T (&v)[N], bool active) const {
+        for (unsigned k = 0; k < N; ++k) store(to, index + k, v[k], active);
+    }
+    void sync() const {}
     template <class T>
     T load_row(const T* from, std::ptrdiff_t first, bool active) const {
         return active ? from[first] : T{};

@@ -264,6 +264,15 @@ WARPAGG_HD lanes<T, L> sqrt(const lanes<T, L>& a) {
     return r;
 }
 
+template <class T, int L>
+WARPAGG_HD lanes<T, L> abs(const lanes<T, L>& a) {
+    return max(a, -a);
+}
+template <class T, int L>
+WARPAGG_HD lanes<T, L> divide(const lanes<T, L>& a, const lanes<T, L>& b) {
+    return a / b;
+}
+
 template <class To, class From, int L>
 WARPAGG_HD lanes<To, L> convert(const lanes<From, L>& a) {
     lanes<To, L> r;
@@ -356,8 +365,10 @@ WARPAGG_HD T uniform(const lanes<T, L>& a) {
 /// Beside the scalar ones, for masked code that names them in full. Unqualified calls find them by their
 /// arguments.
 namespace math {
+using warpagg::abs;
 using warpagg::convert;
 using warpagg::countr_zero;
+using warpagg::divide;
 using warpagg::exp2;
 using warpagg::fma;
 using warpagg::max;

@@ -34,13 +34,16 @@ using mask_t = value_t<W, bool>;
 /// | `shfl_down(v, d)` | v of the lane d further; lanes past the end keep their own |
 /// | `shfl_xor(v, d)` | v of the lane whose number differs in the bits of d |
 /// | `load(p, i, active)` | `p[i]` per active lane; inactive lanes read nothing and get T{}; i < 2^31 |
+/// | `load_packed(p, i, v, active)` | `v[k] = p[i + k]`, k < 4 K; `p + i` is aligned to 4 values |
 /// | `store(p, i, v, active)` | `p[i] = v` per active lane |
+/// | `store_packed(p, i, v, active)` | `p[i + k] = v[k]`, likewise |
 /// | `load_row(p, i, active)` | `p[i + lane]` per active lane; `i` is uniform and may be negative |
 /// | `store_row(p, i, v, active)` | `p[i + lane] = v` per active lane |
+/// | `sync()` | what any lane wrote before, every lane reads after |
 /// | `atomic(op, dst, i, v, active)` | per active lane, `*dst(i) = op::combine(*dst(i), v)`, relaxed |
 template <class W>
 concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i, mask_t<W> p, float* m,
-                        float* (*dst)(unsigned)) {
+                        value_t<W, float> (&packed)[4], float* (*dst)(unsigned)) {
     { W::size } -> std::convertible_to<unsigned>;
     { w.lane() } -> std::same_as<value_t<W, unsigned>>;
     { w.ballot(p) } -> std::same_as<std::uint32_t>;
@@ -51,9 +54,12 @@ concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i,
     { w.shfl_down(v, 1u) } -> std::same_as<value_t<W, float>>;
     { w.shfl_xor(v, 1u) } -> std::same_as<value_t<W, float>>;
     { w.load(m, i, p) } -> std::same_as<value_t<W, float>>;
+    w.load_packed(m, i, packed, p);
     w.store(m, i, v, p);
+    w.store_packed(m, i, packed, p);
     { w.load_row(m, std::ptrdiff_t{}, p) } -> std::same_as<value_t<W, float>>;
     w.store_row(m, std::ptrdiff_t{}, v, p);
+    w.sync();
     w.atomic(operation::sum{}, dst, i, v, p);
 };
 

@@ -141,10 +141,22 @@ class checked {
     T load(const T* from, unsigned index, bool active, call_site at = call_site::here("load")) const {
         return active ? read(from + index, at) : T{};
     }
+    template <class T, int N>
+    void load_packed(const T* from, unsigned index, T (&v)[N], bool active,
+                     call_site at = call_site::here("load_packed")) const {
+        for (unsigned k = 0; k < N; ++k) v[k] = active ? read(from + index + k, at) : T{};
+    }
     template <class T>
     void store(T* to, unsigned index, T v, bool active, call_site at = call_site::here("store")) const {
         if (active) write(to + index, v, at);
     }
+    template <class T, int N>
+    void store_packed(T* to, unsigned index, const T (&v)[N], bool active,
+                      call_site at = call_site::here("store_packed")) const {
+        for (unsigned k = 0; k < N; ++k)
+            if (active) write(to + index + k, v[k], at);
+    }
+    void sync(call_site at = call_site::here("sync")) const { vote(all_lanes, true, at); }
     template <class T>
     T load_row(const T* from, std::ptrdiff_t first, bool active,
                call_site at = call_site::here("load_row")) const {

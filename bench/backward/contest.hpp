@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/gaussians.hpp"
+#include "scene/scene.hpp"
+
+/// What the variants of the blending are timed on.
+struct contest {
+    gs::gaussians model;
+    std::vector<gs::camera> cameras;  ///< all of one size
+    std::array<float, 3> background{};
+    int rounds = 7;
+    std::uint64_t seed = 0;  ///< of the picture's gradient
+};
+
+/// How a variant did.
+struct standing {
+    std::string name;
+    bool rung = false;                      ///< of the ladder that the product offers, else a contender
+    std::vector<double> forward, backward;  ///< ms a frame, one a round
+    double pairs = 0;                       ///< pixel-Gaussian pairs evaluated forward, a frame
+    double apart = 0;  ///< |sums - sums of the first| / |sums of the first|, the worst frame
+};
+
+struct contest_result {
+    std::string device;
+    std::vector<standing> standings;
+};
+
+contest_result hold_on_cpu(const contest& c);
+contest_result hold_on_cuda(const contest& c);

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <random>
+
+#include "contest.hpp"
+#include "raster/renderer.hpp"
+
+/// Holds the contest on a device.
+template <class Device>
+class contest_on {
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+
+  public:
+    explicit contest_on(const contest& c) : contest_(c) {
+        put(c.model);
+        std::mt19937_64 random(c.seed);
+        std::normal_distribution<float> normal;
+        const gs::camera& first = c.cameras.front();
+        std::vector<float> gradient(3 * static_cast<std::size_t>(first.width) *
+                                    static_cast<std::size_t>(first.height));
+        for (float& g : gradient) g = normal(random);
+        upload(gradient_, gradient);
+        device_.wait();
+    }
+
+    /// The renderer whose view is cut up by `Cut`, with room for every view.
+    template <class Cut>
+    auto renderer() {
+        auto r = std::make_shared<gs::raster::renderer<Device, float, Cut>>(device_);
+        std::uint64_t most = 0;
+        for (const gs::camera& view : contest_.cameras)
+            most = std::max(most, r->count_instances(model_, contest_.model.count(), view, 0));
+        r->reserve_instances(most);
+        return r;
+    }
+    /// A variant: `kernel` after the forward blending of `renderer`.
+    template <class Renderer, class Kernel>
+    void enter(const std::string& name, bool rung, const std::shared_ptr<Renderer>& renderer, Kernel kernel) {
+        standings_.push_back({name, rung, {}, {}, 0, 0});
+        frames_.push_back([this, renderer, kernel](const gs::camera& view) -> const buffer<float>& {
+            renderer->forward(model_, contest_.model.count(), view, contest_.model.sh_degree,
+                              contest_.background);
+            const auto& sums = renderer->blend_backward_by(kernel, gradient_.data());
+            device_.end_iteration();
+            return sums;
+        });
+        pairs_.push_back([this, renderer] {
+            unsigned long long n = 0;
+            device_.download(&n, renderer->pairs(), 1);
+            return static_cast<double>(n);
+        });
+    }
+    template <class Cut>
+    void enter_ladder() {
+        const auto r = renderer<Cut>();
+        for (std::size_t p = 0; p < gs::gradient_policy_names.size(); ++p)
+            gs::raster::with_policy<float, Cut>(static_cast<gs::gradient_policy>(p), [&](auto kernel) {
+                enter(std::string(gs::gradient_policy_names[p]), true, r, kernel);
+            });
+    }
+    template <class Cut>
+    void enter_cut() {
+        gs::raster::with_policy<float, Cut>(gs::gradient_policy::split, [&](auto kernel) {
+            enter(std::to_string(Cut::across) + " across, " + std::to_string(Cut::rows) +
+                      " a lane, segments of " + std::to_string(Cut::segment),
+                  false, renderer<Cut>(), kernel);
+        });
+    }
+
+    contest_result hold() {
+        compare();
+        for (int round = -1; round < contest_.rounds; ++round)  // the first warms up
+            for (std::size_t i = 0; i < frames_.size(); ++i) {
+                const double before = pairs_[i]();
+                device_.sample_times(1);
+                for (const gs::camera& view : contest_.cameras) frames_[i](view);
+                const auto times = device_.times();
+                if (round < 0) continue;
+                const auto ms = [&](gs::device::stage s) {
+                    return times.milliseconds[static_cast<std::size_t>(s)] / times.sampled;
+                };
+                standings_[i].forward.push_back(ms(gs::device::stage::blend_forward));
+                standings_[i].backward.push_back(ms(gs::device::stage::blend_backward));
+                standings_[i].pairs = (pairs_[i]() - before) / static_cast<double>(contest_.cameras.size());
+            }
+        return {device_.name(), standings_};
+    }
+
+  private:
+    template <class T>
+    void upload(buffer<T>& to, const std::vector<T>& from) {
+        to.resize(from.size());
+        device_.upload(to.data(), from.data(), from.size());
+    }
+    void put(const gs::gaussians& m) {
+        upload(mean_, m.mean);
+        upload(log_scale_, m.log_scale);
+        upload(quaternion_, m.quaternion);
+        upload(opacity_, m.opacity);
+        upload(sh_[0], m.sh_constant);
+        model_ = {mean_.data(), log_scale_.data(), quaternion_.data(), opacity_.data(), {sh_[0].data()}};
+        const auto width = static_cast<std::size_t>(m.rest_width());
+        for (int band = 1, from = 0; band <= m.sh_degree; ++band) {
+            const int size = 3 * (2 * band + 1);
+            std::vector<float> values;
+            for (std::size_t i = 0; i < m.count(); ++i) {
+                const auto at = m.sh_rest.begin() + static_cast<std::ptrdiff_t>(i * width) + from;
+                values.insert(values.end(), at, at + size);
+            }
+            upload(sh_[band], values);
+            model_.sh[band] = sh_[band].data();
+            device_.wait();
+            from += size;
+        }
+    }
+
+    /// Every variant's sums beside the first one's, in a few views.
+    void compare() {
+        const std::size_t views = std::min<std::size_t>(contest_.cameras.size(), 3);
+        for (std::size_t v = 0; v < views; ++v) {
+            std::vector<float> first;
+            for (std::size_t i = 0; i < frames_.size(); ++i) {
+                const auto& sums = frames_[i](contest_.cameras[v]);
+                std::vector<float> mine(sums.size());
+                device_.download(mine.data(), sums.data(), mine.size());
+                if (i == 0) first = mine;
+                double apart = 0, norm = 0;
+                for (std::size_t k = 0; k < mine.size(); ++k) {
+                    apart += std::pow(double{mine[k]} - first[k], 2);
+                    norm += std::pow(double{first[k]}, 2);
+                }
+                standings_[i].apart = std::max(standings_[i].apart, std::sqrt(apart / norm));
+            }
+        }
+    }
+
+    const contest& contest_;
+    Device device_;
+    buffer<float> mean_, log_scale_, quaternion_, opacity_, gradient_;
+    std::array<buffer<float>, 4> sh_;
+    gs::parameter_arrays<const float> model_;
+    std::vector<standing> standings_;
+    std::vector<std::function<const buffer<float>&(const gs::camera&)>> frames_;
+    std::vector<std::function<double()>> pairs_;
+};

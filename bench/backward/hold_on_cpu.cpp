@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "device/cpu.hpp"
+#include "hold_on.hpp"
+
+contest_result hold_on_cpu(const contest& c) {
+    using gs::raster::cut;
+    using device = gs::device::cpu;
+    contest_on<device> on(c);
+    on.enter_ladder<gs::raster::cut_for<device::warp>>();
+    on.enter_cut<cut<8, 1, 128>>();
+    on.enter_cut<cut<8, 2, 1024>>();
+    on.enter_cut<cut<8, 4, 1024>>();
+    return on.hold();
+}

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+#include <warpagg/simt/warp.hpp>
+
+#include "tile_lists.hpp"
+
+namespace gs::raster {
+
+/// How a view is cut up for warps: the lanes of a warp are `Across` pixels wide, each has `Rows` pixels of a
+/// column (see `patch`), and a segment has `Segment` places of the sorted list. A long list is split over
+/// several warps in the backward blending: lists are cut wherever a place is a multiple of `Segment`, and the
+/// forward blending notes there what the pixels had come to.
+template <unsigned Across, unsigned Rows, unsigned Segment>
+struct cut {
+    static constexpr unsigned across = Across, rows = Rows, segment = Segment;
+};
+
+/// How a device's warps cut it, as measured (bench/bench_backward).
+template <class W>
+using cut_for = std::conditional_t<W::size == 1, cut<1, 1, 128>, cut<8, 2, 128>>;
+/// The same with a pixel a lane.
+template <class Cut>
+using pixel_a_lane = cut<Cut::across, 1, Cut::segment>;
+
+/// Segments are numbered by tile and then by place: that of a place of tile t is t + place / Segment. Not
+/// every number is taken.
+template <class Cut>
+constexpr std::size_t most_segments(std::size_t tiles, std::size_t places) {
+    return tiles + places / Cut::segment;
+}
+
+/// Says which tile each segment belongs to: one index a tile.
+template <class Cut>
+struct number_segments {
+    const tile_range* ranges;
+    std::uint32_t* tile_of;  ///< one more than the tile; zero before, and where there is no segment
+
+    WARPAGG_HD void operator()(std::size_t index) const {
+        const auto tile = static_cast<std::uint32_t>(index);
+        const tile_range r = ranges[tile];
+        if (r.begin == r.end) return;
+        for (std::uint32_t k = r.begin / Cut::segment; k <= (r.end - 1) / Cut::segment; ++k)
+            tile_of[tile + k] = tile + 1;
+    }
+};
+
+/// Values that a segment's checkpoint takes.
+inline constexpr std::size_t checkpoint_values = 4 * tile_size * tile_size;
+
+/// What a tile's pixels had come to where a segment begins: transmittance and colour. The forward blending
+/// writes it, the backward one of the segment before begins there. By blocks of a pixel a lane, so that
+/// patches of one width share it whatever their height.
+template <class W, class Real, class Patch>
+class checkpoint {
+  public:
+    using real = warpagg::value_t<W, Real>;
+
+    WARPAGG_HD checkpoint(Real* all, std::size_t segment, unsigned in_tile)
+        : at_(all + segment * checkpoint_values),
+          first_(in_tile / Patch::per_row * Patch::rows * Patch::per_row + in_tile % Patch::per_row) {}
+
+    /// Of the block in row k of the patch.
+    /// @{
+    WARPAGG_HD void store(const W& w, unsigned k, const real (&state)[4]) const {
+        for (unsigned i = 0; i < 4; ++i) w.store_row(at_, place(k, i), state[i], all_lanes(w));
+    }
+    WARPAGG_HD void load(const W& w, unsigned k, real (&state)[4]) const {
+        for (unsigned i = 0; i < 4; ++i) state[i] = w.load_row(at_, place(k, i), all_lanes(w));
+    }
+    /// @}
+
+  private:
+    WARPAGG_HD std::ptrdiff_t place(unsigned k, unsigned i) const {
+        return static_cast<std::ptrdiff_t>((4 * (first_ + k * Patch::per_row) + i) * W::size);
+    }
+    static WARPAGG_HD warpagg::mask_t<W> all_lanes(const W& w) { return w.lane() < W::size; }
+
+    Real* at_;
+    unsigned first_;
+};
+
+}  // namespace gs::raster
