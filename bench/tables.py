@@ -191,6 +191,53 @@ def against_double():
     return markdown(head + ["largest signed bias"], rows) + f"\n{machine(f)}\n"
 
 
+BACKWARD_SCENES = {"backward_lego": "lego 400²", "backward_lego_1600": "lego 1600²", "backward_random": "random, 1600×1066"}
+
+
+def backward_rows(kind):
+    figures = {name: results(name) for name in BACKWARD_SCENES}
+    rows = []
+    for i, first in enumerate(next(iter(figures.values()))[kind]):
+        row = [f"`{first['name']}`" if kind == "ladder" else first["name"]]
+        for f in figures.values():
+            v = f[kind][i]
+            row += [f"{v['backward_ms']:.3f}", f"{v['times_as_fast']:.1f}×", f"{v['forward_ms']:.3f}"]
+        rows.append(row)
+    head = ["variant"] + [cell for scene in BACKWARD_SCENES.values() for cell in (f"{scene}: backward, ms", "", "forward, ms")]
+    f = figures["backward_lego"]
+    spread = max((v["backward_ms_most"] - v["backward_ms_least"]) / v["backward_ms"]
+                 for g in figures.values() for v in g["ladder"] + g["contenders"])
+    apart = max(v["apart"] for g in figures.values() for v in g["ladder"] + g["contenders"])
+    note = (f"Median of {f['rounds']} rounds, spread (largest - least) / median up to {100 * spread:.0f} %; sums at most {apart:.0e} "
+            f"from the first one's. {f['device']}, driver {f['driver']}, nvcc {f['nvcc']}, commit {f['commit']}, seed {f['seed']}; "
+            + ", ".join(f"{scene}: {g['gaussians']:,} Gaussians, {g['views']} views"
+                        for scene, g in zip(BACKWARD_SCENES.values(), figures.values())) + ".")
+    return markdown(head, rows) + f"\n{note}\n"
+
+
+def backward_ladder():
+    return backward_rows("ladder")
+
+
+def backward_contenders():
+    return backward_rows("contenders")
+
+
+def roofline():
+    f = results("roofline")
+    rows = []
+    for scene in f["scenes"]:
+        for kernel in ("forward", "backward"):
+            k, pairs = scene[kernel], scene["pairs"]
+            rows.append([scene["scene"], kernel, f"{pairs / 1e6:.0f}", f"{k['nanoseconds'] / 1e6:.3f}",
+                         f"{32 * k['instructions'] / pairs:.0f}", f"{k['issue_percent']:.0f} %",
+                         f"{k['l2_sectors'] / pairs:.3f}", f"{k['device_memory_bytes'] / pairs:.2f}",
+                         f"{k['device_memory_bytes'] / k['nanoseconds']:.0f}"])
+    head = ["scene", "blending", "million pairs forward", "ms", "instructions a pair", "issue slots used", "L2 sectors a pair",
+            "bytes of memory a pair", "GB/s"]
+    return markdown(head, rows) + f"\n{machine(f)}\n"
+
+
 def machine(figures):
     return f"{figures['gpu_and_driver']}, {figures['nvcc']}, commit {figures['commit']}."
 
@@ -205,7 +252,7 @@ EXAMPLES = {
 }
 
 TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability, hard_cases,
-                                 against_double)}
+                                 against_double, backward_ladder, backward_contenders, roofline)}
 TABLES.update({f"{name}_{m}": example(m, title) for name, title in EXAMPLES.items() for m in ("emulator", "gpu")})
 
 

@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The warpagg authors
+# SPDX-License-Identifier: MIT
+"""Counts what the default blending kernels do, with ncu, on the scenes of bench_backward: instructions, sectors and
+bytes for each pixel-Gaussian pair that is evaluated, and how busy the GPU's instruction issue is meanwhile.
+
+    bench/roofline.py --program build/bench/bench/bench_backward --output bench/results/roofline.json \
+        --scene random --scene "lego:model.ply -d ../shared/data/lego"
+"""
+import argparse
+import csv
+import json
+import pathlib
+import re
+import statistics
+import subprocess
+import tempfile
+
+from environment import environment
+
+METRICS = {
+    "nanoseconds": "gpu__time_duration.sum",
+    "instructions": "smsp__inst_executed.sum",
+    "issue_percent": "smsp__issue_active.avg.pct_of_peak_sustained_active",
+    "device_memory_bytes": "dram__bytes.sum",
+    "l2_sectors": "lts__t_sectors.sum",
+    "reductions": "smsp__inst_executed_op_global_red.sum",
+}
+# The kernels of the ladder's last rung, forward and backward.
+KERNELS = {"forward": r"blend_forward<float", "backward": r"blend_backward<float.*, *(1|true), .*scatter"}
+
+
+def profile(program, arguments, launches):
+    """The first blending launches, a dict each."""
+    command = ["ncu", "--clock-control", "none", "--kernel-name-base", "demangled", "-k", "regex:blend_(forward|backward)",
+               "--launch-count", str(launches), "--metrics", ",".join(METRICS.values()), "--csv", "--page", "raw", program,
+               *arguments]
+    output = subprocess.run(command, capture_output=True, text=True).stdout
+    lines = [line for line in output.splitlines() if line.startswith('"')]
+    rows = list(csv.DictReader(lines))[1:]  # the first says the units
+    if not rows:
+        raise SystemExit(f"ncu printed no kernels:\n{output[-2000:]}")
+    return rows
+
+
+def count(program, name, arguments):
+    arguments = [*arguments, "--views", "1", "--rounds", "1"]
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "figures.json"
+        subprocess.run([program, *arguments, "-o", out], check=True, capture_output=True)
+        figures = json.loads(out.read_text())
+    split = next(v for v in figures["ladder"] if v["name"] == "split")
+    rows = profile(program, arguments, 2 * len(figures["ladder"]))  # the ladder comes first, forward and backward
+    result = {"scene": name, "width": figures["width"], "height": figures["height"], "gaussians": figures["gaussians"],
+              "pairs": split["pairs"]}
+    for kernel, pattern in KERNELS.items():
+        found = [r for r in rows if re.search(pattern, r["Kernel Name"])]
+        result[kernel] = {key: statistics.median(float(r[metric].replace(",", "")) for r in found)
+                          for key, metric in METRICS.items()}
+    return result
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--scene", action="append", required=True, help="NAME, or NAME:arguments of bench_backward")
+    parser.add_argument("--commit", help="where the sources are no git checkout")
+    parser.add_argument("--output", required=True)
+    arguments = parser.parse_args()
+    scenes = []
+    for scene in arguments.scene:
+        name, _, rest = scene.partition(":")
+        scenes.append(count(arguments.program, name, rest.split()))
+    result = {"bench": "roofline", **environment(arguments.commit), "scenes": scenes}
+    pathlib.Path(arguments.output).write_text(json.dumps(result, indent=1) + "\n")
+
+
+main()
