@@ -209,12 +209,11 @@ class device_engine final : public engine {
 
     std::vector<float> render(const camera& camera, const std::array<float, 3>& background) override {
         draw(camera, background);
-        std::vector<float> picture(values_of(camera));
-        device_.download(picture.data(), renderer_.picture(), picture.size());
-        return picture;
+        return drawn(camera);
     }
 
-    quality measure(std::size_t test_view, const std::array<float, 3>& background) override {
+    quality measure(std::size_t test_view, const std::array<float, 3>& background,
+                    std::vector<float>* picture) override {
         const photo& shot = test_[test_view];
         photometric_.take();  // what steps added
         draw(shot.camera, background);
@@ -224,6 +223,7 @@ class device_engine final : public engine {
         photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
                                background);
         photometric_.compare(shown_.data());
+        if (picture != nullptr) *picture = drawn(shot.camera);
         return photometric_.take();
     }
 
@@ -326,6 +326,12 @@ class device_engine final : public engine {
         renderer_.forward(read(values_), count_, camera, sh_degree_, background);
         device_.pause_times(false);
         drawn_pairs_ += all_pairs() - before;
+    }
+
+    std::vector<float> drawn(const camera& camera) {
+        std::vector<float> picture(values_of(camera));
+        device_.download(picture.data(), renderer_.picture(), picture.size());
+        return picture;
     }
 
     Device device_;

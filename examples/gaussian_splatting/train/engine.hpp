@@ -62,8 +62,10 @@ class engine {
 
     /// Three planes, not clamped.
     virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background) = 0;
-    /// A test view against its photo, clamped to [0, 1].
-    virtual quality measure(std::size_t test_view, const std::array<float, 3>& background) = 0;
+    /// A test view against its photo, clamped to [0, 1]. `picture`, where there is one, becomes what `render`
+    /// draws of the view.
+    virtual quality measure(std::size_t test_view, const std::array<float, 3>& background,
+                            std::vector<float>* picture = nullptr) = 0;
 
     /// Times every n-th step from now on. By default, what costs nothing: all on the CPU, every 50th on a
     /// GPU.
