@@ -175,6 +175,12 @@ bool is_sound_place(const glm::dvec3& place) {
     return std::abs(place.x) <= farthest && std::abs(place.y) <= farthest && std::abs(place.z) <= farthest;
 }
 
+view shrunk(const view& full, int divisor) {
+    const camera& c = full.camera;
+    const camera small = at_size(c, divided(c.width, divisor), divided(c.height, divisor));
+    return {full.name, small, shrink(full.pixels, small.width, small.height)};
+}
+
 std::vector<view> load_views(const std::vector<recorded_view>& recorded, const load_options& options,
                              const log_function& log) {
     const std::vector<camera> fitted = fit_to_photos(recorded, log);
