@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
-"""What a figure belongs to: commit, GPU, compilers, processor."""
+"""What the benches share: what a figure belongs to (commit, GPU, compilers, processor), and the command line."""
 import subprocess
+import sys
 
 
 def first_line(*command):
@@ -18,3 +19,14 @@ def environment(commit):
             "nvcc": nvcc,
             "compiler": first_line("c++", "--version"),
             "processor": first_line("sh", "-c", "grep -m1 'model name' /proc/cpuinfo | cut -d: -f2")}
+
+
+def own_and_passed_on():
+    """The command line up to its first "--", and the lists of words that this and any further ones begin."""
+    parts = [[]]
+    for word in sys.argv[1:]:
+        if word == "--":
+            parts.append([])
+        else:
+            parts[-1].append(word)
+    return parts[0], parts[1:]

@@ -12,23 +12,28 @@ import json
 import pathlib
 import statistics
 import subprocess
-import sys
 import tempfile
+import time
 
-from environment import environment
+from environment import environment, own_and_passed_on
 
 KEPT = ["psnr", "ssim", "training_psnr", "gaussians", "iterations", "iterations_per_second", "seconds", "densify_seconds",
         "skipped_steps", "pairs_per_iteration", "stages", "peak_host_bytes", "peak_device_bytes", "seed", "device",
-        "gradient"]
+        "gradient", "tests"]
 
 
 def train(program, data, scene, seed, options):
+    """One run: what metrics.json says of it, and the seconds of the whole process."""
     with tempfile.TemporaryDirectory() as folder:
         command = [program, "train", "-d", str(pathlib.Path(data) / scene), "-o", folder, "--eval", "-q",
                    "--seed", str(seed), *options]
+        start = time.monotonic()
         subprocess.run(command, check=True)
+        process = time.monotonic() - start
         metrics = json.loads((pathlib.Path(folder) / "metrics.json").read_text())
-    return {"scene": scene, **{key: metrics[key] for key in KEPT}}
+    kept = {"scene": scene, **{key: metrics[key] for key in KEPT}}
+    kept["seconds"]["process"] = process
+    return kept
 
 
 def run(arguments):
@@ -47,31 +52,48 @@ def spread(values, form):
     return text if len(values) == 1 else f"{text} ({form.format(min(values))} to {form.format(max(values))})"
 
 
-def table(arguments):
-    result = json.loads(pathlib.Path(arguments.file).read_text())
-    cpu = result["runs"][0]["device"].startswith("cpu")
-    machine = [result["processor"].strip(), result["runs"][0]["device"], result["compiler"]] if cpu else [
+def on_cpu(runs):
+    return runs[0]["device"].startswith("cpu")
+
+
+def where(result):
+    """The machine, commit and seeds of a result, in words."""
+    runs = result["runs"]
+    machine = [result["processor"].strip(), runs[0]["device"], result["compiler"]] if on_cpu(runs) else [
         result["gpu_and_driver"], result["nvcc"]]
-    seeds = ", ".join(str(s) for s in sorted({r["seed"] for r in result["runs"]}))
-    print(f"`{' '.join(result['options'])}`, {', '.join(machine)}, commit {result['commit']}, seeds {seeds}; "
-          "median (least to most)\n")
-    print(f"| scene | held-out PSNR, dB | SSIM | Gaussians | it/s | loop, s | peak {'host' if cpu else 'device'} MiB |")
+    seeds = ", ".join(str(s) for s in sorted({r["seed"] for r in runs}))
+    return f"{', '.join(machine)}, commit {result['commit']}, seeds {seeds}; median (least to most)"
+
+
+def by(key, runs):
+    """The runs with the same `key`, in the order of their first."""
+    return {name: [r for r in runs if r[key] == name] for name in dict.fromkeys(r[key] for r in runs)}
+
+
+def print_tables(key, runs):
+    """One line for the runs of the same `key`: what they reached, and then their time by stage."""
+    cpu = on_cpu(runs)
+    print(f"| {key} | held-out PSNR, dB | SSIM | Gaussians | it/s | loop, s | peak {'host' if cpu else 'device'} MiB |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
-    for scene in dict.fromkeys(r["scene"] for r in result["runs"]):
-        runs = [r for r in result["runs"] if r["scene"] == scene]
-        column = lambda pick, form: spread([pick(r) for r in runs], form)
-        print("|", " | ".join([scene, column(lambda r: r["psnr"], "{:.2f}"), column(lambda r: r["ssim"], "{:.3f}"),
+    for name, same in by(key, runs).items():
+        column = lambda pick, form: spread([pick(r) for r in same], form)
+        print("|", " | ".join([name, column(lambda r: r["psnr"], "{:.2f}"), column(lambda r: r["ssim"], "{:.3f}"),
                                column(lambda r: r["gaussians"], "{:,.0f}"),
                                column(lambda r: r["iterations_per_second"], "{:.0f}"),
                                column(lambda r: r["seconds"]["train"], "{:.1f}"),
                                column(lambda r: r["peak_host_bytes" if cpu else "peak_device_bytes"] / 2**20, "{:.0f}")]), "|")
-    print("\n| scene | " + " | ".join(result["runs"][0]["stages"]) + " | (ms an iteration) |")
-    print("| --- |" + " --- |" * (len(result["runs"][0]["stages"]) + 1))
-    for scene in dict.fromkeys(r["scene"] for r in result["runs"]):
-        runs = [r for r in result["runs"] if r["scene"] == scene]
-        cells = [f"{statistics.median(r['stages'][s]['milliseconds'] for r in runs):.3f}" for s in runs[0]["stages"]]
-        whole = statistics.median(1000 / r["iterations_per_second"] for r in runs)
-        print("|", " | ".join([scene, *cells, f"{whole:.3f} of wall"]), "|")
+    print(f"\n| {key} | " + " | ".join(runs[0]["stages"]) + " | (ms an iteration) |")
+    print("| --- |" + " --- |" * (len(runs[0]["stages"]) + 1))
+    for name, same in by(key, runs).items():
+        cells = [f"{statistics.median(r['stages'][s]['milliseconds'] for r in same):.3f}" for s in same[0]["stages"]]
+        whole = statistics.median(1000 / r["iterations_per_second"] for r in same)
+        print("|", " | ".join([name, *cells, f"{whole:.3f} of wall"]), "|")
+
+
+def table(arguments):
+    result = json.loads(pathlib.Path(arguments.file).read_text())
+    print(f"`{' '.join(result['options'])}`, {where(result)}\n")
+    print_tables("scene", result["runs"])
 
 
 def main():
@@ -88,12 +110,11 @@ def main():
     shower = commands.add_parser("table")
     shower.add_argument("file")
     shower.set_defaults(action=table)
-    own, options = sys.argv[1:], []
-    if "--" in own:
-        own, options = own[:own.index("--")], own[own.index("--") + 1:]
+    own, passed_on = own_and_passed_on()
     arguments = parser.parse_args(own)
-    arguments.options = options
+    arguments.options = passed_on[0] if passed_on else []
     arguments.action(arguments)
 
 
-main()
+if __name__ == "__main__":
+    main()

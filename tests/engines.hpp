@@ -21,11 +21,11 @@ inline std::vector<make_engine> engines() {
     return all;
 }
 
-/// 48 pixels square, with held-out views.
-inline gs::scene small_scene(const char* name = "synthetic:spheres") {
+/// Square, with held-out views.
+inline gs::scene small_scene(const char* name = "synthetic:spheres", int side = 48) {
     gs::load_options o;
     o.data = name;
-    o.resolution = 48;
+    o.resolution = side;
     o.eval = true;
     return gs::load_scene(o, [](const std::string&) {});
 }

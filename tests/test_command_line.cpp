@@ -382,6 +382,9 @@ TEST_CASE("contradictory options are refused") {
     check_refusal_without_trace(train_spheres + words{"-i", "20", "--save-iterations", "10", "21"},
                                 {"--save-iterations", "21", "20"});
     check_refusal_without_trace(train_spheres + words{"--save-iterations", "0"}, {"--save-iterations", "0"});
+    check_refusal_without_trace(
+        train_spheres + words{"-i", "20", "--num-downscales", "2", "--resolution-schedule", "10"},
+        {"--num-downscales 2", "--resolution-schedule 10", "20"});
     check_refusal_without_trace({"render", "model.ply", "--orbit-views", "3", "-d", "synthetic:spheres"},
                                 {"--orbit-views", "--data"});
     check_refusal_without_trace({"render", "model.ply", "--eval"}, {"--eval", "--data"});
@@ -438,6 +441,9 @@ TEST_CASE("a number that makes no sense is refused") {
                                                         {"--densification-interval", "0", ""},
                                                         {"--densify-from-iter", "-1", ""},
                                                         {"--densify-until-iter", "1.5", ""},
+                                                        {"--num-downscales", "9", ""},
+                                                        {"--resolution-schedule", "0", ""},
+                                                        {"--sh-update-interval", "0", ""},
                                                         {"--background", "beige", ""},
                                                         {"--device", "tpu", ""},
                                                         {"--gradient", "magic", ""},
@@ -530,13 +536,20 @@ TEST_CASE("training writes a model, measures and pictures; evaluate and render r
     const temporary_folder folder;
     const fs::path output = folder / "deep/results", model = model_of(output, 60);
     const outcome trained =
-        run(small_training(output) + words{"--seed", "7", "--save_iterations", "30", "--sh_degree", "1"});
+        run(small_training(output) +
+            words{"--seed", "7", "--save_iterations", "30", "--sh_degree", "1", "--test_iterations", "20"});
     CHECK(trained.err == "");
     REQUIRE(trained.code == 0);
     CHECK(says(trained.out, {"held-out PSNR", model.string(), (output / "metrics.json").string()}));
 
     const json metrics = read_json(output / "metrics.json");
     check_metrics(metrics);
+    REQUIRE(metrics.at("tests").size() == 1);
+    const json& test = metrics.at("tests")[0];
+    CHECK(test.at("iteration") == 20);
+    CHECK(test.at("psnr").get<double>() < metrics.at("psnr").get<double>());
+    CHECK(test.at("seconds").get<double>() > 0);
+    CHECK(test.at("seconds").get<double>() < metrics.at("seconds").at("train").get<double>());
     const json settings = read_json(output / "settings.json");
     CHECK(settings.at("data") == "synthetic:spheres");
     CHECK(settings.at("iterations") == 60);
@@ -649,7 +662,10 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
                         {"opacity_reset_interval", 3000},
                         {"densification_interval", 100},
                         {"densify_from_iter", 500},
-                        {"densify_until_iter", 30}};
+                        {"densify_until_iter", 30},
+                        {"num_downscales", 0},
+                        {"resolution_schedule", 3000},
+                        {"sh_update_interval", 1}};
     for (const auto& [name, value] : expected.items()) {
         CAPTURE(name);
         CHECK(usual.at(name) == value);
@@ -658,7 +674,8 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
     json others{{"position_lr_init", 1e-3},     {"position_lr_final", 1e-5},   {"feature_lr", 2e-3},
                 {"opacity_lr", 3e-2},           {"scaling_lr", 4e-3},          {"rotation_lr", 2e-3},
                 {"opacity_reset_interval", 25}, {"densification_interval", 5}, {"densify_from_iter", 10},
-                {"densify_until_iter", 20}};
+                {"densify_until_iter", 20},     {"num_downscales", 1},         {"resolution_schedule", 7},
+                {"sh_update_interval", 2}};
     words options{"-q"};
     for (const auto& [name, value] : others.items()) options = options + words{"--" + name, value.dump()};
     check_success(small_training(folder / "other") + options);

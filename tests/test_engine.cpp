@@ -9,6 +9,7 @@
 #include "engines.hpp"
 #include "error.hpp"
 #include "model/initialise.hpp"
+#include "scene/views.hpp"
 #include "train/trainer.hpp"
 
 namespace {
@@ -81,10 +82,99 @@ TEST_CASE("what it measures is what it draws") {
         const std::array<float, 3> white{1, 1, 1};
         const auto& view = scene.test[1];
         auto picture = e->render(view.camera, white);
+        std::vector<float> measured;
+        const auto quality = e->measure(1, white, &measured);
+        CHECK(measured == picture);
         for (float& x : picture) x = std::clamp(x, 0.0f, 1.0f);
-        CHECK(e->measure(1, white).psnr() ==
+        CHECK(quality.psnr() ==
               doctest::Approx(psnr_between(picture, gs::over_background(view.pixels, white.data())))
                   .epsilon(1e-4));
+    }
+}
+
+TEST_CASE("a step learns from photos as small as it is told to") {
+    const gs::scene scene = small_scene("synthetic:alpha");
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test, 2);
+        e->set_model(gs::from_points(scene.points, 0, 1000, 1));
+        auto plan = plan_for(3);
+        plan.rates = {};
+        plan.background = {1, 1, 1};
+        for (const int downscales : {2, 0, 1}) {
+            CAPTURE(downscales);
+            e->set_downscales(downscales);
+            e->reserve();
+            e->take_training_quality();
+            e->step(plan);
+            const gs::view small = gs::shrunk(scene.train[3], 1 << downscales);
+            REQUIRE(small.camera.width == 48 >> downscales);
+            CHECK(e->take_training_quality().psnr() ==
+                  doctest::Approx(psnr_between(e->render(small.camera, plan.background),
+                                               gs::over_background(small.pixels, plan.background.data())))
+                      .epsilon(1e-4));
+        }
+        e->set_views(scene.train, scene.test);
+        e->take_training_quality();
+        e->step(plan);
+        CHECK(
+            e->take_training_quality().psnr() ==
+            doctest::Approx(psnr_between(e->render(scene.train[3].camera, plan.background),
+                                         gs::over_background(scene.train[3].pixels, plan.background.data())))
+                .epsilon(1e-4));
+    }
+}
+
+TEST_CASE("gradients of centres, in halves of the picture, are alike on photos of any size") {
+    // As many grow at a threshold on photos of 64 pixels as on photos of 32, to a quarter of them.
+    gs::scene scene = small_scene("synthetic:spheres", 64);
+    for (const auto make : engines()) {
+        std::array<double, 2> grown{};
+        for (const int downscales : {0, 1}) {
+            const auto e = make();
+            e->set_views(scene.train, {}, 1);
+            e->set_model(gs::from_points(scene.points, 0, 300, 1));
+            e->set_downscales(downscales);
+            e->reserve();
+            auto plan = plan_for(0);
+            plan.rates = {};
+            for (plan.view = 0; plan.view < scene.train.size(); ++plan.view) e->step(plan);
+            gs::train::densify_rule rule;
+            rule.cap = 1000;
+            rule.gradient = 1e-3f;
+            e->densify(rule);
+            grown[static_cast<std::size_t>(downscales)] = static_cast<double>(e->count()) - 300;
+        }
+        CAPTURE(grown[0]);
+        CHECK(grown[0] > 50);
+        CHECK(grown[0] < 250);
+        CHECK(grown[1] == doctest::Approx(grown[0]).epsilon(0.25));
+    }
+}
+
+TEST_CASE("colours that depend on direction stay as they are when they are not to learn") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        gs::gaussians model = gs::from_points(scene.points, 2, 1000, 1);
+        std::ranges::fill(model.sh_rest, 0.01f);
+        e->set_model(model);
+        e->reserve();
+        auto plan = plan_for(0);
+        plan.sh_degree = 2;
+        plan.updates_sh = false;
+        e->step(plan);
+        const gs::gaussians without = e->get_model();
+        CHECK(without.sh_rest == model.sh_rest);
+        CHECK(without.sh_constant != model.sh_constant);
+        CHECK(without.mean != model.mean);
+        const double psnr = e->take_training_quality().psnr();
+        e->set_model(model);
+        plan.updates_sh = true;
+        e->step(plan);
+        CHECK(e->get_model().sh_rest != model.sh_rest);
+        CHECK(e->take_training_quality().psnr() == doctest::Approx(psnr).epsilon(1e-6));  // both drew them
     }
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "scene/image.hpp"
+#include "scene/views.hpp"
 #include "temporary_folder.hpp"
 
 // jpeglib.h leaves it to its user to have declared FILE and size_t.
@@ -531,6 +532,31 @@ TEST_CASE("shrinking an opaque image keeps it opaque") {
     const image small = gs::shrink(opaque, 3, 7);
     CHECK_FALSE(small.has_alpha);
     for (std::size_t i = 3; i < small.rgba.size(); i += 4) REQUIRE(small.rgba[i] == 255);
+}
+
+TEST_CASE("a shrunk view has the camera of its photo") {
+    gs::view full;
+    full.name = "a.png";
+    full.pixels = random_image(35, 9, 4);
+    full.camera.width = 35;
+    full.camera.height = 9;
+    full.camera.fx = 70;
+    full.camera.fy = 18;
+    full.camera.cx = 10.5;
+    full.camera.cy = 4.5;
+    full.camera.translation = {1, 2, 3};
+    const gs::view half = gs::shrunk(full, 2);
+    CHECK(half.name == "a.png");
+    CHECK(half.camera.width == 18);
+    CHECK(half.camera.height == 5);
+    CHECK(half.camera.fx == doctest::Approx(70 * 18.0 / 35));
+    CHECK(half.camera.fy == doctest::Approx(18 * 5.0 / 9));
+    CHECK(half.camera.cx == doctest::Approx(10.5 * 18 / 35));
+    CHECK(half.camera.cy == doctest::Approx(2.5));
+    CHECK(half.camera.translation == full.camera.translation);
+    CHECK(half.pixels.rgba == gs::shrink(full.pixels, 18, 5).rgba);
+    CHECK(gs::shrunk(full, 64).camera.height == 1);
+    CHECK(gs::shrunk(full, 1).pixels.rgba == full.pixels.rgba);
 }
 
 TEST_CASE("over_background lays the image over a colour") {

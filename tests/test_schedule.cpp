@@ -25,6 +25,29 @@ TEST_CASE("a degree of spherical harmonics every interval") {
     CHECK(s.sh_degree_at(6999) == 2);
 }
 
+TEST_CASE("photos are shrunk less and less") {
+    schedule s;
+    s.resolution_schedule = 10;
+    CHECK(s.downscales_at(1) == 0);
+    s.num_downscales = 2;
+    CHECK(s.downscales_at(1) == 2);
+    CHECK(s.downscales_at(10) == 2);
+    CHECK(s.downscales_at(11) == 1);
+    CHECK(s.downscales_at(20) == 1);
+    CHECK(s.downscales_at(21) == 0);
+    CHECK(s.downscales_at(1000) == 0);
+}
+
+TEST_CASE("colours that depend on direction can learn more rarely") {
+    schedule s;
+    CHECK(s.updates_sh(1));
+    s.sh_update_interval = 3;
+    CHECK_FALSE(s.updates_sh(1));
+    CHECK_FALSE(s.updates_sh(2));
+    CHECK(s.updates_sh(3));
+    CHECK_FALSE(s.updates_sh(4));
+}
+
 TEST_CASE("densification ends half-way, and opacities are reset only while it lasts") {
     schedule s;
     s.iterations = 7000;

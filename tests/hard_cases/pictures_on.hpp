@@ -75,7 +75,7 @@ class pictures_on {
         buffer<gs::raster::visibility> seen;
         seen.resize(q.count());
         s.device.zero(seen.data(), q.count());
-        s.renderer.backward(by_picture, q.policy, write(s.gradients), seen.data());
+        s.renderer.backward(by_picture, q.policy, q.sh_degree, write(s.gradients), seen.data());
 
         answer a;
         a.picture = s.on.get(s.renderer.picture(), values);

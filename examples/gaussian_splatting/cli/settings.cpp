@@ -144,6 +144,13 @@ void add_schedule(CLI::App& app, train::schedule& s) {
     count("--opacity-reset-interval", s.opacity_reset_interval, 1, "Iterations between two resets");
     count("--densification-interval", s.densification_interval, 1, "Iterations between two densifications");
     count("--densify-from-iter", s.densify_from_iter, 0, "Densify after this iteration");
+    app.add_option("--num-downscales", s.num_downscales, "How often photos are halved at first")
+        ->check(whole_number(0, 8))
+        ->capture_default_str();
+    count("--resolution-schedule", s.resolution_schedule, 1,
+          "Iterations until they are halved once less, and again once less");
+    count("--sh-update-interval", s.sh_update_interval, 1,
+          "Iterations between two steps of colours that depend on direction");
     app.add_option("--densify-until-iter", s.densify_until_iter,
                    "And before this one; by default half of the iterations, at most 15000")
         ->check(whole_number(0, 10000000));
@@ -214,6 +221,14 @@ void refuse_late(const std::set<int>& iterations, int last, const std::string& o
                         ", but there are only iterations 1 to " + std::to_string(last));
 }
 
+void refuse_endless_shrinking(const train::schedule& s) {
+    const std::int64_t until = std::int64_t{s.num_downscales} * s.resolution_schedule;
+    if (s.num_downscales > 0 && until >= s.iterations)
+        throw error("--num-downscales " + std::to_string(s.num_downscales) + " with --resolution-schedule " +
+                    std::to_string(s.resolution_schedule) + " comes to whole photos after iteration " +
+                    std::to_string(until) + ", but there are only " + std::to_string(s.iterations));
+}
+
 }  // namespace
 
 settings parse(int argc, char** argv) {
@@ -245,6 +260,7 @@ settings parse(int argc, char** argv) {
         throw error("--background random is for training: " + s.command + " needs one colour");
     refuse_late(s.save_iterations, s.schedule.iterations, "--save-iterations");
     refuse_late(s.test_iterations, s.schedule.iterations, "--test-iterations");
+    refuse_endless_shrinking(s.schedule);
     if (s.command == "render" && s.scene.data.empty() && s.scene.eval)
         throw error("--eval picks views of a scene: it needs --data");
     return s;

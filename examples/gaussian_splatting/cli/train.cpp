@@ -75,6 +75,9 @@ ordered_json settings_json(const settings& s, const train::train_options& o) {
             {"densification_interval", plan.densification_interval},
             {"densify_from_iter", plan.densify_from_iter},
             {"densify_until_iter", plan.densify_until()},
+            {"num_downscales", plan.num_downscales},
+            {"resolution_schedule", plan.resolution_schedule},
+            {"sh_update_interval", plan.sh_update_interval},
             {"densify_grad_threshold", o.densify_gradient},
             {"max_cap", o.max_cap},
             {"gradient", s.gradient},
@@ -131,7 +134,7 @@ void train(const settings& s) {
     const train::train_options options = options_of(s, scene, background);
     const gaussians model = first_model(scene, options);
     const output_folder output(s.output);
-    engine->set_views(scene.train, scene.test);
+    engine->set_views(scene.train, scene.test, options.schedule.num_downscales);
     engine->set_model(model);
     const double load_seconds = loading.seconds();
     session.say("training on " + engine->device_name() + ": " + std::to_string(scene.train.size()) +
@@ -153,7 +156,10 @@ void train(const settings& s) {
     };
     events.test = [&](int iteration) {
         const auto report = evaluate::measure_test_views(*engine, scene, background.colour, {});
-        tested.push_back({{"iteration", iteration}, {"psnr", report.psnr()}, {"ssim", report.ssim()}});
+        tested.push_back({{"iteration", iteration},
+                          {"seconds", last.seconds},
+                          {"psnr", report.psnr()},
+                          {"ssim", report.ssim()}});
         bar.clear();
         session.say("iteration " + std::to_string(iteration) + ": held-out PSNR " +
                     number("%.2f dB", report.psnr()));

@@ -28,6 +28,7 @@ struct project_backward {
     parameter_arrays<const Real> gaussians;
     device_camera<Real> camera;
     int sh_degree;
+    int learned_sh_degree;  ///< no gradients of bands above it
     const splat<Real>* splats;
     const std::uint32_t* tiles;
     const Real* sums;  ///< `record_stride` a Gaussian
@@ -72,7 +73,7 @@ struct project_backward {
         store3(gradients.log_scale, i, zero);
         for (unsigned k = 0; k < 4; ++k) gradients.quaternion[4 * i + k] = 0;
         gradients.opacity[i] = 0;
-        for (int band = 0; band <= sh_degree; ++band) {
+        for (int band = 0; band <= learned_sh_degree; ++band) {
             const unsigned size = static_cast<unsigned>(2 * band + 1);
             for (unsigned m = 0; m < size; ++m) store3(gradients.sh[band], i * size + m, zero);
         }
@@ -127,7 +128,7 @@ struct project_backward {
             const unsigned size = static_cast<unsigned>(2 * band + 1);
             for (unsigned m = 0; m < size; ++m, ++k) {
                 weight[k] = glm::dot(g, load3(gaussians.sh[band], i * size + m));
-                store3(gradients.sh[band], i * size + m, basis[k] * g);
+                if (band <= learned_sh_degree) store3(gradients.sh[band], i * size + m, basis[k] * g);
             }
         }
         const vec3<Real> d = sh_gradient(sh_degree, direction, weight);

@@ -76,15 +76,16 @@ class renderer {
         background_ = background;
     }
 
-    /// The gradients of the last `forward`'s parameters from those of its picture. `seen` may be null.
-    void backward(const Real* picture_gradient, gradient_policy policy,
+    /// The gradients of the last `forward`'s parameters, colours up to a degree, from those of its picture.
+    /// `seen` may be null.
+    void backward(const Real* picture_gradient, gradient_policy policy, int learned_sh_degree,
                   const parameter_arrays<Real>& gradients, visibility* seen) {
         using device::stage;
         with_policy<Real, Cut>(policy, [&](auto kernel) { blend_backward_by(kernel, picture_gradient); });
         device_.begin(stage::project_backward);
         device_.for_each_index(
-            count_, project_backward<Real>{gaussians_, camera_, sh_degree_, splats_.data(), tiles_.data(),
-                                           sums_.data(), gradients, seen, room()});
+            count_, project_backward<Real>{gaussians_, camera_, sh_degree_, learned_sh_degree, splats_.data(),
+                                           tiles_.data(), sums_.data(), gradients, seen, room()});
     }
 
     /// The blending's part of `backward` by this kernel, which is filled in. Returns its sums: see

@@ -3,6 +3,7 @@
 #include "image.hpp"
 
 #include <png.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -186,6 +187,9 @@ class png_writer {
         png_set_IHDR(png_, info_, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
                      PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                      PNG_FILTER_TYPE_DEFAULT);
+        // Runs alone make what filters leave of a photo as small as zlib's search does, in a fourth of the
+        // time.
+        png_set_compression_strategy(png_, Z_RLE);
         png_write_info(png_, info_);
         png_write_image(png_, rows);
         png_write_end(png_, nullptr);

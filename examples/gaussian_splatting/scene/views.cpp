@@ -3,16 +3,15 @@
 #include "views.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
-#include <exception>
 #include <map>
 #include <set>
 #include <tuple>
 #include <utility>
 
 #include "../error.hpp"
+#include "../parallel.hpp"
 
 namespace gs {
 namespace {
@@ -160,29 +159,6 @@ std::vector<camera> scale_to_resolution(const std::vector<camera>& full,
     return scaled;
 }
 
-/// Calls `body(i)` for every i below `count`, in parallel. Of the exceptions that are thrown the one of the
-/// lowest i comes out, whatever the number of threads.
-template <class Body>
-void for_each_in_parallel(std::size_t count, const Body& body) {
-    std::vector<std::exception_ptr> failures(count);
-    std::atomic<std::size_t> lowest_failed{count};
-#ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic)
-#endif
-    for (std::size_t i = 0; i < count; ++i) {
-        if (i > lowest_failed.load()) continue;
-        try {
-            body(i);
-        } catch (...) {
-            failures[i] = std::current_exception();
-            std::size_t lowest = lowest_failed.load();
-            while (i < lowest && !lowest_failed.compare_exchange_weak(lowest, i)) {
-            }
-        }
-    }
-    if (lowest_failed < count) std::rethrow_exception(failures[lowest_failed]);
-}
-
 }  // namespace
 
 // Written so that NaN fails too.
@@ -197,6 +173,12 @@ bool has_sound_intrinsics(const camera& pinhole, const lens& distortion) {
 bool is_sound_place(const glm::dvec3& place) {
     constexpr double farthest = 1e30;
     return std::abs(place.x) <= farthest && std::abs(place.y) <= farthest && std::abs(place.z) <= farthest;
+}
+
+view shrunk(const view& full, int divisor) {
+    const camera& c = full.camera;
+    const camera small = at_size(c, divided(c.width, divisor), divided(c.height, divisor));
+    return {full.name, small, shrink(full.pixels, small.width, small.height)};
 }
 
 std::vector<view> load_views(const std::vector<recorded_view>& recorded, const load_options& options,

@@ -28,6 +28,9 @@ struct recorded_view {
 std::vector<view> load_views(const std::vector<recorded_view>& recorded, const load_options& options,
                              const log_function& log);
 
+/// The view with its sides divided by `divisor`, to the nearest pixel: the photo averaged over areas.
+view shrunk(const view& full, int divisor);
+
 /// Whether the focal lengths lie between 1e-6 and 1e9 pixels and the rest is finite and at most 1e9: what no
 /// change of the photo's size can make overflow.
 bool has_sound_intrinsics(const camera& pinhole, const lens& distortion);

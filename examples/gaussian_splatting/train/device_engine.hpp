@@ -6,7 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "../parallel.hpp"
 #include "../raster/renderer.hpp"
+#include "../scene/views.hpp"
 #include "adam.hpp"
 #include "densify.hpp"
 #include "engine.hpp"
@@ -57,10 +59,20 @@ class device_engine final : public engine {
 
     std::string device_name() const override { return device_.name(); }
 
-    void set_views(const std::vector<view>& train, const std::vector<view>& test) override {
+    void set_views(const std::vector<view>& train, const std::vector<view>& test, int downscales) override {
+        const auto levels = static_cast<std::size_t>(downscales);
+        std::vector<std::vector<view>> shrunk(levels, std::vector<view>(train.size()));
+        for_each_in_parallel(levels * train.size(), [&](std::size_t i) {
+            const std::size_t level = i / train.size(), which = i % train.size();
+            shrunk[level][which] = gs::shrunk(train[which], 2 << level);
+        });
         std::size_t bytes = 0;
-        for (const auto* views : {&train, &test})
-            for (const view& v : *views) bytes += v.pixels.rgba.size();
+        const auto count = [&](const std::vector<view>& views) {
+            for (const view& v : views) bytes += v.pixels.rgba.size();
+        };
+        count(train);
+        count(test);
+        for (const auto& views : shrunk) count(views);
         photos_.resize(bytes);
         bytes = 0;
         const auto put = [&](const std::vector<view>& views, std::vector<photo>& to) {
@@ -71,8 +83,11 @@ class device_engine final : public engine {
                 bytes += v.pixels.rgba.size();
             }
         };
-        put(train, train_);
+        train_.resize(1 + levels);
+        put(train, train_[0]);
+        for (std::size_t level = 0; level < levels; ++level) put(shrunk[level], train_[1 + level]);
         put(test, test_);
+        downscales_ = 0;
         device_.wait();
     }
 
@@ -127,16 +142,19 @@ class device_engine final : public engine {
 
     std::size_t count() const override { return count_; }
 
+    void set_downscales(int times) override { downscales_ = static_cast<std::size_t>(times); }
+
     void step(const step_plan& plan) override {
         using device::stage;
-        const photo& shot = train_[plan.view];
+        const photo& shot = train_[downscales_][plan.view];
         renderer_.forward(read(values_), count_, shot.camera, plan.sh_degree, plan.background);
         device_.begin(stage::loss);
         photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
                                plan.background);
         const float* by_picture =
             photometric_.gradient(renderer_.picture(), plan.ssim_weight, renderer_.room());
-        renderer_.backward(by_picture, plan.gradient, write(gradients_), plan.watch ? seen_.data() : nullptr);
+        renderer_.backward(by_picture, plan.gradient, plan.updates_sh ? plan.sh_degree : 0, write(gradients_),
+                           plan.watch ? seen_.data() : nullptr);
         device_.begin(stage::adam);
         descend(plan);
         device_.end_iteration();
@@ -186,7 +204,7 @@ class device_engine final : public engine {
 
     void reserve() override {
         std::uint64_t most = 0;
-        for (const photo& p : train_) most = std::max(most, count_instances(p.camera));
+        for (const photo& p : train_[downscales_]) most = std::max(most, count_instances(p.camera));
         renderer_.reserve_instances(most, most / 2 + 4096);
     }
 
@@ -209,12 +227,11 @@ class device_engine final : public engine {
 
     std::vector<float> render(const camera& camera, const std::array<float, 3>& background) override {
         draw(camera, background);
-        std::vector<float> picture(values_of(camera));
-        device_.download(picture.data(), renderer_.picture(), picture.size());
-        return picture;
+        return drawn(camera);
     }
 
-    quality measure(std::size_t test_view, const std::array<float, 3>& background) override {
+    quality measure(std::size_t test_view, const std::array<float, 3>& background,
+                    std::vector<float>* picture) override {
         const photo& shot = test_[test_view];
         photometric_.take();  // what steps added
         draw(shot.camera, background);
@@ -224,6 +241,7 @@ class device_engine final : public engine {
         photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
                                background);
         photometric_.compare(shown_.data());
+        if (picture != nullptr) *picture = drawn(shot.camera);
         return photometric_.take();
     }
 
@@ -294,7 +312,7 @@ class device_engine final : public engine {
         const double by_first = 1 / (1 - std::pow(adam<float>::beta1, steps_));
         const double by_second = 1 / std::sqrt(1 - std::pow(adam<float>::beta2, steps_));
         for (std::size_t p = 0; p < parameter_count; ++p) {
-            if (!has_parameter(p, plan.sh_degree)) continue;
+            if (!has_parameter(p, plan.updates_sh ? plan.sh_degree : 0)) continue;
             const auto width = static_cast<std::uint32_t>(parameter_width[p]);
             device_.for_each_element(
                 count_ * width,
@@ -328,11 +346,19 @@ class device_engine final : public engine {
         drawn_pairs_ += all_pairs() - before;
     }
 
+    std::vector<float> drawn(const camera& camera) {
+        std::vector<float> picture(values_of(camera));
+        device_.download(picture.data(), renderer_.picture(), picture.size());
+        return picture;
+    }
+
     Device device_;
     raster::renderer<Device, float> renderer_;
     photometric<Device, float> photometric_;
     buffer<std::uint8_t> photos_;
-    std::vector<photo> train_, test_;
+    std::vector<std::vector<photo>> train_;  ///< by how often they were shrunk
+    std::vector<photo> test_;
+    std::size_t downscales_ = 0;
 
     int sh_degree_ = 0;
     std::size_t count_ = 0;

@@ -23,6 +23,7 @@ struct step_plan {
     int iteration = 0;     ///< for what is found not to be finite; less than 2^24
     std::size_t view = 0;  ///< of the training views
     int sh_degree = 0;
+    bool updates_sh = true;  ///< else colours that depend on direction are drawn, but stay as they are
     std::array<float, 3> background{};
     gradient_policy gradient = gradient_policy::split;
     std::array<float, 8> rates{};  ///< of Adam, by `parameter`
@@ -38,13 +39,18 @@ class engine {
 
     virtual std::string device_name() const = 0;
 
-    /// The photos of a scene, to learn from and to be measured by.
-    virtual void set_views(const std::vector<view>& train, const std::vector<view>& test) = 0;
+    /// The photos of a scene, to learn from and to be measured by. Those to learn from can also be shrunk, by
+    /// two, up to `downscales` times.
+    virtual void set_views(const std::vector<view>& train, const std::vector<view>& test,
+                           int downscales = 0) = 0;
     /// Begins anew with this model: moments zero.
     virtual void set_model(const gaussians& model) = 0;
     virtual gaussians get_model() = 0;
     virtual std::size_t count() const = 0;
 
+    /// Steps from now on learn from photos that were shrunk by two this many times: none after `set_views`.
+    /// Precondition: `set_views` has been asked for that many. To be followed by `reserve`.
+    virtual void set_downscales(int times) = 0;
     virtual void step(const step_plan& plan) = 0;
     /// Copies, splits and drops Gaussians by what `step`s have seen since the last call. Returns how many
     /// were drawn while their centres took no gradient, as where alpha is too low everywhere.
@@ -62,8 +68,10 @@ class engine {
 
     /// Three planes, not clamped.
     virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background) = 0;
-    /// A test view against its photo, clamped to [0, 1].
-    virtual quality measure(std::size_t test_view, const std::array<float, 3>& background) = 0;
+    /// A test view against its photo, clamped to [0, 1]. `picture`, where there is one, becomes what `render`
+    /// draws of the view.
+    virtual quality measure(std::size_t test_view, const std::array<float, 3>& background,
+                            std::vector<float>* picture = nullptr) = 0;
 
     /// Times every n-th step from now on. By default, what costs nothing: all on the CPU, every 50th on a
     /// GPU.

@@ -11,6 +11,10 @@ int schedule::sh_degree_at(int iteration) const {
     return std::min(sh_degree, iteration / sh_degree_interval);
 }
 
+int schedule::downscales_at(int iteration) const {
+    return std::max(0, num_downscales - (iteration - 1) / resolution_schedule);
+}
+
 std::array<float, 8> schedule::rates_at(int iteration) const {
     const double t = std::min(1.0, static_cast<double>(iteration) / iterations);
     const double mean =

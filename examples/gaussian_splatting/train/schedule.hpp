@@ -27,10 +27,19 @@ struct schedule {
     int densify_from_iter = 500;
     std::optional<int> densify_until_iter;  ///< half of the iterations, at most 15,000, where it is not said
 
+    /// Coarse to fine: photos are shrunk by two `num_downscales` times at first, and once less after every
+    /// `resolution_schedule` iterations.
+    int num_downscales = 0;
+    int resolution_schedule = 3000;
+    /// Colours that depend on direction learn in every so many iterations.
+    int sh_update_interval = 1;
+
     static constexpr double ssim_weight = 0.2;
     static constexpr float reset_opacity = 0.01f;
 
     int sh_degree_at(int iteration) const;
+    bool updates_sh(int iteration) const { return iteration % sh_update_interval == 0; }
+    int downscales_at(int iteration) const;
     /// Adam's rates by `parameter`.
     std::array<float, 8> rates_at(int iteration) const;
     int densify_until() const;

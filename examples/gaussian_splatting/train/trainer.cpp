@@ -114,15 +114,23 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     finite_watch watch;
     train_result result;
     engine.take_findings();  // of steps that are not ours
+    int downscales = schedule.downscales_at(1);
+    engine.set_downscales(downscales);
     engine.reserve();
     engine.wait();
     const auto start = clock::now();
     double outside = 0;  // in callbacks
 
     for (int iteration = 1; iteration <= schedule.iterations; ++iteration) {
+        if (schedule.downscales_at(iteration) != downscales) {
+            downscales = schedule.downscales_at(iteration);
+            engine.set_downscales(downscales);
+            engine.reserve();
+        }
         step_plan plan;
         plan.view = order.next();
         plan.sh_degree = schedule.sh_degree_at(iteration);
+        plan.updates_sh = schedule.updates_sh(iteration);
         plan.background = options.background.random ? random_colour(colours) : options.background.colour;
         plan.gradient = options.gradient;
         plan.rates = schedule.rates_at(iteration);

@@ -49,7 +49,7 @@ struct train_result {
 
 /// What the loop calls back for.
 struct train_events {
-    std::function<void(const progress&)> report;
+    std::function<void(const progress&)> report;  ///< before a test, too
     std::function<void(int iteration)> save;
     std::function<void(int iteration)> test;
     std::function<void(const std::string&)> warn = [](const std::string&) {};

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+
+/// What one iteration takes, in time and memory, at a number of Gaussians and a number of pixels. Prints
+/// JSON. The model stays as it is: Gaussians on the surfaces of synthetic:spheres, as large as their
+/// distances, half opaque. One question a process, whose peak of memory is the answer's own: bench/growth.py
+/// asks many.
+
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "error.hpp"
+#include "model/initialise.hpp"
+#include "scene/synthetic.hpp"
+#include "train/engine.hpp"
+
+namespace {
+
+constexpr std::size_t view_count = 8;
+constexpr std::size_t blocks = 5;  // of steps, each with a time of its own
+
+struct options {
+    std::string device = "auto";
+    std::size_t gaussians = 100000;
+    int side = 512, steps = 40;
+};
+
+options parse(int argc, char** argv) {
+    options o;
+    CLI::App app("Time and memory of an iteration");
+    app.add_option("--device", o.device)->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+    app.add_option("-n,--gaussians", o.gaussians)->check(CLI::Range(1, 100000000))->capture_default_str();
+    app.add_option("--side", o.side, "Of the square photos, in pixels")
+        ->check(CLI::Range(16, 8192))
+        ->capture_default_str();
+    app.add_option("--steps", o.steps, "Of each of the 5 blocks that are timed")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        std::exit(app.exit(e));
+    }
+    return o;
+}
+
+/// Photos of `scene` by its first cameras, at another size.
+std::vector<gs::view> photos(const gs::scene& scene, int side) {
+    std::vector<gs::view> views(scene.train.begin(), scene.train.begin() + view_count);
+    for (gs::view& v : views) {
+        gs::camera& c = v.camera;
+        const double scale = static_cast<double>(side) / c.width;
+        c.width = c.height = side;
+        for (double* length : {&c.fx, &c.fy, &c.cx, &c.cy}) *length *= scale;
+    }
+    gs::photograph_synthetic("spheres", views);
+    return views;
+}
+
+nlohmann::ordered_json measure(gs::train::engine& engine, const options& o) {
+    gs::train::step_plan plan;  // whose rates are zero
+    plan.sh_degree = 3;
+    const auto steps = [&](int count) {
+        const auto start = std::chrono::steady_clock::now();
+        for (int i = 0; i < count; ++i) {
+            plan.view = static_cast<std::size_t>(i) % view_count;
+            ++plan.iteration;
+            engine.step(plan);
+        }
+        engine.wait();
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() /
+               count;
+    };
+    steps(static_cast<int>(view_count));
+    const std::uint64_t before = engine.pairs();
+    engine.sample_times(static_cast<int>(view_count) + 1);
+    std::vector<double> milliseconds;
+    for (std::size_t b = 0; b < blocks; ++b) milliseconds.push_back(steps(o.steps));
+    const auto times = engine.times();
+    nlohmann::ordered_json stages;
+    for (std::size_t i = 0; i < gs::device::stage_names.size(); ++i)
+        stages[gs::device::stage_names[i]] = times.milliseconds[i] / std::max(times.sampled, 1);
+    std::ranges::sort(milliseconds);
+    return {{"milliseconds", milliseconds[blocks / 2]},
+            {"least_milliseconds", milliseconds.front()},
+            {"most_milliseconds", milliseconds.back()},
+            {"stages", stages},
+            {"pairs", static_cast<double>(engine.pairs() - before) / (blocks * static_cast<double>(o.steps))},
+            {"skipped_steps", engine.skipped_steps()}};
+}
+
+int bench(const options& o) {
+    std::string reason;
+    const bool cuda = o.device != "cpu" && gs::train::cuda_is_available(reason);
+    if (o.device == "cuda" && !cuda) throw gs::error("--device cuda: no GPU can be used: " + reason);
+    const auto engine = cuda ? gs::train::make_cuda_engine() : gs::train::make_cpu_engine();
+    gs::load_options small;
+    small.eval = true;
+    const gs::scene scene = gs::make_synthetic_scene("spheres", small, {});
+    const auto points = gs::synthetic_points("spheres", scene.train, o.gaussians, 0);
+    gs::gaussians model = gs::from_points(points, 3, o.gaussians, 0);
+    std::ranges::fill(model.opacity, 0.0f);
+    engine->set_views(photos(scene, o.side), {});
+    engine->set_model(model);
+    engine->reserve();
+
+    nlohmann::ordered_json answer{{"gaussians", engine->count()},
+                                  {"pixels", o.side * o.side},
+                                  {"steps", o.steps},
+                                  {"device", engine->device_name()}};
+    answer.update(measure(*engine, o));
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    answer["peak_host_bytes"] = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+    answer["peak_device_bytes"] = engine->peak_device_bytes();
+    std::cout << answer.dump() << '\n';
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return bench(parse(argc, argv));
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "error: %s\n", e.what());
+        return 2;
+    }
+}

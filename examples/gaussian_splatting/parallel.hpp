@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <vector>
+
+namespace gs {
+
+/// Calls `body(i)` for every i below `count`, on all threads. Of the exceptions that are thrown the one of
+/// the lowest i comes out, whatever the number of threads.
+template <class Body>
+void for_each_in_parallel(std::size_t count, const Body& body) {
+    std::vector<std::exception_ptr> failures(count);
+    std::atomic<std::size_t> lowest_failed{count};
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic)
+#endif
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i > lowest_failed.load()) continue;
+        try {
+            body(i);
+        } catch (...) {
+            failures[i] = std::current_exception();
+            std::size_t lowest = lowest_failed.load();
+            while (i < lowest && !lowest_failed.compare_exchange_weak(lowest, i)) {
+            }
+        }
+    }
+    if (lowest_failed < count) std::rethrow_exception(failures[lowest_failed]);
+}
+
+}  // namespace gs
