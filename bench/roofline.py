@@ -27,7 +27,7 @@ METRICS = {
     "reductions": "smsp__inst_executed_op_global_red.sum",
 }
 # The kernels of the ladder's last rung, forward and backward.
-KERNELS = {"forward": r"blend_forward<float", "backward": r"blend_backward<float.*, *(1|true), .*scatter"}
+KERNELS = {"forward": r"blend_forward<float", "backward": r"blend_backward<float.*>, (1|true), .*scatter"}
 
 
 def profile(program, arguments, launches):
