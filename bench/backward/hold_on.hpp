@@ -35,8 +35,10 @@ class contest_on {
     auto renderer() {
         auto r = std::make_shared<gs::raster::renderer<Device, float, Cut>>(device_);
         std::uint64_t most = 0;
-        for (const gs::camera& view : contest_.cameras)
-            most = std::max(most, r->count_instances(model_, contest_.model.count(), view, 0));
+        for (const gs::camera& view : contest_.cameras) {
+            r->measure(model_, contest_.model.count(), view, 0);
+            most = std::max(most, r->instances());
+        }
         r->reserve_instances(most);
         return r;
     }

@@ -101,6 +101,13 @@ struct judgement {
     std::uint64_t silent;  ///< were drawn and took no gradient
 };
 
+/// What goes to each bucket, in the order of the items, as far as there is room for it; and how much that is
+/// without the bound.
+struct bucket_lists {
+    std::vector<std::vector<std::uint32_t>> items;
+    std::uint64_t needed;
+};
+
 /// The kernels on one device. Each function waits for its result.
 struct backend {
     std::string name;
@@ -117,6 +124,11 @@ struct backend {
     judgement (*judge)(const std::vector<sighting>&, const std::vector<double>& opacities,
                        const gs::train::densify_rule&);
     std::vector<std::uint64_t> (*prefix_sum)(const std::vector<std::uint32_t>&);
+    /// The numbers from 0, sorted by their keys.
+    std::vector<std::uint32_t> (*sort)(const std::vector<std::uint32_t>& keys);
+    /// Items with the buckets that each goes to, `no_bucket` among them.
+    bucket_lists (*distribute)(const std::vector<std::vector<std::uint32_t>>& items, std::size_t buckets,
+                               std::uint64_t room);
     /// What a renderer says to this many instances of a view; nothing if it takes them.
     std::string (*complaint_about_instances)(std::uint64_t);
     /// The library's sum of all values into one address.

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
 
 #include "bounds.hpp"
+#include "device/distribute.hpp"
 #include "questions.hpp"
 #include "table.hpp"
 
@@ -117,4 +121,69 @@ TEST_CASE("case 18: 1,000 Gaussians at one depth keep their order") {
         omp_set_num_threads(1);
         CHECK(other == 0);
     });
+}
+
+TEST_CASE("keys are sorted, and equal ones keep their order") {
+    std::mt19937 random(1);
+    // On either side of what a block of a GPU sorts at once.
+    for (const std::size_t n : {0, 1, 32, 2047, 2048, 2049, 100000})
+        for (const std::uint32_t values : {1u, 3u, 0x10000u, 0xffffffffu}) {
+            CAPTURE(n);
+            CAPTURE(values);
+            std::vector<std::uint32_t> keys, order(n);
+            for (std::size_t i = 0; i < n; ++i)
+                keys.push_back(random() % 8 == 0 ? 0xffffffffu
+                                                 : static_cast<std::uint32_t>(random()) % values);
+            std::iota(order.begin(), order.end(), 0u);
+            std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return keys[i]; });
+            on_each_backend([&](const backend& b) {
+                for (const int threads : {3, 1}) {
+                    omp_set_num_threads(threads);
+                    CHECK(b.sort(keys) == order);
+                }
+            });
+        }
+}
+
+TEST_CASE("lists of buckets are those made one item at a time, however long the items are") {
+    std::mt19937 random(2);
+    struct shape {
+        std::size_t items, buckets, usual, most;
+    };
+    // Among them more buckets than a block of a GPU has shared memory for.
+    for (const shape& s : {shape{0, 3, 1, 1}, shape{1, 1, 1, 1}, shape{33, 7, 3, 7},
+                           shape{40, 13000, 9, 13000}, shape{5000, 625, 6, 625}, shape{5000, 1, 1, 1}}) {
+        CAPTURE(s.items);
+        CAPTURE(s.buckets);
+        std::vector<std::vector<std::uint32_t>> items(s.items), lists(s.buckets);
+        std::uint64_t needed = 0;
+        for (std::uint32_t i = 0; i < s.items; ++i) {
+            if (random() % 8 == 0) continue;  // has none
+            const std::size_t size = random() % 64 == 0 ? s.most : 1 + random() % s.usual;
+            std::size_t bucket = random() % s.buckets;
+            for (std::size_t k = 0; k < size; ++k, bucket = (bucket + 1) % s.buckets) {
+                const bool goes = random() % 4 != 0;
+                items[i].push_back(goes ? static_cast<std::uint32_t>(bucket) : gs::device::no_bucket);
+                if (goes) lists[bucket].push_back(i);
+                needed += goes ? 1 : 0;
+            }
+        }
+        for (const std::uint64_t room : {needed + 5, needed, needed / 2, std::uint64_t{0}}) {
+            CAPTURE(room);
+            std::vector<std::vector<std::uint32_t>> fitting = lists;
+            std::uint64_t left = room;
+            for (auto& list : fitting) {
+                list.resize(std::min<std::uint64_t>(list.size(), left));
+                left -= list.size();
+            }
+            on_each_backend([&](const backend& b) {
+                for (const int threads : {3, 1}) {
+                    omp_set_num_threads(threads);
+                    const bucket_lists found = b.distribute(items, s.buckets, room);
+                    CHECK(found.needed == needed);
+                    CHECK((found.items == fitting));
+                }
+            });
+        }
+    }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "backend.hpp"
 #include "memory_on.hpp"
@@ -27,6 +28,24 @@ struct sum_values {
         const warpagg::mask_t<W> active = place < count;
         const warpagg::value_t<W, Real> one[1] = {w.load(values, place, active)};
         warpagg::warp_reduce_atomic(w, to, one, active, Policy{});
+    }
+};
+
+/// Items that are given by their buckets, one's after the other's.
+struct given_items {
+    const std::uint64_t* first;
+    const std::uint32_t* buckets;
+
+    struct item {
+        const std::uint32_t* mine;
+        std::uint32_t count, value;
+
+        WARPAGG_HD std::uint32_t size() const { return count; }
+        WARPAGG_HD std::uint32_t bucket(std::uint32_t k) const { return mine[k]; }
+    };
+    WARPAGG_HD item operator()(std::size_t i) const {
+        return {buckets + first[i], static_cast<std::uint32_t>(first[i + 1] - first[i]),
+                static_cast<std::uint32_t>(i)};
     }
 };
 
@@ -77,8 +96,9 @@ class lists_on {
         const std::size_t segments = most_segments<shape>(tiles.size(), order.size());
         checkpoints.resize(segments * checkpoint_values);
         tile_of_segment.resize(segments);
-        device.zero(tile_of_segment.data(), segments);
-        device.for_each_index(tiles.size(), number_segments<shape>{ranges.data(), tile_of_segment.data()});
+        device.for_each_index(segments,
+                              number_segments<shape>{ranges.data(), static_cast<std::uint32_t>(tiles.size()),
+                                                     tile_of_segment.data()});
         const tile_lists<Real> lists{splats.data(), gaussian_of.data(), ranges.data(), across, q.width,
                                      q.height};
         const blend_forward<Real, shape> forward{
@@ -119,6 +139,47 @@ class lists_on {
         out.resize(values.size() + 1);
         device.prefix_sum(in, out, values.size());
         return on.get_as_they_are(out.data(), out.size());
+    }
+
+    static std::vector<std::uint32_t> sort(const std::vector<std::uint32_t>& keys) {
+        Device device;
+        memory on(device);
+        std::vector<std::uint32_t> numbers(keys.size());
+        std::iota(numbers.begin(), numbers.end(), 0u);
+        buffer<std::uint32_t> k, v;
+        on.put_as_they_are(k, keys);
+        on.put_as_they_are(v, numbers);
+        device.sort_pairs(k, v, keys.size());
+        const std::vector<std::uint32_t> sorted = on.get_as_they_are(k.data(), keys.size());
+        if (!std::ranges::is_sorted(sorted)) return {};
+        return on.get_as_they_are(v.data(), keys.size());
+    }
+
+    static bucket_lists distribute(const std::vector<std::vector<std::uint32_t>>& items, std::size_t buckets,
+                                   std::uint64_t room) {
+        Device device;
+        memory on(device);
+        std::vector<std::uint64_t> first{0};
+        std::vector<std::uint32_t> all;
+        for (const auto& item : items) {
+            all.insert(all.end(), item.begin(), item.end());
+            first.push_back(all.size());
+        }
+        buffer<std::uint64_t> first_on, needed;
+        buffer<std::uint32_t> all_on, listed;
+        buffer<gs::raster::tile_range> ranges;
+        on.put_as_they_are(first_on, first);
+        on.put_as_they_are(all_on, all);
+        needed.resize(1);
+        listed.resize(room);
+        ranges.resize(buckets);
+        device.distribute(items.size(), given_items{first_on.data(), all_on.data()}, buckets, room,
+                          listed.data(), ranges.data(), needed.data());
+        const auto values = on.get_as_they_are(listed.data(), room);
+        bucket_lists found{{}, on.get_as_they_are(needed.data(), 1)[0]};
+        for (const gs::raster::tile_range& r : on.get_as_they_are(ranges.data(), buckets))
+            found.items.emplace_back(values.begin() + r.begin, values.begin() + r.end);
+        return found;
     }
 
     static double sum(const std::vector<double>& values, gradient_policy policy) {

@@ -24,6 +24,8 @@ backend make_backend(const char* name) {
             training::descend,
             training::judge,
             lists::prefix_sum,
+            lists::sort,
+            lists::distribute,
             pictures::complaint_about_instances,
             lists::sum};
 }

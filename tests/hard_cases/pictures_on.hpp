@@ -47,7 +47,8 @@ class pictures_on {
             const auto model = read(values);
             const gs::camera& camera = q.view.camera;
             // Room to spare, as in training: places that stay empty are part of the lists.
-            const std::uint64_t needed = renderer.count_instances(model, q.count(), camera, q.sh_degree);
+            renderer.measure(model, q.count(), camera, q.sh_degree);
+            const std::uint64_t needed = renderer.instances();
             renderer.reserve_instances(needed, needed / 2 + 64);
             renderer.forward(model, q.count(), camera, q.sh_degree, q.background);
             on.put_bytes(photo, q.view.pixels.rgba);

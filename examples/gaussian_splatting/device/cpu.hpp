@@ -14,9 +14,11 @@
 #include <memory>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 #include <warpagg/simt/lanes.hpp>
 
+#include "distribute.hpp"
 #include "scratch.hpp"
 #include "stages.hpp"
 
@@ -121,9 +123,54 @@ class basic_cpu {
         out.data()[n] = sum;
     }
 
-    /// Sorts the first n pairs by the low `bits` of their keys; pairs of equal keys keep their order.
-    void sort_pairs(buffer<std::uint32_t>& keys, buffer<std::uint32_t>& values, std::size_t n, int bits) {
-        constexpr int digit_bits = 11;
+    /// Lists for each bucket the values of the items [0, n) that go there, in their order: `listed` holds the
+    /// list of bucket b at [ranges[b].begin, ranges[b].end), one bucket's after the other's. `needed` is the
+    /// length of all; what does not fit into `room` places is cut off.
+    template <class Range>
+    void distribute(std::size_t n, const items auto& all, std::size_t buckets, std::uint64_t room,
+                    std::uint32_t* listed, Range* ranges, std::uint64_t* needed) {
+        // Slices of the items, more than threads since some have far more candidates; each has its row of
+        // counts, which become places.
+        const auto slices = 4 * static_cast<std::size_t>(omp_get_max_threads());
+        places_.resize(slices * buckets);
+        totals_.resize(buckets);
+        first_.resize(buckets + 1);
+        const auto for_each_slice = [&](const auto& f) {
+#pragma omp parallel for schedule(dynamic)
+            for (std::size_t s = 0; s < slices; ++s) {
+                std::uint64_t* mine = places_.data() + s * buckets;
+                for (std::size_t i = n * s / slices; i < n * (s + 1) / slices; ++i) {
+                    const auto item = all(i);
+                    for (std::uint32_t k = 0; k < item.size(); ++k)
+                        if (const std::uint32_t bucket = item.bucket(k); bucket != no_bucket)
+                            f(mine[bucket], item.value);
+                }
+            }
+        };
+        zero(places_.data(), slices * buckets);
+        for_each_slice([](std::uint64_t& count, std::uint32_t) { ++count; });
+        for_each_index(buckets, [&](std::size_t b) {
+            std::uint64_t total = 0;
+            for (std::size_t s = 0; s < slices; ++s) total += places_.data()[s * buckets + b];
+            totals_.data()[b] = static_cast<std::uint32_t>(total);
+        });
+        prefix_sum(totals_, first_, buckets);
+        *needed = first_.data()[buckets];
+        for_each_index(buckets, [&](std::size_t b) {
+            std::uint64_t at = first_.data()[b];
+            for (std::size_t s = 0; s < slices; ++s) at += std::exchange(places_.data()[s * buckets + b], at);
+            ranges[b] = {static_cast<std::uint32_t>(std::min(first_.data()[b], room)),
+                         static_cast<std::uint32_t>(std::min(at, room))};
+        });
+        for_each_slice([&](std::uint64_t& place, std::uint32_t value) {
+            if (place < room) listed[place] = value;
+            ++place;
+        });
+    }
+
+    /// Sorts the first n pairs by their keys; pairs of equal keys keep their order. n < 2^30.
+    void sort_pairs(buffer<std::uint32_t>& keys, buffer<std::uint32_t>& values, std::size_t n) {
+        constexpr int bits = 32, digit_bits = 11;
         other_keys_.resize(keys.size());
         other_values_.resize(values.size());
         for (int shift = 0; shift < bits; shift += digit_bits) {
@@ -131,6 +178,13 @@ class basic_cpu {
             std::swap(keys, other_keys_);
             std::swap(values, other_values_);
         }
+    }
+
+    /// Runs an iteration's work.
+    template <class F>
+    void iteration(const iteration_shape&, const F& f) {
+        f();
+        end_iteration();
     }
 
     /// Times every n-th iteration from now on.
@@ -196,6 +250,8 @@ class basic_cpu {
 
     buffer<std::uint32_t> other_keys_, other_values_;
     std::vector<std::size_t> histograms_;
+    buffer<std::uint64_t> places_, first_;  // of `distribute`
+    buffer<std::uint32_t> totals_;
     stage_times times_;
     stage running_ = stage::count;
     int sampling_ = 1, iteration_ = 0;

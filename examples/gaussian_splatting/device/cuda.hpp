@@ -3,29 +3,27 @@
 #pragma once
 
 #include <cuda_runtime.h>
+#include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
-#include <stdexcept>
+#include <set>
 #include <string>
+#include <type_traits>
 #include <utility>
-#include <vector>
 #include <warpagg/atomic.hpp>
 
-#include "../error.hpp"
+#include "cuda_distribute.hpp"
+#include "cuda_graph.hpp"
+#include "cuda_memory.hpp"
+#include "cuda_sort.hpp"
+#include "cuda_times.hpp"
 #include "scratch.hpp"
-#include "stages.hpp"
 
 namespace gs::device {
-
-inline void check(cudaError_t status) {
-    if (status == cudaErrorMemoryAllocation)
-        throw error("the GPU is out of memory: lower --max-cap or --resolution");
-    if (status != cudaSuccess) throw std::runtime_error(std::string("CUDA: ") + cudaGetErrorString(status));
-}
 
 namespace detail {
 
@@ -36,20 +34,36 @@ struct wide_sum {
     __device__ std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
 };
 
+/// The first n numbers, and a zero.
+template <class Numbers>
+struct and_a_zero {
+    Numbers numbers;
+    std::size_t n;
+    WARPAGG_HD std::uint64_t operator()(std::size_t i) const { return i < n ? numbers[i] : 0; }
+};
+template <class Items>
+struct sizes_of {
+    Items all;
+    WARPAGG_HD std::uint32_t operator[](std::size_t i) const { return all(i).size(); }
+};
+
 template <class F>
 __global__ void for_each_index(std::size_t n, F f) {
+    await_kernel_before();
     const std::size_t i = std::size_t{blockIdx.x} * block_size + threadIdx.x;
     if (i < n) f(i);
 }
 
 template <class F>
 __global__ void for_each_element(std::size_t n, F f) {
+    await_kernel_before();
     const std::size_t i = std::size_t{blockIdx.x} * block_size + threadIdx.x;
     if (i < n && !f.skip() && !f(i)) f.report(i);
 }
 
 template <class F>
 __global__ void __launch_bounds__(block_size) for_each_warp(unsigned n, F f) {
+    await_kernel_before();
     const unsigned i = blockIdx.x * warps_per_block + threadIdx.x / 32;
     using warp = warpagg::cuda::warp;
     if constexpr (has_scratch<F, warp>) {
@@ -67,62 +81,21 @@ class cuda {
   public:
     using warp = warpagg::cuda::warp;
 
-    /// Memory of the device. Growing it loses the contents.
     template <class T>
-    class buffer {
-      public:
-        buffer() = default;
-        buffer(buffer&& other) noexcept { swap(other); }
-        buffer& operator=(buffer&& other) noexcept {
-            swap(other);
-            return *this;
-        }
-        ~buffer() { release(); }
+    using buffer = cuda_buffer<T>;
 
-        void resize(std::size_t n) {
-            if (n > capacity_) {
-                release();
-                check(cudaMalloc(&memory_, n * sizeof(T)));
-                capacity_ = n;
-                allocated(static_cast<std::ptrdiff_t>(bytes()));
-            }
-            size_ = n;
-        }
-        T* data() const { return memory_; }
-        std::size_t size() const { return size_; }
-        std::size_t bytes() const { return capacity_ * sizeof(T); }
-
-      private:
-        void release() {
-            if (memory_ == nullptr) return;
-            cudaFree(memory_);
-            allocated(-static_cast<std::ptrdiff_t>(bytes()));
-            memory_ = nullptr;
-            size_ = capacity_ = 0;
-        }
-        void swap(buffer& other) noexcept {
-            std::swap(memory_, other.memory_);
-            std::swap(size_, other.size_);
-            std::swap(capacity_, other.capacity_);
-        }
-
-        T* memory_ = nullptr;
-        std::size_t size_ = 0, capacity_ = 0;
-    };
-
-    cuda() {
-        check(cudaStreamCreate(&stream_));
+    cuda() : times_(stream_) {
         int processors = 0;
         check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, 0));
         resident_warps_ = 32 * static_cast<std::size_t>(processors);
-        for (auto& e : marks_) check(cudaEventCreate(&e));
+        cudaFuncAttributes kernel{};
+        check(cudaFuncGetAttributes(&kernel, detail::count_digits<std::uint32_t>));
+        kernels_await_ = kernel.ptxVersion >= 90;
+        slices_done_.resize(1);
+        zero(slices_done_.data(), 1);
     }
     cuda(const cuda&) = delete;
     cuda& operator=(const cuda&) = delete;
-    ~cuda() {
-        for (auto& e : marks_) cudaEventDestroy(e);
-        cudaStreamDestroy(stream_);
-    }
 
     std::string name() const {
         cudaDeviceProp properties{};
@@ -136,25 +109,19 @@ class cuda {
     /// f(i) for each i in [0, n).
     template <class F>
     void for_each_index(std::size_t n, const F& f) {
-        if (n == 0) return;
-        detail::for_each_index<<<blocks(n, detail::block_size), detail::block_size, 0, stream_>>>(n, f);
-        check(cudaGetLastError());
+        launch(detail::for_each_index<F>, blocks(n, detail::block_size), detail::block_size, 0, n, f);
     }
     /// The same for plain arithmetic on arrays; and not at all if f.skip(), which the device finds out. f(i)
     /// says whether all is well with i; if not, f.report(i) is called.
     template <class F>
     void for_each_element(std::size_t n, const F& f) {
-        if (n == 0) return;
-        detail::for_each_element<<<blocks(n, detail::block_size), detail::block_size, 0, stream_>>>(n, f);
-        check(cudaGetLastError());
+        launch(detail::for_each_element<F>, blocks(n, detail::block_size), detail::block_size, 0, n, f);
     }
     /// f(warp, i) for each i in [0, n), each on a warp of its own; f(warp, i, scratch) if it has scratch.
     template <class F>
     void for_each_warp(std::size_t n, const F& f) {
-        if (n == 0) return;
-        detail::for_each_warp<<<blocks(n, detail::warps_per_block), detail::block_size, 0, stream_>>>(
-            static_cast<unsigned>(n), f);
-        check(cudaGetLastError());
+        launch(detail::for_each_warp<F>, blocks(n, detail::warps_per_block), detail::block_size, 0,
+               static_cast<unsigned>(n), f);
     }
 
     template <class T>
@@ -174,106 +141,134 @@ class cuda {
 
     /// out[i] = in[0] + ... + in[i - 1] for i in [0, n]; out has n + 1 elements.
     void prefix_sum(const buffer<std::uint32_t>& in, buffer<std::uint64_t>& out, std::size_t n) {
-        check(cudaMemsetAsync(out.data(), 0, sizeof(std::uint64_t), stream_));
-        if (n == 0) return;
-        const auto scan = [&](void* scratch, std::size_t& bytes) {
-            return cub::DeviceScan::InclusiveScan(scratch, bytes, in.data(), out.data() + 1,
-                                                  detail::wide_sum{}, n, stream_);
-        };
-        with_scratch(scan);
+        prefix_sum_of(in.data(), out, n);
     }
 
-    /// Sorts the first n pairs by the low `bits` of their keys; pairs of equal keys keep their order.
-    void sort_pairs(buffer<std::uint32_t>& keys, buffer<std::uint32_t>& values, std::size_t n, int bits) {
-        if (n == 0) return;
-        other_keys_.resize(keys.size());
-        other_values_.resize(values.size());
-        cub::DoubleBuffer<std::uint32_t> k(keys.data(), other_keys_.data());
-        cub::DoubleBuffer<std::uint32_t> v(values.data(), other_values_.data());
-        const auto sort = [&](void* scratch, std::size_t& bytes) {
-            return cub::DeviceRadixSort::SortPairs(scratch, bytes, k, v, n, 0, bits, stream_);
-        };
-        with_scratch(sort);
-        if (k.selector == 1) std::swap(keys, other_keys_);
-        if (v.selector == 1) std::swap(values, other_values_);
+    /// See `basic_cpu`.
+    template <class Items, class Range>
+    void distribute(std::size_t n, const Items& all, std::size_t buckets, std::uint64_t room,
+                    std::uint32_t* listed, Range* ranges, std::uint64_t* needed) {
+        using namespace detail;
+        first_candidate_.resize(n + 1);
+        prefix_sum_of(sizes_of<Items>{all}, first_candidate_, n);
+        table_.resize(slices * buckets);
+
+        const std::uint64_t* first = first_candidate_.data();
+        const auto b = static_cast<unsigned>(buckets);
+        const bool shared = buckets <= shared_buckets;
+        const std::size_t row = shared ? buckets * sizeof(std::uint32_t) : 0;
+        launch(shared ? count_slice<true, Items> : count_slice<false, Items>, slices,
+               counting_warps * warp_size, row, all, first, n, b, table_.data());
+        launch(place_buckets<Range>, blocks(buckets, warp_size), placing_warps * warp_size, 0, b,
+               table_.data(), room, ranges, needed, slices_done_.data());
+        launch(shared ? append_slice<true, Items, Range> : append_slice<false, Items, Range>, slices,
+               warp_size, row, all, first, n, b, table_.data(), room, ranges, listed);
+    }
+
+    /// Sorts the first n pairs by their keys; pairs of equal keys keep their order. n < 2^30.
+    void sort_pairs(buffer<std::uint32_t>& keys, buffer<std::uint32_t>& values, std::size_t n) {
+        using namespace detail;
+        other_keys_.resize(n);
+        other_values_.resize(n);
+        const unsigned tiles = blocks(n, keys_a_tile), count = static_cast<unsigned>(n);
+        sort_memory_.resize(sort_memory::size(tiles));
+        zero(sort_memory_.data(), sort_memory_.size());
+        constexpr unsigned most_blocks = 512;
+        launch(count_digits<std::uint32_t>, std::min(tiles, most_blocks), sorting_threads, 0, keys.data(),
+               count, sort_memory_.data());
+        std::uint32_t *from[] = {keys.data(), values.data()},
+                      *to[] = {other_keys_.data(), other_values_.data()};
+        static_assert(digits_a_key % 2 == 0);  // so that they end where they began
+        for (unsigned digit = 0; digit < digits_a_key; ++digit, std::swap(from, to))
+            launch(sort_by_digit<std::uint32_t, std::uint32_t>, tiles, sorting_threads, 0, from[0], from[1],
+                   count, digit * digit_bits, sort_memory(sort_memory_.data(), tiles, digit), to[0], to[1]);
+    }
+
+    /// Runs f, which launches an iteration's work and waits for none of it. Iterations of the same `shape`
+    /// need the same memory: from the second on they are launched as one graph, but for those that are timed.
+    template <class F>
+    void iteration(const iteration_shape& shape, const F& f) {
+        const bool is_new = shapes_.insert(shape).second;
+        if (launches_graphs && !is_new && !times_.is_sampled())
+            graph_.launch(stream_, f);
+        else
+            f();
+        end_iteration();
     }
 
     /// Times every n-th iteration from now on.
-    void sample_times(int every) {
-        collect();
-        sampling_ = every;
-        iteration_ = 0;
-        times_ = {};
-    }
+    void sample_times(int every) { times_.sample(every); }
     /// What follows belongs to no iteration.
-    void pause_times(bool paused) { paused_ = paused; }
+    void pause_times(bool paused) { times_.pause(paused); }
     /// Marks where a stage begins.
-    void begin(stage s) {
-        if (paused_ || iteration_ % sampling_ != 0) return;
-        check(cudaEventRecord(marks_[static_cast<std::size_t>(s)], stream_));
-        pending_[static_cast<std::size_t>(s)] = true;
-    }
-    void end_iteration() {
-        begin(stage::count);
-        if (++iteration_ % sampling_ == 0) collect();
-    }
-    const stage_times& times() {
-        collect();
-        return times_;
-    }
+    void begin(stage s) { times_.begin(s); }
+    void end_iteration() { times_.end_iteration(); }
+    const stage_times& times() { return times_.get(); }
 
-    std::size_t peak_bytes() const { return peak(); }
+    std::size_t peak_bytes() const { return pool_.peak_bytes(); }
     void wait() { check(cudaStreamSynchronize(stream_)); }
 
   private:
+    static constexpr bool launches_graphs = true, overlaps_launches = true;
+
+    /// A stream that other objects can be made with.
+    struct owned_stream {
+        cudaStream_t stream{};
+        owned_stream() { check(cudaStreamCreate(&stream)); }
+        owned_stream(const owned_stream&) = delete;
+        owned_stream& operator=(const owned_stream&) = delete;
+        ~owned_stream() { cudaStreamDestroy(stream); }
+        operator cudaStream_t() const { return stream; }
+    };
+
     static unsigned blocks(std::size_t n, unsigned each) {
         return static_cast<unsigned>((n + each - 1) / each);
     }
 
-    template <class F>
-    void with_scratch(const F& f) {
+    /// Launches a kernel, one that begins with `await_kernel_before`, unless it has no blocks.
+    template <class... Parameters>
+    void launch(void (*kernel)(Parameters...), unsigned blocks, unsigned threads, std::size_t shared_bytes,
+                const std::type_identity_t<Parameters>&... arguments) {
+        if (blocks == 0) return;
+        cudaLaunchAttribute overlap{};
+        overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+        overlap.val.programmaticStreamSerializationAllowed = 1;
+        cudaLaunchConfig_t config{};
+        config.gridDim = blocks;
+        config.blockDim = threads;
+        config.dynamicSmemBytes = shared_bytes;
+        config.stream = stream_;
+        config.attrs = &overlap;
+        config.numAttrs = overlaps_launches && kernels_await_ ? 1 : 0;
+        check(cudaLaunchKernelEx(&config, kernel, arguments...));
+    }
+
+    template <class Numbers>
+    void prefix_sum_of(const Numbers& in, buffer<std::uint64_t>& out, std::size_t n) {
+        const auto numbers = thrust::make_transform_iterator(thrust::counting_iterator<std::size_t>(0),
+                                                             detail::and_a_zero<Numbers>{in, n});
+        const auto scan = [&](void* scratch, std::size_t& bytes) {
+            return cub::DeviceScan::ExclusiveScan(scratch, bytes, numbers, out.data(), detail::wide_sum{},
+                                                  std::uint64_t{0}, n + 1, stream_);
+        };
         std::size_t bytes = 0;
-        check(f(nullptr, bytes));
-        scratch_.resize(bytes + 1);
-        check(f(scratch_.data(), bytes));
+        check(scan(nullptr, bytes));
+        scratch_.resize(bytes);
+        check(scan(scratch_.data(), bytes));
     }
 
-    /// The times of the last sampled iteration, long done when the next one is.
-    void collect() {
-        std::size_t from = marks_.size();
-        for (std::size_t s = 0; s < marks_.size(); ++s) {
-            if (!pending_[s]) continue;
-            if (from < marks_.size()) {
-                float ms = 0;
-                check(cudaEventSynchronize(marks_[s]));
-                check(cudaEventElapsedTime(&ms, marks_[from], marks_[s]));
-                times_.milliseconds[from] += ms;
-            }
-            from = s;
-            pending_[s] = false;
-        }
-        if (from < marks_.size()) ++times_.sampled;
-    }
-
-    static std::size_t& peak() {
-        static std::size_t bytes = 0;
-        return bytes;
-    }
-    static void allocated(std::ptrdiff_t bytes) {
-        static std::ptrdiff_t now = 0;
-        now += bytes;
-        peak() = std::max(peak(), static_cast<std::size_t>(now));
-    }
-
-    cudaStream_t stream_{};
+    cuda_pool pool_;
+    owned_stream stream_;
+    cuda_times times_;
+    cuda_graph graph_;
+    std::set<iteration_shape> shapes_;  ///< that were seen
+    bool kernels_await_ = false;        ///< they were compiled for a GPU that can
     std::size_t resident_warps_ = 0;
-    buffer<std::uint32_t> other_keys_, other_values_;
+    buffer<std::uint32_t> other_keys_, other_values_, sort_memory_;
     buffer<char> scratch_;
-    std::array<cudaEvent_t, static_cast<std::size_t>(stage::count) + 1> marks_{};
-    std::array<bool, static_cast<std::size_t>(stage::count) + 1> pending_{};
-    stage_times times_;
-    bool paused_ = false;
-    int sampling_ = 50, iteration_ = 0;  // the events of every iteration would cost more than they tell
+    buffer<std::uint64_t> first_candidate_;  // of `distribute`
+    buffer<std::uint32_t> table_;
+    buffer<unsigned> slices_done_;
 };
 
 }  // namespace gs::device

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace gs::device {
 
@@ -11,6 +12,9 @@ enum class stage { project, bin, blend_forward, loss, blend_backward, project_ba
 
 inline constexpr std::array stage_names{"project",          "bin", "blend_forward", "loss", "blend_backward",
                                         "project_backward", "adam"};
+
+/// What decides how much memory an iteration needs: equal numbers, equal needs.
+using iteration_shape = std::array<std::size_t, 5>;
 
 /// Milliseconds per stage, summed over the `sampled` iterations that were timed.
 struct stage_times {

@@ -14,20 +14,25 @@ namespace gs::raster {
 /// The tiles that a splat's bounding box meets: [x0, x1) × [y0, y1).
 struct tile_box {
     std::uint16_t x0, y0, x1, y1;
+
+    WARPAGG_HD std::uint32_t size() const { return std::uint32_t(x1 - x0) * std::uint32_t(y1 - y0); }
 };
 
-/// Calls `f(tile)` for each tile of the box whose pixels the splat's ellipse reaches.
-template <class Real, class F>
-WARPAGG_HD void for_each_tile(const splat<Real>& s, const tile_box& box, unsigned tiles_across, const F& f) {
-    for (unsigned ty = box.y0; ty < box.y1; ++ty)
-        for (unsigned tx = box.x0; tx < box.x1; ++tx) {
-            const Real x0 = Real(tx * tile_size) + Real(0.5) - s.x,
-                       y0 = Real(ty * tile_size) + Real(0.5) - s.y;
-            const Real side = tile_size - 1;
-            if (least_exponent<Real>(s.p, s.q, s.r, s.slope_x, s.slope_y, x0, x0 + side, y0, y0 + side) <=
-                s.reach)
-                f(ty * tiles_across + tx);
-        }
+/// Whether the splat's ellipse reaches pixels of the tile in this column and row.
+template <class Real>
+WARPAGG_HD bool reaches_tile(const splat<Real>& s, unsigned column, unsigned row) {
+    const Real x0 = Real(column * tile_size) + Real(0.5) - s.x, y0 = Real(row * tile_size) + Real(0.5) - s.y;
+    const Real side = tile_size - 1;
+    return least_exponent<Real>(s.p, s.q, s.r, s.slope_x, s.slope_y, x0, x0 + side, y0, y0 + side) <= s.reach;
+}
+
+/// Whether it reaches any tile of the box.
+template <class Real>
+WARPAGG_HD bool reaches_any(const splat<Real>& s, const tile_box& box) {
+    for (unsigned row = box.y0; row < box.y1; ++row)
+        for (unsigned column = box.x0; column < box.x1; ++column)
+            if (reaches_tile(s, column, row)) return true;
+    return false;
 }
 
 /// Gaussians to splats: one index a Gaussian.
@@ -42,7 +47,7 @@ struct project {
     tile_box* boxes;
     std::uint32_t* depths;      ///< the depth as a sort key: a positive float's bits are in its order
     std::uint32_t* identities;  ///< i: the value that is sorted along
-    std::uint32_t* tiles;       ///< how many tiles the splat meets; zero if it is not drawn
+    std::uint32_t* tiles;       ///< how many tiles the splat's box has; zero if it is not drawn
 
     WARPAGG_HD void operator()(std::size_t index) const {
         const auto i = static_cast<unsigned>(index);
@@ -68,9 +73,7 @@ struct project {
         s.slope_y = f.shape.slope_y;
         const Real far = warpagg::math::sqrt(s.reach);
         const tile_box box = bounds(s, far * f.shape.width, far * f.shape.height);
-        unsigned met = 0;
-        for_each_tile(s, box, tiles_across, [&](unsigned) { ++met; });
-        if (met == 0) return;
+        if (!reaches_any(s, box)) return;
 
         const vec3<Real> rgb = colour(i);
         if (!is_finite(rgb)) return;
@@ -79,7 +82,7 @@ struct project {
         s.blue = held(rgb.z);
         splats[i] = s;
         boxes[i] = box;
-        tiles[i] = met;
+        tiles[i] = box.size();
         depths[i] = bits_of(static_cast<float>(f.at.z));
     }
 

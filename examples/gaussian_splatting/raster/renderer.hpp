@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <string>
 
 #include "../device/stages.hpp"
@@ -28,27 +27,31 @@ class renderer {
     using warp = typename Device::warp;
     using model = parameter_arrays<const Real>;
 
-    explicit renderer(Device& device) : device_(device) { device_.zero(reserve(pairs_, 1).data(), 1); }
+    explicit renderer(Device& device) : device_(device) {
+        device_.zero(reserve(pairs_, 1).data(), 1);
+        device_.zero(reserve(needed_, 1).data(), 1);
+    }
 
-    /// How many instances (Gaussian, tile) a view has. Waits for the device.
-    std::uint64_t count_instances(const model& gaussians, std::size_t count, const camera& view,
-                                  int sh_degree) {
+    /// Finds how many instances (Gaussian, tile) a view has: see `instances`.
+    void measure(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         project_all(gaussians, count, view, sh_degree);
-        device_.prefix_sum(tiles_, first_, count);
-        std::uint64_t total = 0;
-        device_.download(&total, first_.data() + count, 1);
-        return total;
+        list_by_tile(count, 0);
+    }
+    /// How many instances the last view has, whether drawn or measured. Waits for the device.
+    std::uint64_t instances() {
+        std::uint64_t n = 0;
+        device_.download(&n, needed_.data(), 1);
+        return n;
     }
 
     /// Makes room for that many instances a view, and for `spare` more as far as 31 bits go. `forward` cuts
-    /// what does not fit: see `instances`.
+    /// what does not fit: see `room`.
     void reserve_instances(std::uint64_t most, std::uint64_t spare = 0) {
         constexpr std::uint64_t limit = std::uint64_t{1} << 31;
         if (most >= limit)
             throw error("a view has " + std::to_string(most) +
                         " pairs of Gaussian and tile, more than 2^31: lower --max-cap or --resolution");
         capacity_ = std::min(most + spare, limit - 1);
-        tile_of_.resize(capacity_);
         gaussian_of_.resize(capacity_);
     }
     std::uint64_t reserved_instances() const { return capacity_; }
@@ -106,7 +109,7 @@ class renderer {
 
     const Real* picture() const { return picture_.data(); }
     /// Whether the last view's instances fit.
-    list_room room() const { return {first_.data() + count_, capacity_}; }
+    list_room room() const { return {needed_.data(), capacity_}; }
     /// On the device: pixel-Gaussian pairs evaluated by all `forward`s so far.
     const unsigned long long* pairs() const { return pairs_.data(); }
 
@@ -146,7 +149,6 @@ class renderer {
                         " has more than 2^29 pixels: lower --resolution");
         tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
-        first_.resize(count + 1);
         device_.for_each_index(
             count, project<Real>{gaussians, for_device<Real>(view), sh_degree, tiles_across_, tiles_down_,
                                  reserve(splats_, count).data(), reserve(boxes_, count).data(),
@@ -154,24 +156,18 @@ class renderer {
                                  reserve(tiles_, count).data()});
     }
 
-    /// Lists of Gaussians per tile, front to back: sorted by depth first and then, stably, by tile, so that
-    /// neither key needs more than 32 bits and equal depths keep the order of the Gaussians.
+    /// Lists of Gaussians per tile, front to back: equal depths keep the order of the Gaussians.
     void bin(std::size_t count) {
-        device_.sort_pairs(depths_, order_, count, 32);
-        device_.for_each_index(
-            count, gather_tiles{order_.data(), tiles_.data(), reserve(sorted_tiles_, count).data()});
-        device_.prefix_sum(sorted_tiles_, first_, count);
-
-        const auto no_tile = static_cast<std::uint32_t>(tiles());
-        device_.for_each_index(capacity_, clear_instances{tile_of_.data(), gaussian_of_.data(), no_tile});
-        device_.for_each_index(
-            count, emit_instances<Real>{order_.data(), first_.data(), splats_.data(), boxes_.data(),
-                                        tiles_across_, capacity_, tile_of_.data(), gaussian_of_.data()});
-        device_.sort_pairs(tile_of_, gaussian_of_, capacity_, static_cast<int>(std::bit_width(no_tile)));
-        device_.zero(reserve(ranges_, tiles()).data(), tiles());
-        device_.for_each_index(capacity_, find_ranges{tile_of_.data(), capacity_, no_tile, ranges_.data()});
-        device_.zero(reserve(tile_of_segment_, segments()).data(), segments());
-        device_.for_each_index(tiles(), number_segments<Cut>{ranges_.data(), tile_of_segment_.data()});
+        device_.sort_pairs(depths_, order_, count);
+        list_by_tile(count, capacity_);
+        device_.for_each_index(segments(),
+                               number_segments<Cut>{ranges_.data(), static_cast<std::uint32_t>(tiles()),
+                                                    reserve(tile_of_segment_, segments()).data()});
+    }
+    void list_by_tile(std::size_t count, std::uint64_t room) {
+        device_.distribute(
+            count, splats_by_depth<Real>{order_.data(), splats_.data(), boxes_.data(), tiles_across_},
+            tiles(), room, gaussian_of_.data(), reserve(ranges_, tiles()).data(), needed_.data());
     }
 
     static vec3<Real> colour(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
@@ -179,9 +175,8 @@ class renderer {
     Device& device_;
     buffer<splat<Real>> splats_;
     buffer<tile_box> boxes_;
-    buffer<std::uint32_t> depths_, order_, tiles_, sorted_tiles_;
-    buffer<std::uint64_t> first_;
-    buffer<std::uint32_t> tile_of_, gaussian_of_;
+    buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_;
+    buffer<std::uint64_t> needed_;
     buffer<tile_range> ranges_;
     buffer<Real> picture_, transmittance_, checkpoints_, sums_;
     buffer<std::uint32_t> last_, tile_of_segment_;

@@ -33,18 +33,23 @@ constexpr std::size_t most_segments(std::size_t tiles, std::size_t places) {
     return tiles + places / Cut::segment;
 }
 
-/// Says which tile each segment belongs to: one index a tile.
+/// Says which tile a segment belongs to: one index a segment.
 template <class Cut>
 struct number_segments {
     const tile_range* ranges;
-    std::uint32_t* tile_of;  ///< one more than the tile; zero before, and where there is no segment
+    std::uint32_t tiles;
+    std::uint32_t* tile_of;  ///< one more than the tile, and zero where there is no segment
 
     WARPAGG_HD void operator()(std::size_t index) const {
-        const auto tile = static_cast<std::uint32_t>(index);
+        const auto segment = static_cast<std::uint32_t>(index);
+        std::uint32_t tile = 0, end = tiles;  // the last tile whose first segment is not after this one
+        while (end - tile > 1) {
+            const std::uint32_t middle = tile + (end - tile) / 2;
+            (middle + ranges[middle].begin / Cut::segment <= segment ? tile : end) = middle;
+        }
         const tile_range r = ranges[tile];
-        if (r.begin == r.end) return;
-        for (std::uint32_t k = r.begin / Cut::segment; k <= (r.end - 1) / Cut::segment; ++k)
-            tile_of[tile + k] = tile + 1;
+        const bool is_there = r.begin < r.end && segment - tile <= (r.end - 1) / Cut::segment;
+        tile_of[segment] = is_there ? tile + 1 : 0;
     }
 };
 

@@ -19,7 +19,7 @@ template <class Real>
 struct tile_lists {
     const splat<Real>* splats;
     const std::uint32_t* gaussian_of;  ///< by place in the list of all tiles
-    const tile_range* ranges;  ///< by tile; no two overlap, and they rise with the tile where not empty
+    const tile_range* ranges;          ///< by tile; each begins where the one before ends
     unsigned tiles_across;
     int width, height;
 };

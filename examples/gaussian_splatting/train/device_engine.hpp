@@ -26,15 +26,25 @@ struct clamp_picture {
     }
 };
 
-/// Counts the steps that were left out, and looks at the loss: one index.
+/// Notes how long the lists of a view are: one index.
+struct note_length {
+    raster::list_room room;
+    std::uint64_t* length;
+
+    WARPAGG_HD void operator()(std::size_t) const { *length = *room.needed; }
+};
+
+/// Counts the steps that were left out, notes how long the lists were, and looks at the loss: one index.
 struct close_step {
     raster::list_room room;
     std::uint64_t* skipped;
-    const double* totals;  ///< of the loss
+    std::uint64_t* length;  ///< of the view's lists
+    const double* totals;   ///< of the loss
     train::watch watch;
 
     WARPAGG_HD void operator()(std::size_t) const {
         if (room.exceeded()) ++*skipped;
+        *length = *room.needed;
         double sum = 0;
         for (int k = 0; k < loss_sum_count; ++k) sum += totals[k];
         if (!raster::is_finite(sum)) watch.note(fault::loss, 0, 0);
@@ -87,7 +97,8 @@ class device_engine final : public engine {
         put(train, train_[0]);
         for (std::size_t level = 0; level < levels; ++level) put(shrunk[level], train_[1 + level]);
         put(test, test_);
-        downscales_ = 0;
+        lengths_.resize(train.size());
+        set_downscales(0);
         device_.wait();
     }
 
@@ -110,6 +121,7 @@ class device_engine final : public engine {
             for (auto& m : *moments) device_.zero(m.data(), m.size());
         device_.wait();
         begin_generation(model.count());
+        std::ranges::fill(lengths_of_, 0);
         steps_ = 0;
     }
 
@@ -142,22 +154,18 @@ class device_engine final : public engine {
 
     std::size_t count() const override { return count_; }
 
-    void set_downscales(int times) override { downscales_ = static_cast<std::size_t>(times); }
+    void set_downscales(int times) override {
+        downscales_ = static_cast<std::size_t>(times);
+        lengths_of_.assign(train_[downscales_].size(), 0);
+    }
 
     void step(const step_plan& plan) override {
-        using device::stage;
-        const photo& shot = train_[downscales_][plan.view];
-        renderer_.forward(read(values_), count_, shot.camera, plan.sh_degree, plan.background);
-        device_.begin(stage::loss);
-        photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
-                               plan.background);
-        const float* by_picture =
-            photometric_.gradient(renderer_.picture(), plan.ssim_weight, renderer_.room());
-        renderer_.backward(by_picture, plan.gradient, plan.updates_sh ? plan.sh_degree : 0, write(gradients_),
-                           plan.watch ? seen_.data() : nullptr);
-        device_.begin(stage::adam);
-        descend(plan);
-        device_.end_iteration();
+        const gs::camera& camera = train_[downscales_][plan.view].camera;
+        const device::iteration_shape shape{
+            count_, renderer_.reserved_instances(), static_cast<std::size_t>(camera.width),
+            static_cast<std::size_t>(camera.height), static_cast<std::size_t>(plan.gradient)};
+        device_.iteration(shape, [&] { iterate(plan); });
+        lengths_of_[plan.view] = count_;
     }
 
     std::uint64_t densify(const densify_rule& rule) override {
@@ -169,7 +177,7 @@ class device_engine final : public engine {
                                     urgency_.data(), gaussian_of_.data(), silent_.data()});
         const std::size_t staying = total_of_copies();
         const std::size_t room = rule.cap > staying ? rule.cap - staying : 0;
-        device_.sort_pairs(urgency_, gaussian_of_, count_, 32);
+        device_.sort_pairs(urgency_, gaussian_of_, count_);
         device_.for_each_index(count_, let_grow{urgency_.data(), gaussian_of_.data(), room, copies_.data()});
         const std::size_t next = total_of_copies();
 
@@ -203,9 +211,27 @@ class device_engine final : public engine {
     }
 
     void reserve() override {
+        const std::vector<photo>& shots = train_[downscales_];
+        for (std::size_t v = 0; v < shots.size(); ++v) {
+            if (lengths_of_[v] > 0) continue;  // a step has seen it
+            // It does not depend on colours: the least degree will do.
+            renderer_.measure(read(values_), count_, shots[v].camera, 0);
+            device_.for_each_index(1, note_length{renderer_.room(), lengths_.data() + v});
+            lengths_of_[v] = count_;
+        }
+        std::vector<std::uint64_t> lengths(shots.size());
+        if (!lengths.empty()) device_.download(lengths.data(), lengths_.data(), lengths.size());
         std::uint64_t most = 0;
-        for (const photo& p : train_[downscales_]) most = std::max(most, count_instances(p.camera));
-        renderer_.reserve_instances(most, most / 2 + 4096);
+        double expected = 0;
+        for (std::size_t v = 0; v < lengths.size(); ++v) {
+            most = std::max(most, lengths[v]);
+            if (lengths[v] > 0)
+                expected = std::max(expected, static_cast<double>(lengths[v]) * static_cast<double>(count_) /
+                                                  static_cast<double>(lengths_of_[v]));
+        }
+        // With a margin to both sides, so that room seldom changes.
+        if (static_cast<double>(renderer_.reserved_instances()) < 1.5 * expected + 1024)
+            renderer_.reserve_instances(most, static_cast<std::uint64_t>(2 * expected) + 4096);
     }
 
     quality take_training_quality() override { return photometric_.take(); }
@@ -306,6 +332,21 @@ class device_engine final : public engine {
         return total;
     }
 
+    void iterate(const step_plan& plan) {
+        using device::stage;
+        const photo& shot = train_[downscales_][plan.view];
+        renderer_.forward(read(values_), count_, shot.camera, plan.sh_degree, plan.background);
+        device_.begin(stage::loss);
+        photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
+                               plan.background);
+        const float* by_picture =
+            photometric_.gradient(renderer_.picture(), plan.ssim_weight, renderer_.room());
+        renderer_.backward(by_picture, plan.gradient, plan.updates_sh ? plan.sh_degree : 0, write(gradients_),
+                           plan.watch ? seen_.data() : nullptr);
+        device_.begin(stage::adam);
+        descend(plan);
+    }
+
     void descend(const step_plan& plan) {
         const train::watch watch{found_.data(), static_cast<std::uint32_t>(plan.iteration)};
         ++steps_;
@@ -320,8 +361,8 @@ class device_engine final : public engine {
                             static_cast<float>(plan.rates[p] * by_first), static_cast<float>(by_second),
                             renderer_.room(), watch, static_cast<std::uint32_t>(p), width});
         }
-        device_.for_each_index(1,
-                               close_step{renderer_.room(), skipped_.data(), photometric_.totals(), watch});
+        device_.for_each_index(1, close_step{renderer_.room(), skipped_.data(), lengths_.data() + plan.view,
+                                             photometric_.totals(), watch});
     }
 
     std::uint64_t all_pairs() {
@@ -330,18 +371,15 @@ class device_engine final : public engine {
         return n;
     }
 
-    /// How long the lists are does not depend on colours: the least degree will do.
-    std::uint64_t count_instances(const camera& camera) {
-        return renderer_.count_instances(read(values_), count_, camera, 0);
-    }
-
     /// A picture of the whole model, whatever room it takes. Neither timed nor counted: it is no step.
     void draw(const camera& camera, const std::array<float, 3>& background) {
-        const std::uint64_t reserved = renderer_.reserved_instances();
-        renderer_.reserve_instances(std::max(reserved, count_instances(camera)));
         const std::uint64_t before = all_pairs();
         device_.pause_times(true);
         renderer_.forward(read(values_), count_, camera, sh_degree_, background);
+        if (const std::uint64_t needed = renderer_.instances(); needed > renderer_.reserved_instances()) {
+            renderer_.reserve_instances(needed, needed / 4);
+            renderer_.forward(read(values_), count_, camera, sh_degree_, background);
+        }
         device_.pause_times(false);
         drawn_pairs_ += all_pairs() - before;
     }
@@ -359,6 +397,9 @@ class device_engine final : public engine {
     std::vector<std::vector<photo>> train_;  ///< by how often they were shrunk
     std::vector<photo> test_;
     std::size_t downscales_ = 0;
+
+    buffer<std::uint64_t> lengths_;        // of each training view's lists when it was last seen,
+    std::vector<std::size_t> lengths_of_;  // and of how many Gaussians; none if it was not
 
     int sh_degree_ = 0;
     std::size_t count_ = 0;

@@ -56,8 +56,9 @@ class engine {
     /// were drawn while their centres took no gradient, as where alpha is too low everywhere.
     virtual std::uint64_t densify(const densify_rule& rule) = 0;
     virtual void reset_opacity(float most) = 0;
-    /// Makes room for the longest lists of the training views, and half as much again for what they grow to.
-    /// To be called after `set_model` and `densify`, and now and then.
+    /// Makes room for the longest lists of the training views, and for what they may grow to: by how long
+    /// each was when a `step` last saw it, and how many Gaussians there are now. To be called after
+    /// `set_model` and `densify`, and now and then.
     virtual void reserve() = 0;
     /// The means over the `step`s since the last call, or since the last `measure`.
     virtual quality take_training_quality() = 0;
