@@ -38,10 +38,10 @@ message(STATUS "warpagg: CUDA ${warpagg_with_cuda}")
 
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 
-# Options of all that is built here.
-add_library(warpagg_build INTERFACE)
-target_link_libraries(warpagg_build INTERFACE warpagg::warpagg OpenMP::OpenMP_CXX)
-target_compile_options(warpagg_build INTERFACE
+# Options of all that is built here; `warpagg_build` says for which CPU, too.
+add_library(warpagg_options INTERFACE)
+target_link_libraries(warpagg_options INTERFACE warpagg::warpagg OpenMP::OpenMP_CXX)
+target_compile_options(warpagg_options INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror>
     # GCC 12 sees overlaps in std::string's operator+ that cannot be (its bug 105651).
     $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict>
@@ -49,11 +49,13 @@ target_compile_options(warpagg_build INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
     # 20012 is GLM's, about its defaulted constructors.
     $<$<COMPILE_LANGUAGE:CUDA>:-diag-suppress=20012 -Xcompiler=-Wall,-Wextra>)
+add_library(warpagg_build INTERFACE)
+target_link_libraries(warpagg_build INTERFACE warpagg_options)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     target_compile_options(warpagg_build INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-march=${WARPAGG_CPU_ARCH}>)
 endif()
 if(WARPAGG_SANITIZE)
-    target_compile_options(warpagg_build INTERFACE
+    target_compile_options(warpagg_options INTERFACE
         $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${WARPAGG_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer>)
-    target_link_options(warpagg_build INTERFACE -fsanitize=${WARPAGG_SANITIZE})
+    target_link_options(warpagg_options INTERFACE -fsanitize=${WARPAGG_SANITIZE})
 endif()

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -327,6 +328,29 @@ TEST_CASE("a step whose lists do not fit changes nothing, and is counted") {
         CHECK(e->skipped_steps() == 1);
         CHECK_FALSE(same(e->get_model(), large));
     }
+}
+
+TEST_CASE("what the CPU computes does not depend on its instruction set") {
+    const gs::scene scene = small_scene();
+    const gaussians model = gs::from_points(scene.points, 3, 3000, 1);
+    std::vector<std::vector<float>> pictures;
+    std::vector<gaussians> stepped;
+    const int threads = omp_get_max_threads();
+    omp_set_num_threads(1);  // several add up gradients in any order
+    for (const auto make : gs::train::cpu_engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(model);
+        e->reserve();
+        pictures.push_back(e->render(scene.test[0].camera, {1, 1, 1}));
+        for (std::size_t v = 0; v < 3; ++v) e->step(plan_for(v));
+        stepped.push_back(e->get_model());
+        INFO(e->device_name());
+        CHECK(pictures.back() == pictures.front());
+        CHECK(same(stepped.back(), stepped.front()));
+    }
+    omp_set_num_threads(threads);
+    CHECK_FALSE(same(stepped.front(), model));
 }
 
 #if defined(WARPAGG_TEST_CUDA)

@@ -2,48 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <span>
-#include <warpagg/simt/lanes.hpp>
-
-#include "host_memory.hpp"
+#include "simd.hpp"
 
 namespace {
 
 /// Where a test text runs; each header of this folder defines one. A test passes `launch` an object `f` with
 /// `f(const W& warp)`, which exactly one warp executes, and which sees only `memory`.
-struct backend {
-    using warp = warpagg::emulator::lanes;
+struct backend : simd_backend<warpagg::emulator::lanes> {
     static constexpr const char* name = "lanes";
-    static constexpr bool commits_in_lane_order = true;
-    /// Of the masks that there are, each nth is tried.
-    static constexpr unsigned every_nth_mask = 1;
-    /// Whether `commit::packed` applies to aligned records of T.
-    template <class T>
-    static constexpr bool packs() {
-        return false;
-    }
-
-    template <class T>
-    using memory = host_memory<T>;
-    template <class T>
-    using span = std::span<T>;
-
-    /// The block's memory of `size` values, and the block's barrier.
-    /// @{
-    template <class T, class W>
-    static T* shared(const W&, unsigned size) {
-        static thread_local std::vector<T> memory;
-        memory.assign(size, T{});
-        return memory.data();
-    }
-    template <class W>
-    static void barrier(const W&) {}
-    /// @}
-
-    template <class F>
-    static void launch(const F& f) {
-        f(warp{});
-    }
 };
 
 }  // namespace

@@ -24,6 +24,15 @@
 
 namespace gs::device {
 
+/// What this was compiled for, as part of the device's name.
+#if defined(__AVX512VL__)
+inline constexpr const char* instruction_set = ", AVX-512";
+#elif defined(__AVX2__)
+inline constexpr const char* instruction_set = ", AVX2";
+#else
+inline constexpr const char* instruction_set = "";
+#endif
+
 /// The CPU as a device: an index range or a range of warps is spread over OpenMP threads, and memory is the
 /// host's. `Warp` is the model that warp kernels run on. The interface is that of `cuda`.
 template <class Warp>
@@ -58,7 +67,9 @@ class basic_cpu {
 #endif
     }
 
-    std::string name() const { return "cpu, " + std::to_string(omp_get_max_threads()) + " threads"; }
+    std::string name() const {
+        return "cpu, " + std::to_string(omp_get_max_threads()) + " threads" + instruction_set;
+    }
 
     /// About as many warps as run at once: a thread runs one.
     std::size_t resident_warps() const { return static_cast<std::size_t>(omp_get_max_threads()); }

@@ -83,6 +83,9 @@ class engine {
     virtual void wait() = 0;
 };
 
+/// The CPU's engine, as it was compiled for each instruction set that this machine can run: the best is last.
+std::vector<std::unique_ptr<engine> (*)()> cpu_engines();
+/// The last of these.
 std::unique_ptr<engine> make_cpu_engine();
 /// Throws `error` where there is no GPU.
 std::unique_ptr<engine> make_cuda_engine();

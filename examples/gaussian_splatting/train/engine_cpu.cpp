@@ -3,8 +3,11 @@
 #include "../device/cpu.hpp"
 #include "device_engine.hpp"
 
-namespace gs::train {
+#if !defined(WARPAGG_MAKE_CPU_ENGINE)
+#define WARPAGG_MAKE_CPU_ENGINE make_cpu_engine_as_built
+#endif
 
-std::unique_ptr<engine> make_cpu_engine() { return std::make_unique<device_engine<device::cpu>>(); }
-
-}  // namespace gs::train
+/// The engine of the CPU, for the instruction set that this file is compiled for. See cpu_engines.cpp.
+extern "C" gs::train::engine* WARPAGG_MAKE_CPU_ENGINE() {
+    return new gs::train::device_engine<gs::device::cpu>;
+}

@@ -22,22 +22,23 @@ struct counted {
     counters* to;                         ///< what is added to
 };
 
-/// The fast emulator: one thread runs a warp of 32 lanes, all of them in SIMD registers. Lane values are
-/// `warpagg::lanes<T, 32>`, so kernels are masked (`select`, uniform branches). Lanes commit in order of
-/// their number.
-template <class Counting>
+/// The fast emulator: one thread runs a warp of `Size` lanes, 8, 16 or 32, all of them in SIMD registers.
+/// Lane values are `warpagg::lanes<T, Size>`, so kernels are masked (`select`, uniform branches). Lanes
+/// commit in order of their number. With 8 lanes a value takes one register, where with 32, a GPU's number, a
+/// kernel of more than a few values has most of them in memory.
+template <class Counting, unsigned Size = 32>
 struct basic_lanes : Counting {
     /// The operation of this name of the concept `warp`.
     /// @{
-    static constexpr unsigned size = 32;
+    static constexpr unsigned size = Size;
     template <class T>
-    using value = warpagg::lanes<T, 32>;
+    using value = warpagg::lanes<T, static_cast<int>(Size)>;
     using mask = value<bool>;
 
     WARPAGG_HD value<unsigned> lane() const {
         value<unsigned> r;
         WARPAGG_UNROLL
-        for (int i = 0; i < 32; ++i) r.set(i, static_cast<unsigned>(i));
+        for (int i = 0; i < static_cast<int>(size); ++i) r.set(i, static_cast<unsigned>(i));
         return r;
     }
 
@@ -60,14 +61,14 @@ struct basic_lanes : Counting {
         count_shuffle<T>();
         value<T> r;
         WARPAGG_UNROLL
-        for (int i = 0; i < 32; ++i) r.set(i, v[static_cast<int>(from[i] % size)]);
+        for (int i = 0; i < static_cast<int>(size); ++i) r.set(i, v[static_cast<int>(from[i] % size)]);
         return r;
     }
     WARPAGG_HD value<std::uint32_t> match(const value<unsigned>& key) const {
         count([](counters& c) { ++c.votes; });
         value<std::uint32_t> r;
         WARPAGG_UNROLL
-        for (int i = 0; i < 32; ++i) r.set(i, bits(key == value<unsigned>(key[i])));
+        for (int i = 0; i < static_cast<int>(size); ++i) r.set(i, bits(key == value<unsigned>(key[i])));
         return r;
     }
     template <class T>
@@ -138,7 +139,23 @@ struct basic_lanes : Counting {
     template <class T, int N>
     WARPAGG_HD void load_packed(const T* from, const value<unsigned>& index, value<T> (&v)[N],
                                 const mask& active) const {
-        for (unsigned k = 0; k < N; ++k) v[k] = load(from + k, index, active);
+        static_assert(N % 4 == 0);
+        if constexpr (value<T>::width == 8) {
+            static constexpr T nothing[N]{};
+            for_each_chunk(from, nothing, index, active, [&](int i, const T* const(&record)[8]) {
+                WARPAGG_UNROLL
+                for (int k = 0; k < N; k += 4) {
+                    typename value<T>::chunk four[4];
+                    WARPAGG_UNROLL
+                    for (int j = 0; j < 4; ++j) join(record[j] + k, record[j + 4] + k, four[j]);
+                    transpose(four);
+                    WARPAGG_UNROLL
+                    for (int j = 0; j < 4; ++j) v[k + j].part[i] = four[j];
+                }
+            });
+        } else {
+            for (unsigned k = 0; k < N; ++k) v[k] = load(from + k, index, active);
+        }
     }
     template <class T>
     WARPAGG_HD void store(T* to, const value<unsigned>& index, const value<T>& v, const mask& active) const {
@@ -147,7 +164,23 @@ struct basic_lanes : Counting {
     template <class T, int N>
     WARPAGG_HD void store_packed(T* to, const value<unsigned>& index, const value<T> (&v)[N],
                                  const mask& active) const {
-        for (unsigned k = 0; k < N; ++k) store(to + k, index, v[k], active);
+        static_assert(N % 4 == 0);
+        if constexpr (value<T>::width == 8) {
+            T nowhere[N];
+            for_each_chunk(to, nowhere, index, active, [&](int i, T* const(&record)[8]) {
+                WARPAGG_UNROLL
+                for (int k = 0; k < N; k += 4) {
+                    typename value<T>::chunk four[4];
+                    WARPAGG_UNROLL
+                    for (int j = 0; j < 4; ++j) four[j] = v[k + j].part[i];
+                    transpose(four);
+                    WARPAGG_UNROLL
+                    for (int j = 0; j < 4; ++j) part(four[j], record[j] + k, record[j + 4] + k);
+                }
+            });
+        } else {
+            for (unsigned k = 0; k < N; ++k) store(to + k, index, v[k], active);
+        }
     }
     WARPAGG_HD void sync() const {}
     template <class T>
@@ -246,29 +279,71 @@ struct basic_lanes : Counting {
         for (; who != 0; who &= who - 1) f(std::countr_zero(who));
     }
 
+    /// f(i, records) for each chunk i of 8 lanes: where the record of each lies, or that of inactive ones.
+    template <class T, class U, class F>
+    static WARPAGG_HD void for_each_chunk(T* first, U* of_inactive, const value<unsigned>& index,
+                                          const mask& active, const F& f) {
+        const std::uint32_t who = bits(active);
+        WARPAGG_UNROLL
+        for (int i = 0; i < index.chunks; ++i) {
+            T* record[8];
+            WARPAGG_UNROLL
+            for (int j = 0; j < 8; ++j)
+                record[j] = ((who >> (8 * i + j)) & 1u) != 0 ? first + index[8 * i + j] : of_inactive;
+            f(i, record);
+        }
+    }
+    /// Eight values of 32 bits from four and four, and back.
+    /// @{
+    template <class T, class Chunk>
+    static WARPAGG_HD void join(const T* low, const T* high, Chunk& both) {
+        typedef T half __attribute__((vector_size(16)));
+        half l, h;
+        std::memcpy(&l, low, sizeof l);
+        std::memcpy(&h, high, sizeof h);
+        both = __builtin_shufflevector(l, h, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    template <class T, class Chunk>
+    static WARPAGG_HD void part(const Chunk& both, T* low, T* high) {
+        const auto l = __builtin_shufflevector(both, both, 0, 1, 2, 3);
+        const auto h = __builtin_shufflevector(both, both, 4, 5, 6, 7);
+        std::memcpy(low, &l, sizeof l);
+        std::memcpy(high, &h, sizeof h);
+    }
+    /// @}
+    /// Of four times eight values, the first four by four and the last four by four.
+    template <class Chunk>
+    static WARPAGG_HD void transpose(Chunk (&c)[4]) {
+        const Chunk a = __builtin_shufflevector(c[0], c[1], 0, 8, 1, 9, 4, 12, 5, 13);
+        const Chunk b = __builtin_shufflevector(c[2], c[3], 0, 8, 1, 9, 4, 12, 5, 13);
+        const Chunk d = __builtin_shufflevector(c[0], c[1], 2, 10, 3, 11, 6, 14, 7, 15);
+        const Chunk e = __builtin_shufflevector(c[2], c[3], 2, 10, 3, 11, 6, 14, 7, 15);
+        c[0] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+        c[1] = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+        c[2] = __builtin_shufflevector(d, e, 0, 1, 8, 9, 4, 5, 12, 13);
+        c[3] = __builtin_shufflevector(d, e, 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+
     template <unsigned D, class T>
     static WARPAGG_HD value<T> down(const value<T>& v) {
         constexpr int width = value<T>::width, chunks = value<T>::chunks, d = static_cast<int>(D);
+        constexpr int last = chunks - 1;
         value<T> r;
-        WARPAGG_UNROLL
-        for (int i = 0; i < chunks; ++i) {
-            if constexpr (d >= width) {
-                constexpr int step = d / width;
-                r.part[i] = v.part[i + step < chunks ? i + step : i];
-            } else {
-                [&]<std::size_t... I>(std::index_sequence<I...>) {
-                    if (i + 1 < chunks) {
-                        r.part[i] =
-                            __builtin_shufflevector(v.part[i], v.part[i + 1], (static_cast<int>(I) + d)...);
-                    } else {
-                        r.part[i] = __builtin_shufflevector(
-                            v.part[i], v.part[i],
-                            (static_cast<int>(I) + d < width ? static_cast<int>(I) + d
-                                                             : static_cast<int>(I))...);
-                    }
-                }
-                (std::make_index_sequence<static_cast<std::size_t>(width)>{});
+        if constexpr (d >= width) {
+            constexpr int step = d / width;
+            WARPAGG_UNROLL
+            for (int i = 0; i < chunks; ++i) r.part[i] = v.part[i + step < chunks ? i + step : i];
+        } else {
+            [&]<std::size_t... I>(std::index_sequence<I...>) {
+                WARPAGG_UNROLL
+                for (int i = 0; i < last; ++i)
+                    r.part[i] =
+                        __builtin_shufflevector(v.part[i], v.part[i + 1], (static_cast<int>(I) + d)...);
+                r.part[last] = __builtin_shufflevector(
+                    v.part[last], v.part[last],
+                    (static_cast<int>(I) + d < width ? static_cast<int>(I) + d : static_cast<int>(I))...);
             }
+            (std::make_index_sequence<static_cast<std::size_t>(width)>{});
         }
         return r;
     }
@@ -279,7 +354,7 @@ struct basic_lanes : Counting {
         WARPAGG_UNROLL
         for (int i = 0; i < r.chunks; ++i) {
             if constexpr (d >= width) {
-                r.part[i] = v.part[i ^ (d / width)];
+                r.part[i] = v.part[(i ^ (d / width)) % r.chunks];
             } else {
                 [&]<std::size_t... I>(std::index_sequence<I...>) {
                     r.part[i] = __builtin_shufflevector(v.part[i], v.part[i], (static_cast<int>(I) ^ d)...);
@@ -295,7 +370,11 @@ struct basic_lanes : Counting {
 using lanes = basic_lanes<uncounted>;
 /// The same, which counts what it does: `counted_lanes{{&counters}}`.
 using counted_lanes = basic_lanes<counted>;
+/// A warp of fewer lanes: 8 or 16.
+template <unsigned Size>
+using narrow_lanes = basic_lanes<uncounted, Size>;
 
 static_assert(warpagg::warp<lanes> && warpagg::warp<counted_lanes>);
+static_assert(warpagg::warp<narrow_lanes<8>> && warpagg::warp<narrow_lanes<16>>);
 
 }  // namespace warpagg::emulator

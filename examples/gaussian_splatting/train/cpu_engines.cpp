@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "engine.hpp"
+
+extern "C" {
+// Each is engine_cpu.cpp, compiled for another instruction set.
+#if defined(WARPAGG_CPU_LEVELS)
+gs::train::engine* make_cpu_engine_x86_64();
+gs::train::engine* make_cpu_engine_x86_64_v3();
+gs::train::engine* make_cpu_engine_x86_64_v4();
+#else
+gs::train::engine* make_cpu_engine_as_built();
+#endif
+}
+
+namespace gs::train {
+
+namespace {
+
+template <engine* (*Make)()>
+std::unique_ptr<engine> make() {
+    return std::unique_ptr<engine>(Make());
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<engine> (*)()> cpu_engines() {
+#if defined(WARPAGG_CPU_LEVELS)
+    std::vector<std::unique_ptr<engine> (*)()> all{make<make_cpu_engine_x86_64>};
+    if (__builtin_cpu_supports("x86-64-v3")) all.push_back(make<make_cpu_engine_x86_64_v3>);
+    if (__builtin_cpu_supports("x86-64-v4")) all.push_back(make<make_cpu_engine_x86_64_v4>);
+    return all;
+#else
+    return {make<make_cpu_engine_as_built>};
+#endif
+}
+
+std::unique_ptr<engine> make_cpu_engine() { return cpu_engines().back()(); }
+
+}  // namespace gs::train
