@@ -48,6 +48,11 @@ TEST_CASE("a race of two lanes") {
             "store_row", [&](const checked& w) { writes = __LINE__, w.store_row(memory.data(), 5, 1, true); },
             [&](const checked& w) { reads = __LINE__, w.load_row(memory.data(), 0, true); });
     }
+    SUBCASE("whole rows") {
+        race(
+            "store_row", [&](const checked& w) { writes = __LINE__, w.store_row(memory.data(), 5, 1, true); },
+            [&](const checked& w) { reads = __LINE__, w.load_row(memory.data(), 0); });
+    }
     SUBCASE("a watched array") {
         watched<int> a(memory);
         int got = 0;

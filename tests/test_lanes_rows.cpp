@@ -50,6 +50,9 @@ TEST_CASE_TEMPLATE("a row is loaded where lanes are active", T, float, double, s
             const bool active = ((mask >> lane) & 1u) != 0;
             CHECK(row[lane] == (active ? memory[static_cast<std::size_t>(first + lane)] : T{}));
         }
+        if (mask != 0xffffffffu) return;
+        const auto whole = warp.load_row(memory.data(), first);
+        for (int lane = 0; lane < width; ++lane) CHECK(whole[lane] == row[lane]);
     });
 }
 

@@ -43,8 +43,10 @@ double ssim_by_definition(const std::vector<double>& x, const std::vector<double
 
 }  // namespace
 
-TEST_CASE("the measures are those of their definitions, at odd sizes too") {
+TEST_CASE("the measures are those of their definitions, at odd sizes too, one after another") {
     std::mt19937 random(3);
+    gs::device::cpu device;
+    gs::train::photometric<gs::device::cpu, float> photometric(device);
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 17}, {17, 1}, {33, 9}, {64, 20}, {40, 31}}) {
         CAPTURE(width);
         CAPTURE(height);
@@ -69,8 +71,6 @@ TEST_CASE("the measures are those of their definitions, at odd sizes too") {
             square += (x[i] - y[i]) * (x[i] - y[i]) / static_cast<double>(y.size());
         }
 
-        gs::device::cpu device;
-        gs::train::photometric<gs::device::cpu, float> photometric(device);
         photometric.set_photo(rgba.data(), width, height, background);
         photometric.compare(picture.data());
         const gs::train::quality q = photometric.take();
@@ -81,18 +81,48 @@ TEST_CASE("the measures are those of their definitions, at odd sizes too") {
     }
 }
 
-TEST_CASE("a picture is like itself") {
+TEST_CASE("measures and gradient do not depend on how many strips the picture is cut into") {
+    constexpr int width = 45, height = 70;
+    std::mt19937 random(5);
+    std::vector<std::uint8_t> rgba(4 * width * height, 255);
+    for (std::size_t i = 0; i < rgba.size(); ++i)
+        if (i % 4 != 3) rgba[i] = static_cast<std::uint8_t>(random() % 256);
+    std::vector<float> picture(3 * width * height);
+    for (float& x : picture) x = static_cast<float>(random() % 1000) / 999;
+    const auto compare = [&](int threads) {
+        gs::device::cpu device;
+        gs::train::photometric<gs::device::cpu, float> photometric(device);
+        const int before = omp_get_max_threads();
+        omp_set_num_threads(threads);
+        photometric.set_photo(rgba.data(), width, height, {});
+        const float* gradient = photometric.gradient(picture.data(), 0.2);
+        omp_set_num_threads(before);
+        return std::pair(std::vector<float>(gradient, gradient + picture.size()), photometric.take());
+    };
+    REQUIRE(gs::train::picture_strip<gs::device::cpu::warp>::rows_for(width, height, 4) == height);
+    REQUIRE(gs::train::picture_strip<gs::device::cpu::warp>::rows_for(width, height, 32) < height / 2);
+    const auto [gradient, all] = compare(1);
+    const auto [by_strips, parts] = compare(8);
+    CHECK(gradient == by_strips);
+    CHECK(all.absolute == doctest::Approx(parts.absolute).epsilon(1e-6));
+    CHECK(all.square == doctest::Approx(parts.square).epsilon(1e-6));
+    CHECK(all.ssim == doctest::Approx(parts.ssim).epsilon(1e-6));
+}
+
+TEST_CASE_TEMPLATE("a picture is like itself", Real, float, double) {
     gs::device::cpu device;
-    gs::train::photometric<gs::device::cpu, float> photometric(device);
+    gs::train::photometric<gs::device::cpu, Real> photometric(device);
     std::vector<std::uint8_t> rgba(4 * 20 * 20, 255);
-    for (std::size_t i = 0; i < rgba.size(); i += 4) rgba[i] = static_cast<std::uint8_t>(i);
-    photometric.set_photo(rgba.data(), 20, 20, {});
-    std::vector<float> picture(3 * 400);
+    for (std::size_t i = 0; i < rgba.size(); i += 4) rgba[i] = static_cast<std::uint8_t>(i / 4);
+    rgba[3] = rgba[2] = rgba[1] = 0;  // and one pixel is of the background
+    photometric.set_photo(rgba.data(), 20, 20, {0.1f, 0.2f, 0.3f});
+    std::vector<Real> picture(3 * 400);
     for (std::size_t i = 0; i < 400; ++i)
-        for (std::size_t c = 0; c < 3; ++c)
-            picture[c * 400 + i] = static_cast<float>(rgba[4 * i + c]) * (1.0f / 255);
-    photometric.compare(picture.data());
+        for (std::size_t c = 0; c < 3; ++c) picture[c * 400 + i] = static_cast<Real>(rgba[4 * i + c]) / 255;
+    for (std::size_t c = 0; c < 3; ++c) picture[c * 400] = static_cast<Real>(std::array{0.1f, 0.2f, 0.3f}[c]);
+    const Real* gradient = photometric.gradient(picture.data(), 0.2);
+    for (std::size_t i = 0; i < picture.size(); ++i) CHECK(gradient[i] == 0);
     const gs::train::quality q = photometric.take();
-    CHECK(q.ssim == doctest::Approx(1).epsilon(1e-5));
-    CHECK(q.absolute < 1e-7);
+    CHECK(q.ssim == doctest::Approx(1).epsilon(1e-6));
+    CHECK(q.absolute == 0);
 }

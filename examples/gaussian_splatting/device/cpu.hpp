@@ -71,8 +71,8 @@ class basic_cpu {
         return "cpu, " + std::to_string(omp_get_max_threads()) + " threads" + instruction_set;
     }
 
-    /// About as many warps as run at once: a thread runs one.
-    std::size_t resident_warps() const { return static_cast<std::size_t>(omp_get_max_threads()); }
+    /// How many warps keep the device busy: threads take them as they come.
+    std::size_t resident_warps() const { return 16 * static_cast<std::size_t>(omp_get_max_threads()); }
 
     /// f(i) for each i in [0, n).
     template <class F>
@@ -99,7 +99,8 @@ class basic_cpu {
     /// f(warp, i) for each i in [0, n), each on a warp of its own; f(warp, i, scratch) if it has scratch.
     template <class F>
     void for_each_warp(std::size_t n, const F& f) {
-#pragma omp parallel for schedule(dynamic, 8)
+        const std::size_t share = std::clamp<std::size_t>(n / resident_warps(), 1, 8);
+#pragma omp parallel for schedule(dynamic, share)
         for (std::size_t i = 0; i < n; ++i) {
             if constexpr (has_scratch<F, Warp>) {
                 typename F::template scratch<Warp> scratch;

@@ -103,7 +103,7 @@ class cuda {
         return std::string("cuda, ") + properties.name;
     }
 
-    /// About as many warps as run at once: more of them wait, fewer leave the device idle.
+    /// How many warps keep the device busy: about as many as run at once.
     std::size_t resident_warps() const { return resident_warps_; }
 
     /// f(i) for each i in [0, n).

@@ -2,238 +2,184 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <warpagg/atomic.hpp>
 
 #include "../raster/list_room.hpp"
+#include "picture_strip.hpp"
 
 namespace gs::train {
 
-using warpagg::mask_t;
-using warpagg::value_t;
-using warpagg::math::fma;
-using warpagg::math::select;
-
-/// The photo over a background: premultiplied RGBA bytes to three planes in [0, 1]. One index a pixel.
+/// What the passes hand on, framed planes each.
 template <class Real>
-struct composite {
-    const std::uint8_t* rgba;
+struct loss_maps {
+    framed_planes planes;
+    Real* sum;            ///< of the picture x and the photo y: x + y
+    Real* difference;     ///< x - y
+    Real* constant;       ///< of the similarity's derivative by x, what goes with no value under the window,
+    Real* by_sum;         ///< what each x + y under the window has to be multiplied with,
+    Real* by_difference;  ///< and each x - y
+
+    static constexpr std::size_t count = 5;
+    static loss_maps in(Real* memory, const framed_planes& planes) {
+        const std::size_t n = planes.size();
+        return {planes, memory, memory + n, memory + 2 * n, memory + 3 * n, memory + 4 * n};
+    }
+};
+
+/// First pass: the sum of and the difference between the picture and the photo over a background, in which
+/// the similarity is simplest. A warp for as many pixels of a row as it has lanes.
+template <class Real>
+struct sum_and_difference {
+    const std::uint32_t* photo;  ///< premultiplied RGBA bytes
+    const Real* picture;
     glm::vec<3, Real> background;
-    std::size_t pixels;
-    Real* planes;
+    loss_maps<Real> maps;
 
-    WARPAGG_HD void operator()(std::size_t i) const {
-        const std::uint8_t* p = rgba + 4 * i;
-        const Real through =
-            Real(255 - p[3]) / 255;  // 1 where nothing is, which leaves the background as it is
-        for (int c = 0; c < 3; ++c)
-            planes[static_cast<std::size_t>(c) * pixels + i] = Real(p[c]) / 255 + through * background[c];
-    }
-};
-
-/// The window of the structural similarity: 11 taps of a Gaussian of standard deviation 1.5, normalised
-/// (Wang et al. 2004).
-struct ssim_window {
-    static constexpr int radius = 5;
-    double tap[radius + 1];
-
-    static ssim_window make() {
-        ssim_window w{};
-        double sum = 0;
-        for (int i = 0; i <= radius; ++i) {
-            w.tap[i] = std::exp(-i * i / (2 * 1.5 * 1.5));
-            sum += i == 0 ? w.tap[i] : 2 * w.tap[i];
-        }
-        for (double& t : w.tap) t /= sum;
-        return w;
-    }
-};
-
-/// A row of pixels as wide as the warp, in one of three planes. What lies outside the picture counts as zero.
-template <class W>
-struct pixel_row {
-    unsigned row, width, height;
-    std::ptrdiff_t first;         ///< the row's place in the three planes
-    value_t<W, unsigned> column;  ///< of each lane
-    mask_t<W> inside;
-
-    static std::size_t count(int width, int height) {
-        return 3 * static_cast<std::size_t>(height) *
-               ((static_cast<unsigned>(width) + W::size - 1) / W::size);
+    static std::size_t count(int width, int height, unsigned lanes) {
+        return static_cast<std::size_t>(height) * ((static_cast<unsigned>(width) + lanes - 1) / lanes);
     }
 
-    WARPAGG_HD pixel_row(const W& w, unsigned index, int width_, int height_)
-        : width(static_cast<unsigned>(width_)), height(static_cast<unsigned>(height_)) {
-        const unsigned per_line = (width + W::size - 1) / W::size, line = index / per_line;
-        const unsigned left = index % per_line * W::size;
-        row = line % height;
-        first = static_cast<std::ptrdiff_t>(line) * width + left;
-        column = w.lane() + left;
-        inside = column < width;
-    }
-
-    /// f(tap, values of the N maps) for each tap of the window along the row, or along the column if `Down`.
-    template <bool Down, int N, class Real, class F>
-    WARPAGG_HD void for_each_tap(const W& w, const ssim_window& window, const Real* const (&maps)[N],
-                                 const F& f) const {
-        for (int t = -ssim_window::radius; t <= ssim_window::radius; ++t) {
-            // What is left of the picture, or above it, wraps around.
-            const auto shift = static_cast<unsigned>(t);
-            const value_t<W, unsigned> at = Down ? value_t<W, unsigned>(row + shift) : column + shift;
-            const mask_t<W> there = inside && at < (Down ? height : width);
-            const std::ptrdiff_t from = first + (Down ? static_cast<std::ptrdiff_t>(t) * width : t);
-            value_t<W, Real> values[N];
-            for (int m = 0; m < N; ++m) values[m] = w.load_row(maps[m], from, there);
-            f(value_t<W, Real>(static_cast<Real>(window.tap[t < 0 ? -t : t])), values);
-        }
-    }
-
-    /// The window's mean of each of N maps along the row, or along the column if `Down`.
-    template <bool Down, int N, class Real>
-    WARPAGG_HD void blur(const W& w, const ssim_window& window, const Real* const (&maps)[N],
-                         value_t<W, Real> (&means)[N]) const {
-        for (auto& m : means) m = value_t<W, Real>(0);
-        for_each_tap<Down>(w, window, maps, [&](const auto& tap, const auto& values) {
-            for (int m = 0; m < N; ++m) means[m] = fma(tap, values[m], means[m]);
-        });
-    }
-};
-
-/// What the similarity is made of, a map of three planes each: the means of x and of the difference d = x -
-/// y, the sum of the variances of x and of y, and the variance of d. A variance is a sum of squares about the
-/// mean, so that none is negative, whatever the rounding.
-enum ssim_moment { mean_x, mean_d, variance_sum, variance_d, ssim_moment_count };
-
-/// First pass: the moments along the rows.
-template <class Real>
-struct ssim_moments {
-    const Real* x;
-    const Real* y;
-    int width, height;
-    ssim_window window;
-    Real* moments[ssim_moment_count];
-
+    WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
         using real = value_t<W, Real>;
-        const pixel_row<W> p(w, index, width, height);
-        const Real* const pictures[] = {x, y};
-        real mean[2];
-        p.template blur<false>(w, window, pictures, mean);
-        real variance(0), difference(0);
-        p.template for_each_tap<false>(w, window, pictures, [&](const real& tap, const real(&at)[2]) {
-            const real a = at[0] - mean[0], b = at[1] - mean[1], d = a - b;
-            variance = fma(tap, fma(a, a, b * b), variance);
-            difference = fma(tap * d, d, difference);
-        });
-        w.store_row(moments[mean_x], p.first, mean[0], p.inside);
-        w.store_row(moments[mean_d], p.first, mean[0] - mean[1], p.inside);
-        w.store_row(moments[variance_sum], p.first, variance, p.inside);
-        w.store_row(moments[variance_d], p.first, difference, p.inside);
+        using warpagg::math::convert;
+        const framed_planes& planes = maps.planes;
+        const auto width = static_cast<unsigned>(planes.width), per_row = (width + W::size - 1) / W::size;
+        const unsigned row = index / per_row, left = index % per_row * W::size;
+        const mask_t<W> inside = w.lane() < width - left;
+        const auto at = static_cast<std::ptrdiff_t>(row) * planes.width + left;
+        const value_t<W, unsigned> rgba = w.load_row(photo, at, inside);
+        const auto fraction = [&](const value_t<W, unsigned>& byte) {  // byte / 255, rounded once
+            constexpr Real unit = Real(1) / 255;
+            const real n = convert<Real>(convert<int>(byte)), q = n * unit;
+            return fma(fma(q, real(-255), n), real(unit), q);
+        };
+        // 1 where nothing is, which leaves the background as it is.
+        const real through = fraction(255u - (rgba >> value_t<W, unsigned>(24u)));
+        for (unsigned c = 0; c < 3; ++c) {
+            const real y = fraction((rgba >> value_t<W, unsigned>(8 * c)) & 255u) +
+                           through * background[static_cast<int>(c)];
+            const real x = w.load_row(
+                picture, static_cast<std::ptrdiff_t>(c) * planes.width * planes.height + at, inside);
+            const std::ptrdiff_t to = planes.at(static_cast<int>(c), static_cast<int>(row)) + left;
+            w.store_row(maps.sum, to, x + y, inside);
+            w.store_row(maps.difference, to, x - y, inside);
+        }
     }
 };
 
 /// Where the second pass adds up what it finds over all pixels and channels.
 enum loss_sum { sum_absolute, sum_square, sum_ssim, sum_values, loss_sum_count };
 
-/// Second pass: the moments of the whole window, the similarity of each pixel, and its derivatives by the
-/// mean of x, and by x through the variances, which are proportional to x and to d. Adds the absolute and
-/// square errors, the similarity and the number of values to `totals`.
+/// Second pass: the similarity of each pixel, and its derivatives by the moments of its window. Adds the
+/// absolute and square errors, the similarity and the number of values to `totals`. A warp per strip.
 template <class Real>
 struct ssim_compare {
-    const Real* x;
-    const Real* y;
-    int width, height;
-    ssim_window window;
-    const Real* moments[ssim_moment_count];
-    Real* derivatives[3];
+    loss_maps<Real> maps;
+    ssim_window<Real> window;
+    int rows;        ///< of a strip
     double* totals;  ///< `loss_sum_count`
     raster::list_room room;
 
+    WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
         using real = value_t<W, Real>;
-        const pixel_row<W> p(w, index, width, height);
-        real mx(0), md(0);
-        p.template for_each_tap<true>(w, window, moments, [&](const real& tap, const auto& at) {
-            mx = fma(tap, at[mean_x], mx);
-            md = fma(tap, at[mean_d], md);
-        });
-        // The variance of the whole is the mean of the rows' variances and the variance of the rows' means.
-        real variances(0), difference(0);
-        const real my = mx - md;
-        p.template for_each_tap<true>(w, window, moments, [&](const real& tap, const auto& at) {
-            const real a = at[mean_x] - mx, d = at[mean_d] - md, b = at[mean_x] - at[mean_d] - my;
-            variances = fma(tap, at[variance_sum] + fma(a, a, b * b), variances);
-            difference = fma(tap, fma(d, d, at[variance_d]), difference);
-        });
+        constexpr int radius = ssim_window<Real>::radius, size = ssim_window<Real>::size;
+        const framed_planes& planes = maps.planes;
+        const picture_strip<W> strip(w, index, planes.width, planes.height, rows);
+        moments<real> sums[size], differences[size];  // of the windows that a row is in
+        WARPAGG_UNROLL
+        for (int k = 0; k < size; ++k) sums[k] = differences[k] = {real(0), real(0)};
+        real absolute(0), square(0), likeness(0);
+        std::ptrdiff_t at = planes.at(strip.channel, strip.first - radius) + strip.left;
+        for (int below = strip.first - radius; below < strip.last + radius; ++below, at += planes.pitch()) {
+            const Real* const values[] = {maps.sum + at, maps.difference + at};
+            moments<real> along[2];
+            window.moments_along(w, values, along);
+            window.add_row(sums, along[0]);
+            window.add_row(differences, along[1]);
+            if (below < strip.first + radius) continue;
 
-        // Wang et al.'s (2 mx my + C1)(2 cov + C2) / ((mx^2 + my^2 + C1)(vx + vy + C2)), as
-        // (1 - (mx - my)^2 / b1)(1 - var(x - y) / b2): each factor is at most 1.
-        constexpr auto C1 = static_cast<Real>(0.01 * 0.01), C2 = static_cast<Real>(0.03 * 0.03);
-        const real r1 = Real(1) / (fma(mx, mx, my * my) + C1), r2 = Real(1) / (variances + C2);
-        const real t1 = md * r1, t2 = difference * r2;  // of what is lost
-        const real like1 = Real(1) - md * t1, like2 = Real(1) - t2;
-        const real s = like1 * like2;
-        const real by_d = (like1 + like1) * r2, by_x = by_d * t2;
-        const real by_mean = (t1 + t1) * like2 * (t1 * mx - Real(1)) + by_d * md - by_x * mx;
-        w.store_row(derivatives[0], p.first, by_mean, p.inside);
-        w.store_row(derivatives[1], p.first, by_x, p.inside);
-        w.store_row(derivatives[2], p.first, -by_d, p.inside);
+            // Wang et al.'s (2 mx my + C1)(2 cov + C2) / ((mx^2 + my^2 + C1)(vx + vy + C2)) in the moments of
+            // u = 2 (x + y) and v = 2 (x - y): each factor is within [-1, 1].
+            constexpr auto C1 = static_cast<Real>(8 * 0.01 * 0.01), C2 = static_cast<Real>(8 * 0.03 * 0.03);
+            const real mu = sums[size - 1].mean, mv = differences[size - 1].mean;
+            const real vu = sums[size - 1].square, vv = differences[size - 1].square;
+            const real r1 = Real(1) / (fma(mu, mu, mv * mv) + C1), r2 = Real(1) / (vu + vv + C2);
+            const real t1 = (mv + mv) * r1, lost1 = mv * t1, like1 = Real(1) - lost1;
+            const real lost2 = (vv + vv) * r2, like2 = Real(1) - lost2;
+            const real scale = Real(8) * like1 * r2;
+            const real by_u = scale * lost2, by_v = scale * (lost2 - Real(2));
+            const real by_mean = (t1 + t1) * like2 * (fma(mu, t1, lost1) - Real(2));
+            const std::ptrdiff_t pixel = at - radius * planes.pitch();
+            w.store_row(maps.constant, pixel, by_mean - Real(0.5) * fma(by_u, mu, by_v * mv), strip.inside);
+            w.store_row(maps.by_sum, pixel, by_u, strip.inside);
+            w.store_row(maps.by_difference, pixel, by_v, strip.inside);
 
+            const real error = w.load_row(maps.difference, pixel, strip.inside);
+            absolute += warpagg::math::max(error, -error);
+            square = fma(error, error, square);
+            likeness = fma(like1, like2, likeness);
+        }
         if (room.exceeded()) return;
-        const real error = w.load_row(x, p.first, p.inside) - w.load_row(y, p.first, p.inside);
+        using warpagg::math::convert;
         const value_t<W, double> found[loss_sum_count] = {
-            warpagg::math::convert<double>(warpagg::math::max(error, -error)),
-            warpagg::math::convert<double>(error * error), warpagg::math::convert<double>(s),
-            value_t<W, double>(1)};
-        warpagg::warp_reduce_atomic(w, totals, found, p.inside);
+            convert<double>(absolute), convert<double>(square), convert<double>(likeness),
+            value_t<W, double>(static_cast<double>(strip.last - strip.first))};
+        warpagg::warp_reduce_atomic(w, totals, found, strip.inside);
     }
 };
 
-/// Third pass: the derivatives, blurred along the rows.
-template <class Real>
-struct ssim_spread {
-    int width, height;
-    ssim_window window;
-    const Real* derivatives[3];
-    Real* spread[3];
-
-    template <class W>
-    WARPAGG_HD void operator()(const W& w, unsigned index) const {
-        using real = value_t<W, Real>;
-        const pixel_row<W> p(w, index, width, height);
-        real sum[3];
-        p.template blur<false>(w, window, derivatives, sum);
-        for (int m = 0; m < 3; ++m) w.store_row(spread[m], p.first, sum[m], p.inside);
-    }
-};
-
-/// Last pass: the gradient by x of `(1 - ssim_weight) mean|x - y| + ssim_weight (1 - mean SSIM)`.
+/// Last pass: the gradient by x of `(1 - ssim_weight) mean|x - y| + ssim_weight (1 - mean SSIM)`. A warp per
+/// strip.
 template <class Real>
 struct loss_gradient {
-    const Real* x;
-    const Real* y;
-    int width, height;
-    ssim_window window;
-    const Real* spread[3];
+    loss_maps<Real> maps;
+    ssim_window<Real> window;
+    int rows;
     Real ssim_weight;
-    Real* gradient;
+    Real* gradient;  ///< three planes without a frame
 
+    WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
         using real = value_t<W, Real>;
-        const pixel_row<W> p(w, index, width, height);
-        real sum[3];
-        p.template blur<true>(w, window, spread, sum);
-        const real a = w.load_row(x, p.first, p.inside), b = w.load_row(y, p.first, p.inside);
-        const real similarity = sum[0] + a * sum[1] + (a - b) * sum[2];
-        const Real each = Real(1) / (Real(3) * Real(width) * Real(height));
-        const real sign = select(a > b, real(1), select(a < b, real(-1), real(0)));
-        const real g = sign * (each * (Real(1) - ssim_weight)) - similarity * (each * ssim_weight);
-        w.store_row(gradient, p.first, g, p.inside);
+        constexpr int radius = ssim_window<Real>::radius, size = ssim_window<Real>::size;
+        const framed_planes& planes = maps.planes;
+        const picture_strip<W> strip(w, index, planes.width, planes.height, rows);
+        const Real each = Real(1) / (Real(3) * Real(planes.width) * Real(planes.height));
+        const Real step = each * (Real(1) - ssim_weight), slope = each * ssim_weight;
+        real spread[3][size];
+        WARPAGG_UNROLL
+        for (int m = 0; m < 3; ++m) {
+            WARPAGG_UNROLL
+            for (int k = 0; k < size; ++k) spread[m][k] = real(0);
+        }
+        std::ptrdiff_t at = planes.at(strip.channel, strip.first - radius) + strip.left;
+        std::ptrdiff_t to =
+            (static_cast<std::ptrdiff_t>(strip.channel) * planes.height + strip.first) * planes.width +
+            strip.left;
+        for (int below = strip.first - radius; below < strip.last + radius; ++below, at += planes.pitch()) {
+            const Real* const derivatives[] = {maps.constant + at, maps.by_sum + at, maps.by_difference + at};
+            real mean[3];
+            window.mean_along(w, derivatives, mean);
+            WARPAGG_UNROLL
+            for (int m = 0; m < 3; ++m) window.add_row(spread[m], mean[m]);
+            if (below < strip.first + radius) continue;
+
+            const std::ptrdiff_t pixel = at - radius * planes.pitch();
+            const real u = w.load_row(maps.sum, pixel, strip.inside),
+                       v = w.load_row(maps.difference, pixel, strip.inside);
+            const real similarity =
+                fma(v, spread[2][size - 1], fma(u, spread[1][size - 1], spread[0][size - 1]));
+            const real sign = select(v > Real(0), real(step), select(v < Real(0), real(-step), real(0)));
+            w.store_row(gradient, to, sign - similarity * slope, strip.inside);
+            to += planes.width;
+        }
     }
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 
 #include "loss.hpp"
 #include "quality.hpp"
@@ -12,6 +13,9 @@ namespace gs::train {
 /// Compares pictures with photos: the loss, its gradient, and the measures of quality.
 template <class Device, class Real>
 class photometric {
+    using warp = typename Device::warp;
+    using strip = picture_strip<warp>;
+
   public:
     template <class T>
     using buffer = typename Device::template buffer<T>;
@@ -21,47 +25,35 @@ class photometric {
         device_.zero(totals_.data(), loss_sum_count);
     }
 
-    /// The photo, premultiplied RGBA on the device, over a background: what pictures are compared with next.
+    /// The photo over a background that pictures are compared with next: premultiplied RGBA on the device, 4
+    /// bytes a pixel, aligned to 4, which must stay there meanwhile.
     void set_photo(const std::uint8_t* rgba, int width, int height, const std::array<float, 3>& background) {
-        width_ = width;
-        height_ = height;
-        const std::size_t n = pixels();
-        photo_.resize(3 * n);
-        device_.for_each_index(
-            n, composite<Real>{rgba, {background[0], background[1], background[2]}, n, photo_.data()});
+        static_assert(std::endian::native == std::endian::little);
+        photo_ = reinterpret_cast<const std::uint32_t*>(rgba);
+        background_ = {background[0], background[1], background[2]};
+        if (maps_.planes.width == width && maps_.planes.height == height) return;
+        const framed_planes planes{width, height};
+        memory_.resize(loss_maps<Real>::count * planes.size());
+        device_.zero(memory_.data(), memory_.size());  // the frames stay so
+        maps_ = loss_maps<Real>::in(memory_.data(), planes);
+        gradient_.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     }
 
-    /// Adds the picture's measures to the running ones, if there was room for all of it. The first half of
+    /// Adds the picture's measures to the running ones, if there was room for all of it. The first part of
     /// `gradient`.
     void compare(const Real* picture, const raster::list_room& room = {}) {
-        const std::size_t n = 3 * pixels();
-        for (auto& m : moments_) m.resize(n);
-        for (auto& d : derivatives_) d.resize(n);
-        ssim_moments<Real> across{picture, photo_.data(), width_, height_, window_, {}};
-        ssim_compare<Real> down{picture, photo_.data(),  width_, height_, window_, {},
-                                {},      totals_.data(), room};
-        for (std::size_t i = 0; i < ssim_moment_count; ++i)
-            down.moments[i] = across.moments[i] = moments_[i].data();
-        for (std::size_t i = 0; i < 3; ++i) down.derivatives[i] = derivatives_[i].data();
-        device_.for_each_warp(rows(), across);
-        device_.for_each_warp(rows(), down);
+        device_.for_each_warp(
+            sum_and_difference<Real>::count(maps_.planes.width, maps_.planes.height, warp::size),
+            sum_and_difference<Real>{photo_, picture, background_, maps_});
+        device_.for_each_warp(strips(), ssim_compare<Real>{maps_, window_, rows(), totals_.data(), room});
     }
 
     /// dL/dpicture for L = (1 - ssim_weight) L1 + ssim_weight (1 - SSIM), on the device. Compares as well.
     const Real* gradient(const Real* picture, double ssim_weight, const raster::list_room& room = {}) {
         compare(picture, room);
-        ssim_spread<Real> spread{width_, height_, window_, {}, {}};
-        loss_gradient<Real> last{
-            picture, photo_.data(), width_, height_, window_, {}, static_cast<Real>(ssim_weight), nullptr};
-        gradient_.resize(3 * pixels());
-        last.gradient = gradient_.data();
-        for (std::size_t i = 0; i < 3; ++i) {
-            spread.derivatives[i] = derivatives_[i].data();
-            spread.spread[i] = moments_[i].data();  // no longer needed as what they were
-            last.spread[i] = moments_[i].data();
-        }
-        device_.for_each_warp(rows(), spread);
-        device_.for_each_warp(rows(), last);
+        device_.for_each_warp(
+            strips(),
+            loss_gradient<Real>{maps_, window_, rows(), static_cast<Real>(ssim_weight), gradient_.data()});
         return gradient_.data();
     }
 
@@ -77,17 +69,17 @@ class photometric {
     }
 
   private:
-    std::size_t pixels() const {
-        return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    int rows() const {
+        return strip::rows_for(maps_.planes.width, maps_.planes.height, device_.resident_warps() / 4);
     }
-    std::size_t rows() const { return pixel_row<typename Device::warp>::count(width_, height_); }
+    std::size_t strips() const { return strip::count(maps_.planes.width, maps_.planes.height, rows()); }
 
     Device& device_;
-    ssim_window window_ = ssim_window::make();
-    int width_ = 0, height_ = 0;
-    buffer<Real> photo_, gradient_;
-    std::array<buffer<Real>, ssim_moment_count> moments_;
-    std::array<buffer<Real>, 3> derivatives_;
+    ssim_window<Real> window_ = ssim_window<Real>::make();
+    const std::uint32_t* photo_ = nullptr;
+    glm::vec<3, Real> background_{};
+    loss_maps<Real> maps_{};
+    buffer<Real> memory_, gradient_;
     buffer<double> totals_;
 };
 

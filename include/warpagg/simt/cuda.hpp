@@ -126,6 +126,10 @@ struct warp {
         return active ? from[first + static_cast<std::ptrdiff_t>(lane())] : T{};
     }
     template <class T>
+    __device__ __forceinline__ T load_row(const T* from, std::ptrdiff_t first) const {
+        return from[first + static_cast<std::ptrdiff_t>(lane())];
+    }
+    template <class T>
     __device__ __forceinline__ void store_row(T* to, std::ptrdiff_t first, T v, bool active) const {
         if (active) to[first + static_cast<std::ptrdiff_t>(lane())] = v;
     }

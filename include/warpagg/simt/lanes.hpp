@@ -202,14 +202,27 @@ struct basic_lanes : Counting {
         return r;
     }
     template <class T>
+    WARPAGG_HD value<T> load_row(const T* from, std::ptrdiff_t first) const {
+        value<T> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < r.chunks; ++i)
+            std::memcpy(&r.part[i], from + first + i * r.width, sizeof r.part[i]);
+        return r;
+    }
+    template <class T>
     WARPAGG_HD void store_row(T* to, std::ptrdiff_t first, const value<T>& v, const mask& active) const {
         WARPAGG_UNROLL
         for (int i = 0; i < v.chunks; ++i) {
             T* p = to + first + i * v.width;
 #if defined(__AVX2__)
             if constexpr (sizeof(T) == 4) {
-                _mm256_maskstore_epi32(reinterpret_cast<int*>(p), reinterpret_cast<__m256i>(active.part[i]),
-                                       reinterpret_cast<__m256i>(v.part[i]));
+                if (_mm256_movemask_ps(reinterpret_cast<__m256>(active.part[i])) == 0xff) {
+                    std::memcpy(p, &v.part[i], sizeof v.part[i]);  // some CPUs take long over a masked store
+                } else {
+                    _mm256_maskstore_epi32(reinterpret_cast<int*>(p),
+                                           reinterpret_cast<__m256i>(active.part[i]),
+                                           reinterpret_cast<__m256i>(v.part[i]));
+                }
                 continue;
             }
 #endif

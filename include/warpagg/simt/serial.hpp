@@ -57,6 +57,10 @@ struct serial {
         return active ? from[first] : T{};
     }
     template <class T>
+    T load_row(const T* from, std::ptrdiff_t first) const {
+        return from[first];
+    }
+    template <class T>
     void store_row(T* to, std::ptrdiff_t first, T v, bool active) const {
         if (active) to[first] = v;
     }

@@ -38,6 +38,7 @@ using mask_t = value_t<W, bool>;
 /// | `store(p, i, v, active)` | `p[i] = v` per active lane |
 /// | `store_packed(p, i, v, active)` | `p[i + k] = v[k]`, likewise |
 /// | `load_row(p, i, active)` | `p[i + lane]` per active lane; `i` is uniform and may be negative |
+/// | `load_row(p, i)` | `p[i + lane]` in every lane |
 /// | `store_row(p, i, v, active)` | `p[i + lane] = v` per active lane |
 /// | `sync()` | what any lane wrote before, every lane reads after |
 /// | `atomic(op, dst, i, v, active)` | per active lane, `*dst(i) = op::combine(*dst(i), v)`, relaxed |
@@ -58,6 +59,7 @@ concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i,
     w.store(m, i, v, p);
     w.store_packed(m, i, packed, p);
     { w.load_row(m, std::ptrdiff_t{}, p) } -> std::same_as<value_t<W, float>>;
+    { w.load_row(m, std::ptrdiff_t{}) } -> std::same_as<value_t<W, float>>;
     w.store_row(m, std::ptrdiff_t{}, v, p);
     w.sync();
     w.atomic(operation::sum{}, dst, i, v, p);

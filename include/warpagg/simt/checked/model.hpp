@@ -163,6 +163,10 @@ class checked {
         return active ? read(from + first + lane(), at) : T{};
     }
     template <class T>
+    T load_row(const T* from, std::ptrdiff_t first, call_site at = call_site::here("load_row")) const {
+        return read(from + first + lane(), at);
+    }
+    template <class T>
     void store_row(T* to, std::ptrdiff_t first, T v, bool active,
                    call_site at = call_site::here("store_row")) const {
         if (active) write(to + first + lane(), v, at);

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <warpagg/simt/warp.hpp>
+
+namespace gs::train {
+
+using warpagg::mask_t;
+using warpagg::value_t;
+using warpagg::math::fma;
+using warpagg::math::select;
+
+/// A weighted mean, and the sum of weighted squares about it: the variance once the weights' sum is 1.
+template <class V>
+struct moments {
+    V mean, square;
+};
+
+/// The window of the structural similarity: 11 taps of a Gaussian of standard deviation 1.5, normalised
+/// (Wang et al. 2004), and what it takes to merge the values under it, one group after another.
+template <class Real>
+struct ssim_window {
+    static constexpr int radius = 5, size = 2 * radius + 1;
+
+    /// To merge a group with those before it (Chan et al. 1979): its weight w, and with the weight W of those
+    /// before, w / (W + w) and w W / (W + w). A variance so merged is a sum of squares, whatever the
+    /// rounding.
+    struct step {
+        Real weight, share, between;
+    };
+
+    Real tap[radius + 1];   ///< by the distance from the centre
+    step pair[radius + 1];  ///< from the centre outwards, two neighbours at a time
+    step row[size];         ///< from the first row to the last
+
+    static ssim_window make() {
+        double tap[radius + 1], sum = 0;
+        for (int i = 0; i <= radius; ++i)
+            sum += (i == 0 ? 1 : 2) * (tap[i] = std::exp(-i * i / (2 * 1.5 * 1.5)));
+        ssim_window w{};
+        double inner = 0, above = 0;
+        const auto next = [](double weight, double& before) {
+            const double both = before + weight;
+            const step s{static_cast<Real>(weight), static_cast<Real>(weight / both),
+                         static_cast<Real>(weight * before / both)};
+            before = both;
+            return s;
+        };
+        for (double& t : tap) t /= sum;
+        for (int i = 0; i <= radius; ++i) {
+            w.tap[i] = static_cast<Real>(tap[i]);
+            w.pair[i] = next((i == 0 ? 1 : 2) * tap[i], inner);
+        }
+        for (int i = 0; i < size; ++i) w.row[i] = next(tap[std::abs(i - radius)], above);
+        return w;
+    }
+
+    template <class V>
+    static WARPAGG_HD moments<V> merge(const step& by, const moments<V>& before, const moments<V>& group) {
+        const V delta = group.mean - before.mean;
+        return {fma(V(by.share), delta, before.mean),
+                fma(V(by.between) * delta, delta, fma(V(by.weight), group.square, before.square))};
+    }
+
+    /// For each of N maps the moments of *twice* the values from[-radius] to from[radius], of each lane its
+    /// own. All maps at a time, so that a GPU waits for all of them at once.
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W, int N>
+    WARPAGG_HD void moments_along(const W& w, const Real* const (&from)[N],
+                                  moments<value_t<W, Real>> (&all)[N]) const {
+        using real = value_t<W, Real>;
+        WARPAGG_UNROLL
+        for (int m = 0; m < N; ++m) {
+            const real centre = w.load_row(from[m], 0);
+            all[m] = {centre + centre, real(0)};
+        }
+        WARPAGG_UNROLL
+        for (int t = 1; t <= radius; ++t) {
+            WARPAGG_UNROLL
+            for (int m = 0; m < N; ++m) {
+                const real left = w.load_row(from[m], -t), right = w.load_row(from[m], t);
+                const real apart = right - left;
+                all[m] = merge(pair[t], all[m], {left + right, apart * apart});
+            }
+        }
+    }
+    /// For each of N maps the mean of the values from[-radius] to from[radius].
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W, int N>
+    WARPAGG_HD void mean_along(const W& w, const Real* const (&from)[N], value_t<W, Real> (&mean)[N]) const {
+        using real = value_t<W, Real>;
+        WARPAGG_UNROLL
+        for (int m = 0; m < N; ++m) mean[m] = w.load_row(from[m], 0) * real(tap[0]);
+        WARPAGG_UNROLL
+        for (int t = 1; t <= radius; ++t) {
+            WARPAGG_UNROLL
+            for (int m = 0; m < N; ++m)
+                mean[m] = fma(real(tap[t]), w.load_row(from[m], -t) + w.load_row(from[m], t), mean[m]);
+        }
+    }
+
+    /// One more row for the `size` windows that it is in: the k-th of them has seen k rows before. The last
+    /// one is complete.
+    template <class V>
+    WARPAGG_HD void add_row(moments<V> (&windows)[size], const moments<V>& values) const {
+        WARPAGG_UNROLL
+        for (int k = size - 1; k > 0; --k) windows[k] = merge(row[k], windows[k - 1], values);
+        windows[0] = {values.mean, V(row[0].weight) * values.square};
+    }
+    template <class V>
+    WARPAGG_HD void add_row(V (&windows)[size], const V& value) const {
+        WARPAGG_UNROLL
+        for (int k = size - 1; k > 0; --k) windows[k] = fma(V(row[k].weight), value, windows[k - 1]);
+        windows[0] = V(row[0].weight) * value;
+    }
+};
+
+}  // namespace gs::train
