@@ -183,18 +183,20 @@ __global__ void __launch_bounds__(warp_size)
     const slice_of_candidates mine(first[count], blockIdx.x, 0, 1);
     constexpr unsigned rounds = 4;
     const auto append = [&](const auto& buckets_of, const auto& values) {
+        unsigned peers[rounds];
+#pragma unroll
+        for (unsigned r = 0; r < rounds; ++r) peers[r] = __match_any_sync(every_lane, buckets_of[r]);
 #pragma unroll
         for (unsigned r = 0; r < rounds; ++r) {
             const std::uint32_t bucket = buckets_of[r];
-            if (!__any_sync(every_lane, bucket != no_bucket)) continue;
-            const unsigned peers = __match_any_sync(every_lane, bucket);
+            const bool goes = bucket != no_bucket;
             std::uint32_t place = 0;
-            if (bucket != no_bucket) {
-                place = places[bucket] + lanes_before(peers);
+            if (goes) {
+                place = places[bucket] + lanes_before(peers[r]);
                 if (place < room) listed[place] = values[r];
             }
             __syncwarp();
-            if (bucket != no_bucket && is_last_of(peers)) places[bucket] = place + 1;
+            if (goes && is_last_of(peers[r])) places[bucket] = place + 1;
             __syncwarp();
         }
     };
