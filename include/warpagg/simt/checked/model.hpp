@@ -156,7 +156,6 @@ class checked {
         for (unsigned k = 0; k < N; ++k)
             if (active) write(to + index + k, v[k], at);
     }
-    void sync(call_site at = call_site::here("sync")) const { vote(all_lanes, true, at); }
     template <class T>
     T load_row(const T* from, std::ptrdiff_t first, bool active,
                call_site at = call_site::here("load_row")) const {
