@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 
-/// What the emulator costs beside a loop that somebody wrote with AVX2 intrinsics for one purpose: nine floats a
-/// lane, of 32 or of 8 lanes, summed over a warp's active lanes and added to a record by nine atomics. Both make
-/// the same sums, to the bit. They take turns, so that both see the same state of the machine.
+/// What the emulator costs beside a loop that somebody wrote with AVX2 intrinsics for one purpose: nine
+/// floats a lane, of 32 or of 8 lanes, summed over a warp's active lanes and added to a record by nine
+/// atomics. Both make the same sums, to the bit. They take turns, so that both see the same state of the
+/// machine.
 
 #include <immintrin.h>
 

@@ -64,6 +64,7 @@ class device_engine final : public engine {
         device_.zero(skipped_.data(), 1);
         silent_.resize(1);
         found_.resize(1);
+        device_.zero(found_.data(), 1);
         take_findings();
     }
 
