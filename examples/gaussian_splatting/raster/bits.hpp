@@ -16,12 +16,4 @@ WARPAGG_HD std::uint32_t bits_of(float x) {
 #endif
 }
 
-WARPAGG_HD unsigned highest_bit(std::uint32_t bits) {
-#if defined(__CUDA_ARCH__)
-    return static_cast<unsigned>(31 - __clz(static_cast<int>(bits)));
-#else
-    return static_cast<unsigned>(31 - __builtin_clz(bits));
-#endif
-}
-
 }  // namespace gs::raster

@@ -32,11 +32,8 @@ template <class V>
 struct whitened {
     V u, v;
 
-    /// Forward and backward share this, and its rounding is pinned, so that both see the same alpha to the
-    /// bit.
-    template <class P>
-    WARPAGG_HD whitened(const P& p, const P& q, const P& r, const V& dx, const V& dy)
-        : u(dx * p), v(warpagg::math::fma(V(q), dy, dx * r)) {}
+    WARPAGG_HD whitened(const V& p, const V& q, const V& r, const V& dx, const V& dy)
+        : u(dx * p), v(warpagg::math::fma(q, dy, dx * r)) {}
 
     WARPAGG_HD V exponent() const { return warpagg::math::fma(u, u, v * v); }
 };
