@@ -271,6 +271,7 @@ class basic_cpu {
     clock::time_point since_;
 };
 
-using cpu = basic_cpu<warpagg::emulator::lanes>;
+/// With warps of 8 lanes, whose values take a register each: see `emulator::basic_lanes`.
+using cpu = basic_cpu<warpagg::emulator::narrow_lanes<8>>;
 
 }  // namespace gs::device

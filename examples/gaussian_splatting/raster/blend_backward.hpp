@@ -133,20 +133,21 @@ struct blend_backward {
         const column_view<W, Real> seen(s, p.x);
         real v[rows], strength[rows];
         mask_t<W> counts[rows];
-        for (unsigned k = 0; k < rows; ++k) {
+        const std::uint32_t reached = rows_with<Cut>(w, [&](unsigned k) {
             v[k] = seen.v(p.y + Real(k * Patch::block));
             strength[k] = seen.strength(v[k]);
-            counts[k] = is_hit(strength[k]) && end[k] >= rank;
-        }
-        const mask_t<W> active = any_of(counts);
-        if constexpr (AskFirst) {
-            if (warpagg::skip_if_warp_idle(w, active)) return;
+            return counts[k] = is_hit(strength[k]) && end[k] >= rank;
+        });
+        if constexpr (Cut::sparse) {
+            if (reached == 0) return;
+        } else if constexpr (AskFirst) {
+            if (warpagg::skip_if_warp_idle(w, any_of(counts))) return;
         }
 
         // red, green, blue, s, s v, s v^2
         real sum[6];
-        WARPAGG_UNROLL
-        for (unsigned k = 0; k < rows; ++k) {
+        for (real& x : sum) x = real(0);
+        for_each_row<Cut>(reached, [&](unsigned k) {
             auto& [g, T, behind] = pixels[k];
             const capped_alpha<W, Real> capped(strength[k]);
             const real alpha = select(counts[k], capped.alpha, real(0));
@@ -158,8 +159,8 @@ struct blend_backward {
             const real dsv = ds * v[k];
             const real terms[] = {weight * g[0], weight * g[1], weight * g[2], ds, dsv, dsv * v[k]};
             WARPAGG_UNROLL
-            for (unsigned i = 0; i < 6; ++i) sum[i] = k == 0 ? terms[i] : sum[i] + terms[i];
-        }
+            for (unsigned i = 0; i < 6; ++i) sum[i] = !Cut::sparse && k == 0 ? terms[i] : sum[i] + terms[i];
+        });
         real values[sum_count];
         values[sum_red] = sum[0];
         values[sum_green] = sum[1];
@@ -171,7 +172,7 @@ struct blend_backward {
         values[sum_suv] = seen.u * sum[4];
         values[sum_svv] = sum[5];
         // Lanes that see nothing of it add zeros: several pixels a lane are masked already, by their alpha.
-        const mask_t<W> who = rows > 1 ? mask_t<W>(true) : active;
+        const mask_t<W> who = rows > 1 ? mask_t<W>(true) : counts[0];
         const auto to = [this, record](unsigned i) { return sums + (record + i); };
         warpagg::warp_reduce_atomic(w, to, values, who, Policy{});
     }

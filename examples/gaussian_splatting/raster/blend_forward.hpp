@@ -49,7 +49,8 @@ struct blend_forward {
                                            first + W::size);
         for (unsigned base = first; base < range.end; base += W::size) {
             mask_t<W> alive[rows];
-            for (unsigned k = 0; k < rows; ++k) alive[k] = state[k][0] > real(0);
+            const std::uint32_t living =
+                rows_with<Cut>(w, [&](unsigned k) { return alive[k] = state[k][0] > real(0); });
             if (!w.any(any_of(alive))) break;
             if (base % Cut::segment == 0 && base > range.begin)
                 for (unsigned k = 0; k < rows; ++k)
@@ -61,11 +62,14 @@ struct blend_forward {
                 const staged_splat<Real>& s = stage.splats[i];
                 const value_t<W, unsigned> rank(stage.ranks[i]);
                 const column_view<W, Real> seen(s, p.x);
-                WARPAGG_UNROLL
-                for (unsigned k = 0; k < rows; ++k) {
-                    const real strength = seen.strength(seen.v(p.y + Real(k * patch::block)));
-                    const mask_t<W> hit = is_hit(strength);
-                    const real alpha = capped_alpha<W, Real>(strength).alpha;
+                real strength[rows];
+                const std::uint32_t reached = rows_with<Cut>(w, [&](unsigned k) {
+                    strength[k] = seen.strength(seen.v(p.y + Real(k * patch::block)));
+                    return is_hit(strength[k]);
+                });
+                for_each_row<Cut>(reached & living, [&](unsigned k) {
+                    const mask_t<W> hit = is_hit(strength[k]);
+                    const real alpha = capped_alpha<W, Real>(strength[k]).alpha;
                     real& T = state[k][0];
                     const real behind = fma(-alpha, T, T);
                     const mask_t<W> counts = hit && behind >= real(Real(least_transmittance));
@@ -75,7 +79,7 @@ struct blend_forward {
                     state[k][3] = fma(weight, real(s.blue), state[k][3]);
                     T = select(counts, behind, select(hit, -warpagg::math::abs(T), T));
                     end[k] = select(counts, rank, end[k]);
-                }
+                });
             }
         }
 

@@ -64,6 +64,28 @@ WARPAGG_HD Mask any_of(const Mask (&masks)[Rows]) {
     return any;
 }
 
+/// The rows of a patch of which some lane has `flag(k)`, as bits; all of them where `Cut` is not sparse.
+template <class Cut, class W, class F>
+WARPAGG_HD std::uint32_t rows_with(const W& w, const F& flag) {
+    std::uint32_t rows = 0;
+    WARPAGG_UNROLL
+    for (unsigned k = 0; k < Cut::rows; ++k) {
+        const mask_t<W> flags = flag(k);
+        rows |= (!Cut::sparse || w.any(flags) ? 1u : 0u) << k;
+    }
+    return rows;
+}
+/// Calls f(k) for each of these rows.
+template <class Cut, class F>
+WARPAGG_HD void for_each_row(std::uint32_t rows, const F& f) {
+    if constexpr (Cut::sparse) {
+        for (; rows != 0; rows &= rows - 1) f(warpagg::math::countr_zero(rows));
+    } else {
+        WARPAGG_UNROLL
+        for (unsigned k = 0; k < Cut::rows; ++k) f(k);
+    }
+}
+
 /// `free`: alpha is not capped, so that geometry and opacity move it.
 template <class W, class Real>
 struct capped_alpha {

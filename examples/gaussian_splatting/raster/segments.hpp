@@ -13,15 +13,18 @@ namespace gs::raster {
 /// How a view is cut up for warps: the lanes of a warp are `Across` pixels wide, each has `Rows` pixels of a
 /// column (see `patch`), and a segment has `Segment` places of the sorted list. A long list is split over
 /// several warps in the backward blending: lists are cut wherever a place is a multiple of `Segment`, and the
-/// forward blending notes there what the pixels had come to.
-template <unsigned Across, unsigned Rows, unsigned Segment>
+/// forward blending notes there what the pixels had come to. `Sparse`: rows of a patch that see nothing of a
+/// splat are left out one by one, for a vote and a branch.
+template <unsigned Across, unsigned Rows, unsigned Segment, bool Sparse = false>
 struct cut {
     static constexpr unsigned across = Across, rows = Rows, segment = Segment;
+    static constexpr bool sparse = Sparse;
 };
 
 /// How a device's warps cut it, as measured (bench/bench_backward).
 template <class W>
-using cut_for = std::conditional_t<W::size == 1, cut<1, 1, 128>, cut<8, 2, 128>>;
+using cut_for = std::conditional_t<W::size == 1, cut<1, 1, 128>,
+                                   std::conditional_t<W::size == 8, cut<8, 16, 1024, true>, cut<8, 2, 128>>>;
 /// The same with a pixel a lane.
 template <class Cut>
 using pixel_a_lane = cut<Cut::across, 1, Cut::segment>;
