@@ -29,7 +29,8 @@ struct loss_maps {
 };
 
 /// First pass: the sum of and the difference between the picture and the photo over a background, in which
-/// the similarity is simplest. A warp for as many pixels of a row as it has lanes.
+/// the similarity is simplest; and zeros into the frames of all maps. A warp for as many values of a line as
+/// it has lanes.
 template <class Real>
 struct sum_and_difference {
     const std::uint32_t* photo;  ///< premultiplied RGBA bytes
@@ -37,8 +38,9 @@ struct sum_and_difference {
     glm::vec<3, Real> background;
     loss_maps<Real> maps;
 
-    static std::size_t count(int width, int height, unsigned lanes) {
-        return static_cast<std::size_t>(height) * ((static_cast<unsigned>(width) + lanes - 1) / lanes);
+    template <class W>
+    static std::size_t count(const framed_planes& planes) {
+        return static_cast<std::size_t>(planes.lines() * planes.pitch()) / W::size;
     }
 
     WARPAGG_EXEC_CHECK_DISABLE
@@ -47,11 +49,27 @@ struct sum_and_difference {
         using real = value_t<W, Real>;
         using warpagg::math::convert;
         const framed_planes& planes = maps.planes;
-        const auto width = static_cast<unsigned>(planes.width), per_row = (width + W::size - 1) / W::size;
-        const unsigned row = index / per_row, left = index % per_row * W::size;
-        const mask_t<W> inside = w.lane() < width - left;
-        const auto at = static_cast<std::ptrdiff_t>(row) * planes.width + left;
-        const value_t<W, unsigned> rgba = w.load_row(photo, at, inside);
+        const auto per_line = static_cast<unsigned>(planes.pitch()) / W::size;
+        const auto line = static_cast<int>(index / per_line);
+        const auto left = static_cast<int>(index % per_line * W::size);
+        const int framed = planes.frame + planes.height;
+        const int channel = (line - 1) / framed, row = (line - 1) % framed - planes.frame;
+        const std::ptrdiff_t to = line * planes.pitch() + left;
+        Real* const derivatives[] = {maps.constant, maps.by_sum, maps.by_difference};
+        const real zero(0);
+        if (row < 0 || channel > 2 || left >= planes.width) {
+            w.store_row(maps.sum, to, zero, true);
+            w.store_row(maps.difference, to, zero, true);
+            for (Real* map : derivatives) w.store_row(map, to, zero, true);
+            return;
+        }
+        const mask_t<W> inside = w.lane() < static_cast<unsigned>(planes.width - left);
+        if (w.any(!inside)) {
+            for (Real* map : derivatives) w.store_row(map, to, zero, !inside);
+        }
+
+        const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(row) * planes.width + left;
+        const value_t<W, unsigned> rgba = w.load_row(photo, pixel, inside);
         const auto fraction = [&](const value_t<W, unsigned>& byte) {  // byte / 255, rounded once
             constexpr Real unit = Real(1) / 255;
             const real n = convert<Real>(convert<int>(byte)), q = n * unit;
@@ -59,15 +77,12 @@ struct sum_and_difference {
         };
         // 1 where nothing is, which leaves the background as it is.
         const real through = fraction(255u - (rgba >> value_t<W, unsigned>(24u)));
-        for (unsigned c = 0; c < 3; ++c) {
-            const real y = fraction((rgba >> value_t<W, unsigned>(8 * c)) & 255u) +
-                           through * background[static_cast<int>(c)];
-            const real x = w.load_row(
-                picture, static_cast<std::ptrdiff_t>(c) * planes.width * planes.height + at, inside);
-            const std::ptrdiff_t to = planes.at(static_cast<int>(c), static_cast<int>(row)) + left;
-            w.store_row(maps.sum, to, x + y, inside);
-            w.store_row(maps.difference, to, x - y, inside);
-        }
+        const value_t<W, unsigned> shift(8 * static_cast<unsigned>(channel));
+        const real y = fraction((rgba >> shift) & 255u) + through * background[channel];
+        const auto plane = static_cast<std::ptrdiff_t>(planes.width) * planes.height;
+        const real x = w.load_row(picture, channel * plane + pixel, inside);
+        w.store_row(maps.sum, to, select(inside, x + y, zero), true);
+        w.store_row(maps.difference, to, select(inside, x - y, zero), true);
     }
 };
 

@@ -31,10 +31,8 @@ class photometric {
         static_assert(std::endian::native == std::endian::little);
         photo_ = reinterpret_cast<const std::uint32_t*>(rgba);
         background_ = {background[0], background[1], background[2]};
-        if (maps_.planes.width == width && maps_.planes.height == height) return;
         const framed_planes planes{width, height};
         memory_.resize(loss_maps<Real>::count * planes.size());
-        device_.zero(memory_.data(), memory_.size());  // the frames stay so
         maps_ = loss_maps<Real>::in(memory_.data(), planes);
         gradient_.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     }
@@ -42,9 +40,8 @@ class photometric {
     /// Adds the picture's measures to the running ones, if there was room for all of it. The first part of
     /// `gradient`.
     void compare(const Real* picture, const raster::list_room& room = {}) {
-        device_.for_each_warp(
-            sum_and_difference<Real>::count(maps_.planes.width, maps_.planes.height, warp::size),
-            sum_and_difference<Real>{photo_, picture, background_, maps_});
+        device_.for_each_warp(sum_and_difference<Real>::template count<warp>(maps_.planes),
+                              sum_and_difference<Real>{photo_, picture, background_, maps_});
         device_.for_each_warp(strips(), ssim_compare<Real>{maps_, window_, rows(), totals_.data(), room});
     }
 

@@ -18,12 +18,15 @@ struct framed_planes {
     WARPAGG_HD std::ptrdiff_t pitch() const {
         return (width + frame + alignment - 1) / alignment * alignment;
     }
+    /// How many lines of `pitch()` values there are: one for the frame at the left of the first row, then the
+    /// planes, each below its frame, then the frame of the last.
+    WARPAGG_HD int lines() const { return 1 + 3 * (frame + height) + frame; }
     /// The place of a row's first pixel.
     WARPAGG_HD std::ptrdiff_t at(int channel, int row) const {
-        return alignment + (static_cast<std::ptrdiff_t>(channel) * (height + frame) + frame + row) * pitch();
+        return (1 + channel * (frame + height) + frame + row) * pitch();
     }
-    /// How many values there are, the frame and what the last lanes of a warp read of no use included.
-    std::size_t size() const { return static_cast<std::size_t>(at(3, 0)) + alignment; }
+    /// How many values there are, with what the last lanes of a warp read of no use.
+    std::size_t size() const { return static_cast<std::size_t>(lines() * pitch() + alignment); }
 };
 
 /// Columns as many as a warp has lanes, and some rows of a channel.
