@@ -179,6 +179,57 @@ TEST_CASE("colours that depend on direction stay as they are when they are not t
     }
 }
 
+TEST_CASE("a Gaussian that a view does not see keeps its bits, whatever its momentum") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 1, 1000, 1);
+    std::ranges::fill(model.opacity, 6.0f);                             // those in front hide others
+    for (float& c : model.sh_constant) c = std::clamp(c, -1.5f, 1.5f);  // black has no gradient to see it by
+    const auto changed = [&](const gaussians& a, const gaussians& b) {
+        const auto part = [](const std::vector<float>& x, const std::vector<float>& y, std::size_t i,
+                             std::size_t width) {
+            const auto at = static_cast<std::ptrdiff_t>(i * width), n = static_cast<std::ptrdiff_t>(width);
+            return !std::equal(x.begin() + at, x.begin() + at + n, y.begin() + at);
+        };
+        std::vector<bool> is(model.count());
+        for (std::size_t i = 0; i < is.size(); ++i)
+            is[i] = part(a.mean, b.mean, i, 3) || part(a.log_scale, b.log_scale, i, 3) ||
+                    part(a.quaternion, b.quaternion, i, 4) || part(a.opacity, b.opacity, i, 1) ||
+                    part(a.sh_constant, b.sh_constant, i, 3) || part(a.sh_rest, b.sh_rest, i, 9);
+        return is;
+    };
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        const auto plan = [](std::size_t view, float rate) {
+            auto p = plan_for(view);
+            p.sh_degree = 1;
+            p.rates.fill(rate);
+            return p;
+        };
+        // From no momentum, a step moves those that its view sees.
+        const auto seen_by = [&](std::size_t view) {
+            e->set_model(model);
+            e->reserve();
+            e->step(plan(view, 0.01f));
+            return changed(model, e->get_model());
+        };
+        const std::vector<bool> first = seen_by(0), second = seen_by(1);
+        e->set_model(model);
+        e->step(plan(0, 0));  // gives momentum to what it sees
+        CHECK(same(e->get_model(), model));
+        e->step(plan(1, 0.01f));
+        const std::vector<bool> moved = changed(model, e->get_model());
+        std::size_t hidden = 0, shown = 0;
+        for (std::size_t i = 0; i < model.count(); ++i) {
+            if (first[i] && !second[i]) ++hidden;
+            if (second[i]) ++shown;
+            CHECK(moved[i] == second[i]);
+        }
+        CHECK(hidden > 50);
+        CHECK(shown > 50);
+    }
+}
+
 TEST_CASE("the most urgent grow first, and none past the cap") {
     const gs::scene scene = small_scene();
     const gaussians model = gs::from_points(scene.points, 0, 1000, 1);

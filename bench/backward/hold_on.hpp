@@ -19,14 +19,15 @@ class contest_on {
 
   public:
     explicit contest_on(const contest& c) : contest_(c) {
-        put(c.model);
+        model_.upload(device_, c.model);
         std::mt19937_64 random(c.seed);
         std::normal_distribution<float> normal;
         const gs::camera& first = c.cameras.front();
         std::vector<float> gradient(3 * static_cast<std::size_t>(first.width) *
                                     static_cast<std::size_t>(first.height));
         for (float& g : gradient) g = normal(random);
-        upload(gradient_, gradient);
+        gradient_.resize(gradient.size());
+        device_.upload(gradient_.data(), gradient.data(), gradient.size());
         device_.wait();
     }
 
@@ -36,7 +37,7 @@ class contest_on {
         auto r = std::make_shared<gs::raster::renderer<Device, float, Cut>>(device_);
         std::uint64_t most = 0;
         for (const gs::camera& view : contest_.cameras) {
-            r->measure(model_, contest_.model.count(), view, 0);
+            r->measure(model_.read(), contest_.model.count(), view, 0);
             most = std::max(most, r->instances());
         }
         r->reserve_instances(most);
@@ -47,7 +48,7 @@ class contest_on {
     void enter(const std::string& name, bool rung, const std::shared_ptr<Renderer>& renderer, Kernel kernel) {
         standings_.push_back({name, rung, {}, {}, 0, 0});
         frames_.push_back([this, renderer, kernel](const gs::camera& view) -> const buffer<float>& {
-            renderer->forward(model_, contest_.model.count(), view, contest_.model.sh_degree,
+            renderer->forward(model_.read(), contest_.model.count(), view, contest_.model.sh_degree,
                               contest_.background);
             const auto& sums = renderer->blend_backward_by(kernel, gradient_.data());
             device_.end_iteration();
@@ -96,33 +97,6 @@ class contest_on {
     }
 
   private:
-    template <class T>
-    void upload(buffer<T>& to, const std::vector<T>& from) {
-        to.resize(from.size());
-        device_.upload(to.data(), from.data(), from.size());
-    }
-    void put(const gs::gaussians& m) {
-        upload(mean_, m.mean);
-        upload(log_scale_, m.log_scale);
-        upload(quaternion_, m.quaternion);
-        upload(opacity_, m.opacity);
-        upload(sh_[0], m.sh_constant);
-        model_ = {mean_.data(), log_scale_.data(), quaternion_.data(), opacity_.data(), {sh_[0].data()}};
-        const auto width = static_cast<std::size_t>(m.rest_width());
-        for (int band = 1, from = 0; band <= m.sh_degree; ++band) {
-            const int size = 3 * (2 * band + 1);
-            std::vector<float> values;
-            for (std::size_t i = 0; i < m.count(); ++i) {
-                const auto at = m.sh_rest.begin() + static_cast<std::ptrdiff_t>(i * width) + from;
-                values.insert(values.end(), at, at + size);
-            }
-            upload(sh_[band], values);
-            model_.sh[band] = sh_[band].data();
-            device_.wait();
-            from += size;
-        }
-    }
-
     /// Every variant's sums beside the first one's, in a few views.
     void compare() {
         const std::size_t views = std::min<std::size_t>(contest_.cameras.size(), 3);
@@ -145,9 +119,8 @@ class contest_on {
 
     const contest& contest_;
     Device device_;
-    buffer<float> mean_, log_scale_, quaternion_, opacity_, gradient_;
-    std::array<buffer<float>, 4> sh_;
-    gs::parameter_arrays<const float> model_;
+    gs::parameter_memory<Device> model_;
+    buffer<float> gradient_;
     std::vector<standing> standings_;
     std::vector<std::function<const buffer<float>&(const gs::camera&)>> frames_;
     std::vector<std::function<double()>> pairs_;

@@ -41,8 +41,8 @@ class pictures_on {
 
         void draw(const question& q) {
             for (std::size_t p = 0; p < gs::parameter_count; ++p) {
-                on.put(values[p], q.parameters[p]);
-                gradients[p].resize(q.parameters[p].size());
+                put(on, values[p], q, p);
+                gradients[p].resize(values[p].size());
             }
             const auto model = read(values);
             const gs::camera& camera = q.view.camera;
@@ -76,13 +76,14 @@ class pictures_on {
         buffer<gs::raster::visibility> seen;
         seen.resize(q.count());
         s.device.zero(seen.data(), q.count());
-        s.renderer.backward(by_picture, q.policy, q.sh_degree, write(s.gradients), seen.data());
+        s.renderer.backward(by_picture, q.policy, q.sh_degree,
+                            gs::raster::store_gradients<Real>{write(s.gradients)}, seen.data());
 
         answer a;
         a.picture = s.on.get(s.renderer.picture(), values);
         a.loss = s.photometric.take().loss(gs::train::schedule::ssim_weight);
         for (std::size_t p = 0; p < gs::parameter_count; ++p)
-            a.gradients[p] = s.on.get(s.gradients[p].data(), s.gradients[p].size());
+            a.gradients[p] = get(s.on, s.gradients[p], q, p);
         const auto sightings = s.on.get_as_they_are(seen.data(), q.count());
         a.sightings.resize(sightings.size());
         std::ranges::transform(sightings, a.sightings.begin(), [](const gs::raster::visibility& v) {
@@ -102,7 +103,7 @@ class pictures_on {
         Device device;
         memory on(device);
         parameters values;
-        for (std::size_t p = 0; p < gs::parameter_count; ++p) on.put(values[p], q.parameters[p]);
+        for (std::size_t p = 0; p < gs::parameter_count; ++p) put(on, values[p], q, p);
         buffer<gs::raster::splat<Real>> splats;
         buffer<gs::raster::tile_box> boxes;
         buffer<std::uint32_t> depths, identities, tiles;
@@ -144,6 +145,19 @@ class pictures_on {
     }
 
   private:
+    /// One parameter of all Gaussians, or its gradients; none where the question has none.
+    static void put(memory& on, buffer<Real>& to, const question& q, std::size_t p) {
+        const std::size_t width = gs::width_of(static_cast<gs::parameter>(p));
+        on.put(to, gs::to_blocks(q.parameters[p].data(), q.parameters[p].size() / width, width, width));
+    }
+    static std::vector<double> get(memory& on, const buffer<Real>& from, const question& q, std::size_t p) {
+        const std::size_t width = gs::width_of(static_cast<gs::parameter>(p));
+        std::vector<double> rows(q.parameters[p].size());
+        const std::vector<double> blocks = on.get(from.data(), from.size());
+        gs::from_blocks(blocks.data(), rows.size() / width, width, width, rows.data());
+        return rows;
+    }
+
     template <class To, class From>
     static gs::parameter_arrays<To> pointers(From& a) {
         return {a[0].data(),

@@ -13,6 +13,26 @@
 
 namespace hard_cases {
 
+/// Adam alone, with gradients from an array: opacities, a Gaussian a lane.
+template <class W>
+struct descend_row {
+    gs::train::adam<float> step;
+    const float* gradients;
+    const std::uint32_t* takes_part;
+    std::size_t count;
+
+    WARPAGG_HD void operator()(const W& w, unsigned warp_index) const {
+        using warpagg::value_t;
+        const std::size_t first = std::size_t{warp_index} * W::size;
+        const auto inside = w.lane() + static_cast<unsigned>(first) < static_cast<unsigned>(count);
+        const auto part = w.load_row(takes_part, static_cast<std::ptrdiff_t>(first), inside);
+        const gs::raster::gaussian_row<W> row{first, inside, inside && part != value_t<W, unsigned>(0)};
+        const auto opacity = row.template load<1>(w, step.values.opacity, 0, 1);
+        const auto gradient = row.template load<1>(w, gradients, 0, 1);
+        step(w, row, gs::parameter::opacity, 0, 1, opacity, gradient);
+    }
+};
+
 /// What a backend does to train.
 template <class Device, class Real>
 class training_on {
@@ -37,30 +57,37 @@ class training_on {
         return a;
     }
 
-    static std::vector<std::vector<double>> descend(const std::vector<std::vector<double>>& gradients,
-                                                    double rate) {
+    static std::vector<std::vector<double>> descend(
+        const std::vector<std::vector<double>>& gradients, double rate,
+        const std::vector<std::vector<std::uint32_t>>& takes_part) {
         using adam = gs::train::adam<float>;
         Device device;
         memory_on<Device, float> on(device);
-        const std::size_t n = gradients.front().size();
+        using warp = typename Device::narrow_warp;
+        const std::size_t n = gradients.front().size(), places = gs::in_whole_blocks(n);
         buffer<float> values, first, second, gradient;
-        for (auto* b : {&values, &first, &second}) on.put(*b, std::vector<double>(n, 0.0));
+        for (auto* b : {&values, &first, &second}) on.put(*b, std::vector<double>(places, 0.0));
+        buffer<std::uint32_t> part;
         buffer<gs::train::watch::memory> found;
         on.put_as_they_are(found, std::vector{gs::train::watch::clean()});
         std::vector<std::vector<double>> path;
-        for (const auto& g : gradients) {
+        for (auto g : gradients) {
+            g.resize(places);
             on.put(gradient, g);
+            auto who = takes_part.empty() ? std::vector<std::uint32_t>(n, 1) : takes_part[path.size()];
+            who.resize(places);
+            on.put_as_they_are(part, who);
             const auto t = static_cast<double>(path.size() + 1);
             adam step{};
             step.watch.found = found.data();
-            step.width = 1;
-            step.values = values.data();
-            step.first = first.data();
-            step.second = second.data();
-            step.gradients = gradient.data();
-            step.rate = static_cast<float>(rate / (1 - std::pow(adam::beta1, t)));
+            step.values.opacity = values.data();
+            step.first.opacity = first.data();
+            step.second.opacity = second.data();
+            step.rates[static_cast<int>(gs::parameter::opacity)] =
+                static_cast<float>(rate / (1 - std::pow(adam::beta1, t)));
             step.correction = static_cast<float>(1 / std::sqrt(1 - std::pow(adam::beta2, t)));
-            device.for_each_element(n, step);
+            device.template for_each_warp<warp>((n + warp::size - 1) / warp::size,
+                                                descend_row<warp>{step, gradient.data(), part.data(), n});
             path.push_back(on.get(values.data(), n));
         }
         return path;
@@ -79,7 +106,7 @@ class training_on {
         buffer<std::uint32_t> stays, large, urgency, identities;
         buffer<unsigned long long> silent;
         on.put_as_they_are(seen, host);
-        on.put(log_scale, std::vector<double>(3 * n, -3.0));
+        on.put(log_scale, std::vector<double>(3 * gs::in_whole_blocks(n), -3.0));
         on.put(opacity, opacities);
         for (auto* b : {&stays, &large, &urgency, &identities}) b->resize(n);
         silent.resize(1);

@@ -39,6 +39,8 @@ template <class Warp>
 class basic_cpu {
   public:
     using warp = Warp;
+    /// What kernels over Gaussians run on, which have too many values for the registers with more lanes.
+    using narrow_warp = std::conditional_t<Warp::size == 32, warpagg::emulator::narrow_lanes<8>, Warp>;
 
     /// Memory of the device. Growing it loses the contents.
     template <class T>
@@ -80,33 +82,18 @@ class basic_cpu {
 #pragma omp parallel for schedule(static)
         for (std::size_t i = 0; i < n; ++i) f(i);
     }
-    /// The same for plain arithmetic on arrays, where neighbouring elements may share a SIMD instruction; and
-    /// not at all if f.skip(). f(i) says whether all is well with i; if not, f.report(i) is called.
-    template <class F>
-    void for_each_element(std::size_t n, const F& f) {
-        if (f.skip()) return;
-        constexpr std::size_t block = 1024;
-#pragma omp parallel for schedule(static)
-        for (std::size_t first = 0; first < n; first += block) {
-            const std::size_t length = std::min(block, n - first);
-            std::uint32_t wrong[block], any = 0;
-#pragma omp simd reduction(| : any)
-            for (std::size_t i = 0; i < length; ++i) any |= wrong[i] = f(first + i) ? 0 : 1;
-            for (std::size_t i = 0; any != 0 && i < length; ++i)
-                if (wrong[i] != 0) f.report(first + i);
-        }
-    }
-    /// f(warp, i) for each i in [0, n), each on a warp of its own; f(warp, i, scratch) if it has scratch.
-    template <class F>
+    /// f(warp, i) for each i in [0, n), each on a warp of its own, of the model W; f(warp, i, scratch) if it
+    /// has scratch.
+    template <class W = warp, class F>
     void for_each_warp(std::size_t n, const F& f) {
         const std::size_t share = std::clamp<std::size_t>(n / resident_warps(), 1, 8);
 #pragma omp parallel for schedule(dynamic, share)
         for (std::size_t i = 0; i < n; ++i) {
-            if constexpr (has_scratch<F, Warp>) {
-                typename F::template scratch<Warp> scratch;
-                f(Warp{}, static_cast<unsigned>(i), scratch);
+            if constexpr (has_scratch<F, W>) {
+                typename F::template scratch<W> scratch;
+                f(W{}, static_cast<unsigned>(i), scratch);
             } else {
-                f(Warp{}, static_cast<unsigned>(i));
+                f(W{}, static_cast<unsigned>(i));
             }
         }
     }
@@ -114,6 +101,10 @@ class basic_cpu {
     template <class T>
     void zero(T* p, std::size_t n) {
         if (n > 0) std::memset(static_cast<void*>(p), 0, n * sizeof(T));
+    }
+    template <class T>
+    void copy(T* to, const T* from, std::size_t n) {
+        std::copy_n(from, n, to);
     }
     template <class T>
     void upload(T* to, const T* from, std::size_t n) {

@@ -55,13 +55,6 @@ __global__ void for_each_index(std::size_t n, F f) {
 }
 
 template <class F>
-__global__ void for_each_element(std::size_t n, F f) {
-    await_kernel_before();
-    const std::size_t i = std::size_t{blockIdx.x} * block_size + threadIdx.x;
-    if (i < n && !f.skip() && !f(i)) f.report(i);
-}
-
-template <class F>
 __global__ void __launch_bounds__(block_size) for_each_warp(unsigned n, F f) {
     await_kernel_before();
     const unsigned i = blockIdx.x * warps_per_block + threadIdx.x / 32;
@@ -80,6 +73,7 @@ __global__ void __launch_bounds__(block_size) for_each_warp(unsigned n, F f) {
 class cuda {
   public:
     using warp = warpagg::cuda::warp;
+    using narrow_warp = warp;  ///< see `basic_cpu`
 
     template <class T>
     using buffer = cuda_buffer<T>;
@@ -111,14 +105,8 @@ class cuda {
     void for_each_index(std::size_t n, const F& f) {
         launch(detail::for_each_index<F>, blocks(n, detail::block_size), detail::block_size, 0, n, f);
     }
-    /// The same for plain arithmetic on arrays; and not at all if f.skip(), which the device finds out. f(i)
-    /// says whether all is well with i; if not, f.report(i) is called.
-    template <class F>
-    void for_each_element(std::size_t n, const F& f) {
-        launch(detail::for_each_element<F>, blocks(n, detail::block_size), detail::block_size, 0, n, f);
-    }
     /// f(warp, i) for each i in [0, n), each on a warp of its own; f(warp, i, scratch) if it has scratch.
-    template <class F>
+    template <class W = warp, class F>
     void for_each_warp(std::size_t n, const F& f) {
         launch(detail::for_each_warp<F>, blocks(n, detail::warps_per_block), detail::block_size, 0,
                static_cast<unsigned>(n), f);
@@ -127,6 +115,10 @@ class cuda {
     template <class T>
     void zero(T* p, std::size_t n) {
         if (n > 0) check(cudaMemsetAsync(p, 0, n * sizeof(T), stream_));
+    }
+    template <class T>
+    void copy(T* to, const T* from, std::size_t n) {
+        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToDevice, stream_));
     }
     template <class T>
     void upload(T* to, const T* from, std::size_t n) {

@@ -7,11 +7,11 @@
 
 namespace gs::device {
 
-/// The stages of an iteration, for the split of its time.
-enum class stage { project, bin, blend_forward, loss, blend_backward, project_backward, adam, count };
+/// The stages of an iteration, for the split of its time. Adam is the end of `project_backward`.
+enum class stage { project, bin, blend_forward, loss, blend_backward, project_backward, count };
 
-inline constexpr std::array stage_names{"project",          "bin", "blend_forward", "loss", "blend_backward",
-                                        "project_backward", "adam"};
+inline constexpr std::array stage_names{"project",         "bin", "blend_forward", "loss", "blend_backward",
+                                        "project_backward"};
 
 /// What decides how much memory an iteration needs: equal numbers, equal needs.
 using iteration_shape = std::array<std::size_t, 5>;

@@ -4,16 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/exponential.hpp>
 #include <limits>
-#include <warpagg/simt/target.hpp>
+
+#include "number.hpp"
 
 namespace gs {
 
 /// An opacity from its logit.
 template <class Real>
 WARPAGG_HD Real sigmoid(Real logit) {
-    return 1 / (1 + glm::exp(-logit));
+    return 1 / (1 + exponential(-logit));
 }
 
 /// The logit of an opacity in [0, 1]: always finite, since 0 and 1 count as the floats next to them.

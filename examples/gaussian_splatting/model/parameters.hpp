@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <warpagg/simt/target.hpp>
 
 namespace gs {
 
@@ -18,13 +19,19 @@ inline constexpr std::array<int, parameter_count> parameter_width{3, 3, 4, 1, 3,
 inline constexpr std::array<const char*, parameter_count> parameter_names{
     "mean", "log_scale", "quaternion", "opacity", "sh0", "sh1", "sh2", "sh3"};
 
+constexpr std::size_t width_of(parameter p) {
+    return static_cast<std::size_t>(parameter_width[static_cast<std::size_t>(p)]);
+}
+WARPAGG_HD constexpr parameter sh_band(int band) {
+    return static_cast<parameter>(static_cast<int>(parameter::sh0) + band);
+}
+
 /// Whether a model of this SH degree has the parameter.
 constexpr bool has_parameter(std::size_t p, int sh_degree) {
     return static_cast<int>(p) - static_cast<int>(parameter::sh0) <= sh_degree;
 }
 
-/// Where the arrays lie: `count * width` values each, Gaussian-major. Values, gradients and moments have this
-/// form.
+/// Where the arrays lie, each in blocks: see `place`. Values, gradients and moments have this form.
 template <class Real>
 struct parameter_arrays {
     Real* mean = nullptr;
@@ -32,6 +39,21 @@ struct parameter_arrays {
     Real* quaternion = nullptr;  ///< w x y z
     Real* opacity = nullptr;     ///< logit
     Real* sh[4] = {};            ///< bands 0 to 3, coefficient-major, RGB within
+
+    WARPAGG_HD constexpr Real* operator[](parameter p) const {
+        switch (p) {
+            case parameter::mean:
+                return mean;
+            case parameter::log_scale:
+                return log_scale;
+            case parameter::quaternion:
+                return quaternion;
+            case parameter::opacity:
+                return opacity;
+            default:
+                return sh[static_cast<int>(p) - static_cast<int>(parameter::sh0)];
+        }
+    }
 };
 
 }  // namespace gs

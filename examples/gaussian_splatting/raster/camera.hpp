@@ -5,6 +5,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "../model/number.hpp"
 #include "../scene/scene.hpp"
 
 namespace gs::raster {
@@ -28,17 +29,17 @@ device_camera<Real> for_device(const camera& c) {
     device_camera<Real> d;
     d.width = c.width;
     d.height = c.height;
-    d.fx = static_cast<Real>(c.fx);
-    d.fy = static_cast<Real>(c.fy);
-    d.cx = static_cast<Real>(c.cx);
-    d.cy = static_cast<Real>(c.cy);
+    d.fx = constant<Real>(c.fx);
+    d.fy = constant<Real>(c.fy);
+    d.cx = constant<Real>(c.cx);
+    d.cy = constant<Real>(c.cy);
     d.rotation = glm::mat<3, 3, Real>(c.rotation);
     d.translation = glm::vec<3, Real>(c.translation);
     d.centre = glm::vec<3, Real>(c.centre());
-    d.least_x = static_cast<Real>((-margin_x - c.cx) / c.fx);
-    d.most_x = static_cast<Real>((c.width + margin_x - c.cx) / c.fx);
-    d.least_y = static_cast<Real>((-margin_y - c.cy) / c.fy);
-    d.most_y = static_cast<Real>((c.height + margin_y - c.cy) / c.fy);
+    d.least_x = constant<Real>((-margin_x - c.cx) / c.fx);
+    d.most_x = constant<Real>((c.width + margin_x - c.cx) / c.fx);
+    d.least_y = constant<Real>((-margin_y - c.cy) / c.fy);
+    d.most_y = constant<Real>((c.height + margin_y - c.cy) / c.fy);
     return d;
 }
 

@@ -24,7 +24,7 @@ struct ellipse {
     WARPAGG_HD ellipse(const vec3<Real>& ax, const vec3<Real>& ay) {
         using warpagg::math::max;
         using warpagg::math::sqrt;
-        constexpr Real two_ln2 = Real(1.3862943611198906), added = Real(pixel_variance);
+        const Real two_ln2 = constant<Real>(1.3862943611198906), added = constant<Real>(pixel_variance);
         // The variances are size_x^2 xx and size_y^2 yy, the determinant (size_x across)^2 times
         // `determinant`.
         const Real size_x = max(Real(1), largest(ax)), size_y = max(Real(1), largest(ay));
@@ -46,7 +46,7 @@ struct ellipse {
         r = -q * slope_y;
     }
 
-    WARPAGG_HD bool is_sound() const {
+    WARPAGG_HD flag_of<Real> is_sound() const {
         return is_finite(width) && is_finite(height) && is_finite(q) && is_finite(r) && is_finite(slope_x);
     }
 };

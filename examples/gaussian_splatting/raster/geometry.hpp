@@ -41,35 +41,38 @@ WARPAGG_HD vec4<Real> rotation_gradient(const vec4<Real>& q, const mat3<Real>& g
 /// How a camera sees a Gaussian: all that both directions of the chain rule need.
 template <class Real>
 struct footprint {
-    vec3<Real> at;        ///< in camera space
-    Real u, v;            ///< x/z and y/z, clamped for the Jacobian
-    bool u_free, v_free;  ///< not clamped
-    Real x, y;            ///< the centre in pixels
-    vec4<Real> turn;      ///< quaternion of length one
-    Real inverse_length;  ///< of the quaternion
+    vec3<Real> at;                 ///< in camera space
+    Real u, v;                     ///< x/z and y/z, clamped for the Jacobian
+    flag_of<Real> u_free, v_free;  ///< not clamped
+    Real x, y;                     ///< the centre in pixels
+    vec4<Real> turn;               ///< quaternion of length one
+    Real inverse_length;           ///< of the quaternion
     vec3<Real> scale;
     mat3<Real> rotation;  ///< of the Gaussian
     vec3<Real> px, py;    ///< rows of Jacobian times world-to-camera rotation
     vec3<Real> ax, ay;    ///< rows of that times rotation times scale: the covariance is their Gram matrix
     ellipse<Real> shape;
-    bool drawable;  ///< in front of the camera, and finite
+    flag_of<Real> drawable;  ///< finite
 };
 
+/// Where a mean is in camera space. Nearer than `near_plane` it is not to be drawn.
 template <class Real>
-WARPAGG_HD footprint<Real> see(const parameter_arrays<const Real>& g, unsigned i,
-                               const device_camera<Real>& camera) {
+WARPAGG_HD vec3<Real> in_camera(const vec3<Real>& mean, const device_camera<Real>& camera) {
+    return camera.rotation * mean + camera.translation;
+}
+
+/// `at`: the mean in camera space, beyond the near plane.
+template <class Real>
+WARPAGG_HD footprint<Real> see(const vec3<Real>& at, const vec3<Real>& log_scale,
+                               const vec4<Real>& quaternion, const device_camera<Real>& camera) {
     using warpagg::math::max;
     using warpagg::math::min;
     footprint<Real> f;
-    f.drawable = false;
-    f.at = camera.rotation * load3(g.mean, i) + camera.translation;
-    if (!(f.at.z > Real(near_plane))) return f;
-
-    const unit<4, Real> turn(load4(g.quaternion, i));
+    f.at = at;
+    const unit<4, Real> turn(quaternion);
     f.turn = turn.direction;
     f.inverse_length = turn.inverse_length;
-    const vec3<Real> log_scale = load3(g.log_scale, i);
-    f.scale = glm::exp(log_scale);
+    for (int k = 0; k < 3; ++k) f.scale[k] = exponential(log_scale[k]);
     f.rotation = rotation_of(f.turn);
 
     const Real rz = 1 / f.at.z;

@@ -57,7 +57,10 @@ struct project {
         boxes[i] = {0, 0, 0, 0};
         splats[i] = {};
 
-        const footprint<Real> f = see(gaussians, i, camera);
+        const vec3<Real> at = in_camera(load3(gaussians.mean, i), camera);
+        if (!(at.z > Real(near_plane))) return;
+        const footprint<Real> f =
+            see(at, load3(gaussians.log_scale, i), load4(gaussians.quaternion, i), camera);
         if (!f.drawable || !is_finite(gaussians.opacity[i])) return;
         splat<Real> s{};
         const Real opacity = sigmoid(gaussians.opacity[i]);
@@ -105,13 +108,16 @@ struct project {
 
     WARPAGG_HD vec3<Real> colour(unsigned i) const {
         const vec3<Real> direction = unit(load3(gaussians.mean, i) - camera.centre).direction;
-        Real basis[16];
+        Real basis[16]{};
         sh_basis(sh_degree, direction, basis);
         vec3<Real> sum(0.5);
-        for (int band = 0, k = 0; band <= sh_degree; ++band) {
-            const unsigned size = static_cast<unsigned>(2 * band + 1);
-            for (unsigned m = 0; m < size; ++m, ++k)
-                sum += basis[k] * load3(gaussians.sh[band], i * size + m);
+        WARPAGG_UNROLL
+        for (unsigned band = 0; band < 4; ++band) {
+            if (static_cast<int>(band) > sh_degree) break;
+            const unsigned size = 2 * band + 1;
+            WARPAGG_UNROLL
+            for (unsigned m = 0; m < size; ++m)
+                sum += basis[band * band + m] * load3(gaussians.sh[band], i, 3 * m, 3 * size);
         }
         return sum;
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../model/spherical_harmonics.hpp"
+#include "gaussian_row.hpp"
 #include "geometry.hpp"
 #include "list_room.hpp"
 #include "splat.hpp"
@@ -21,129 +22,173 @@ struct visibility {
     float seen;      ///< iterations in which it was drawn
 };
 
-/// From the sums over pixels to the gradients of the parameters: one index a Gaussian. Gradients of Gaussians
-/// that are not drawn are zero.
+/// Where `project_backward` puts gradients that are to be looked at: into arrays, zeros where a Gaussian took
+/// part in no pixel.
 template <class Real>
+struct store_gradients {
+    parameter_arrays<Real> to;
+
+    static constexpr bool takes_zeros = true;
+    WARPAGG_HD bool idle() const { return false; }
+
+    template <class W, int N, class V>
+    WARPAGG_HD void operator()(const W& w, const gaussian_row<W>& row, parameter p, std::size_t k,
+                               std::size_t width, const glm::vec<N, V>&,
+                               const glm::vec<N, V>& gradient) const {
+        for (int n = 0; n < N; ++n)
+            w.store_row(to[p], row.at(k, n, width), select(row.active, gradient[n], V(0)), row.inside);
+    }
+};
+
+/// From the sums over pixels to the gradients of the parameters, a Gaussian a lane. A Gaussian takes part in
+/// the step if any of its sums is not zero: else all its gradients are. Of those that take part, `Sink` is
+/// given each parameter's value and gradient, three components or so at a time, and may change the value at
+/// once: it has been read by all that needs it. `Sink::takes_zeros` says whether it wants the others' as
+/// well.
+template <class W, class Real, class Sink>
 struct project_backward {
+    using real = value_t<W, Real>;
+
     parameter_arrays<const Real> gaussians;
-    device_camera<Real> camera;
+    std::size_t count;
+    device_camera<real> camera;
     int sh_degree;
     int learned_sh_degree;  ///< no gradients of bands above it
     const splat<Real>* splats;
     const std::uint32_t* tiles;
     const Real* sums;  ///< `record_stride` a Gaussian
-
-    parameter_arrays<Real> gradients;
+    Sink sink;
     visibility* seen;  ///< null: nobody wants to know
     list_room room;    ///< of the view
 
-    WARPAGG_HD void operator()(std::size_t index) const {
-        const auto i = static_cast<unsigned>(index);
-        if (tiles[i] == 0) {
-            clear(i);
-            return;
+    WARPAGG_HD void operator()(const W& w, unsigned warp_index) const {
+        if (sink.idle()) return;
+        const auto i = w.lane() + warp_index * W::size;
+        gaussian_row<W> row{std::size_t{warp_index} * W::size, i < static_cast<unsigned>(count), false};
+        const mask_t<W> drawn =
+            w.load_row(tiles, static_cast<std::ptrdiff_t>(row.first), row.inside) != value_t<W, unsigned>(0);
+        real s[sum_count];
+        for (unsigned k = 0; k < sum_count; ++k) {
+            s[k] = w.load(sums, i * record_stride + k, drawn);
+            row.active = row.active || s[k] != real(0);
         }
-        const footprint<Real> f = see(gaussians, i, camera);
-        const Real* s = sums + i * record_stride;
-        // L depends on the exponent through alpha = o exp(-ln2 (u^2 + v^2)), and s = dL/dalpha alpha. With M
-        // the rows (p, 0), (r, q), the inverse covariance is 2 ln2 M^T M and (u, v) = M d.
-        constexpr Real two_ln2 = Real(1.3862943611198906);
-        const Real p = f.shape.p, q = f.shape.q, r = f.shape.r;
-        const vec2<Real> centre = two_ln2 * vec2<Real>(p * s[sum_su] + r * s[sum_sv], q * s[sum_sv]);
-        gradients.opacity[i] = s[sum_s] * sigmoid(-gaussians.opacity[i]);
-
-        // dL/dcovariance = (2 ln2)^2 / 2 M^T W M with W the second moments, and the covariance is the Gram
-        // matrix of ax and ay, whose whitened forms are wx and wy.
-        const vec3<Real> wx = p * f.ax, wy = r * f.ax + q * f.ay;
-        const Real k = two_ln2 * two_ln2;
-        const vec3<Real> nx = k * (s[sum_suu] * wx + s[sum_suv] * wy),
-                         ny = k * (s[sum_suv] * wx + s[sum_svv] * wy);
-        const vec3<Real> dax = p * nx + r * ny, day = q * ny;
-
-        store3(gradients.log_scale, i, nx * wx + ny * wy);
-        turn(i, f, dax * f.scale, day * f.scale);
-        position(i, f, centre, f.rotation * (dax * f.scale), f.rotation * (day * f.scale), s);
-        if (seen != nullptr) note(i, centre);
+        vec2<real> centre(real(0));
+        if (Sink::takes_zeros || w.any(row.active)) centre = differentiate(w, row, i, s);
+        if (seen != nullptr) note(w, i, drawn, row.active, centre);
     }
 
   private:
-    WARPAGG_HD void clear(unsigned i) const {
-        const vec3<Real> zero(0);
-        store3(gradients.mean, i, zero);
-        store3(gradients.log_scale, i, zero);
-        for (unsigned k = 0; k < 4; ++k) gradients.quaternion[4 * i + k] = 0;
-        gradients.opacity[i] = 0;
-        for (int band = 0; band <= learned_sh_degree; ++band) {
-            const unsigned size = static_cast<unsigned>(2 * band + 1);
-            for (unsigned m = 0; m < size; ++m) store3(gradients.sh[band], i * size + m, zero);
-        }
+    /// Returns the gradient of the centre, in pixels.
+    WARPAGG_HD vec2<real> differentiate(const W& w, const gaussian_row<W>& row, const value_t<W, unsigned>& i,
+                                        const real* s) const {
+        const auto mean = row.template load<3>(w, gaussians.mean, 0, 3);
+        const auto log_scale = row.template load<3>(w, gaussians.log_scale, 0, 3);
+        const auto quaternion = row.template load<4>(w, gaussians.quaternion, 0, 4);
+        const auto opacity = row.template load<1>(w, gaussians.opacity, 0, 1);
+        const footprint<real> f = see(in_camera(mean, camera), log_scale, quaternion, camera);
+        // L depends on the exponent through alpha = o exp(-ln2 (u^2 + v^2)), and s = dL/dalpha alpha. With M
+        // the rows (p, 0), (r, q), the inverse covariance is 2 ln2 M^T M and (u, v) = M d.
+        const real two_ln2 = constant<real>(1.3862943611198906);
+        const real p = f.shape.p, q = f.shape.q, r = f.shape.r;
+        const vec2<real> centre = two_ln2 * vec2<real>(p * s[sum_su] + r * s[sum_sv], q * s[sum_sv]);
+
+        // dL/dcovariance = (2 ln2)^2 / 2 M^T W M with W the second moments, and the covariance is the Gram
+        // matrix of ax and ay, whose whitened forms are wx and wy.
+        const vec3<real> wx = p * f.ax, wy = r * f.ax + q * f.ay;
+        const real k = two_ln2 * two_ln2;
+        const vec3<real> nx = k * (s[sum_suu] * wx + s[sum_suv] * wy),
+                         ny = k * (s[sum_suv] * wx + s[sum_svv] * wy);
+        const vec3<real> dax = p * nx + r * ny, day = q * ny;
+
+        const vec3<real> by_position =
+            position(f, centre, f.rotation * (dax * f.scale), f.rotation * (day * f.scale));
+        sink(w, row, parameter::log_scale, 0, 3, log_scale, nx * wx + ny * wy);
+        sink(w, row, parameter::quaternion, 0, 4, quaternion, turn(f, dax * f.scale, day * f.scale));
+        sink(w, row, parameter::opacity, 0, 1, opacity, glm::vec<1, real>(s[sum_s] * sigmoid(-opacity.x)));
+        sink(w, row, parameter::mean, 0, 3, mean, by_position + colour(w, row, i, mean, s));
+        return centre;
     }
 
     /// ax = (px R) * scale: through R to the quaternion.
-    WARPAGG_HD void turn(unsigned i, const footprint<Real>& f, const vec3<Real>& sax,
-                         const vec3<Real>& say) const {
-        mat3<Real> rotation;
+    static WARPAGG_HD vec4<real> turn(const footprint<real>& f, const vec3<real>& sax,
+                                      const vec3<real>& say) {
+        mat3<real> rotation;
         for (int c = 0; c < 3; ++c) rotation[c] = sax[c] * f.px + say[c] * f.py;
-        const vec4<Real> g = rotation_gradient(f.turn, rotation);
+        const vec4<real> g = rotation_gradient(f.turn, rotation);
         // Only the part across the quaternion turns anything.
-        const vec4<Real> q = (g - f.turn * glm::dot(f.turn, g)) * f.inverse_length;
-        for (int k = 0; k < 4; ++k) gradients.quaternion[4 * i + static_cast<unsigned>(k)] = q[k];
+        return (g - f.turn * glm::dot(f.turn, g)) * f.inverse_length;
     }
 
-    /// The mean moves the centre, the Jacobian and the direction that the colour is seen from.
-    WARPAGG_HD void position(unsigned i, const footprint<Real>& f, const vec2<Real>& centre,
-                             const vec3<Real>& dpx, const vec3<Real>& dpy, const Real* s) const {
-        const Real rz = 1 / f.at.z;
+    /// The mean moves the centre and the Jacobian ...
+    WARPAGG_HD vec3<real> position(const footprint<real>& f, const vec2<real>& centre, const vec3<real>& dpx,
+                                   const vec3<real>& dpy) const {
+        const real rz = 1 / f.at.z;
         const auto row = [&](int r) {
-            return vec3<Real>(camera.rotation[0][r], camera.rotation[1][r], camera.rotation[2][r]);
+            return vec3<real>(camera.rotation[0][r], camera.rotation[1][r], camera.rotation[2][r]);
         };
         // px = fx / z (row 0 - u row 2), and u = x / z unless it is clamped.
-        const Real du = -camera.fx * rz * glm::dot(dpx, row(2)), dv = -camera.fy * rz * glm::dot(dpy, row(2));
-        vec3<Real> at(camera.fx * rz * centre.x, camera.fy * rz * centre.y, 0);
-        at.z = -rz * (at.x * f.at.x + at.y * f.at.y) - rz * (glm::dot(dpx, f.px) + glm::dot(dpy, f.py));
-        if (f.u_free) {
-            at.x += du * rz;
-            at.z -= du * f.u * rz;
-        }
-        if (f.v_free) {
-            at.y += dv * rz;
-            at.z -= dv * f.v * rz;
-        }
-        store3(gradients.mean, i, at * camera.rotation + colour(i, s));
+        const real du = select(f.u_free, -camera.fx * rz * glm::dot(dpx, row(2)), real(0));
+        const real dv = select(f.v_free, -camera.fy * rz * glm::dot(dpy, row(2)), real(0));
+        vec3<real> at(camera.fx * rz * centre.x, camera.fy * rz * centre.y, real(0));
+        at.z = -rz * (at.x * f.at.x + at.y * f.at.y) - rz * (glm::dot(dpx, f.px) + glm::dot(dpy, f.py)) -
+               rz * (du * f.u + dv * f.v);
+        at.x += du * rz;
+        at.y += dv * rz;
+        return at * camera.rotation;
     }
 
-    /// Returns the gradient of the mean through the direction of sight.
-    WARPAGG_HD vec3<Real> colour(unsigned i, const Real* s) const {
+    /// ... and the direction that the colour is seen from: returns the gradient through that.
+    WARPAGG_HD vec3<real> colour(const W& w, const gaussian_row<W>& row, const value_t<W, unsigned>& i,
+                                 const vec3<real>& mean, const real* s) const {
         // A channel that the forward pass held at a bound takes no gradient.
-        const auto free = [](Real channel, Real g) {
-            return channel > 0 && channel < Real(most_colour) ? g : Real(0);
+        constexpr unsigned stride = sizeof(splat<Real>) / sizeof(Real),
+                           red = offsetof(splat<Real>, red) / sizeof(Real);
+        const auto free = [&](unsigned channel) {
+            const real shown =
+                w.load(reinterpret_cast<const Real*>(splats), i * stride + red + channel, row.active);
+            return select(shown > real(0) && shown < constant<real>(most_colour), s[sum_red + channel],
+                          real(0));
         };
-        const splat<Real>& p = splats[i];
-        const vec3<Real> g(free(p.red, s[sum_red]), free(p.green, s[sum_green]), free(p.blue, s[sum_blue]));
-        const unit<3, Real> sight(load3(gaussians.mean, i) - camera.centre);
-        const vec3<Real> direction = sight.direction;
-        Real basis[16], weight[16];
+        const vec3<real> g(free(0), free(1), free(2));
+        const unit<3, real> sight(mean - camera.centre);
+        const vec3<real> direction = sight.direction;
+        real basis[16]{}, weight[16]{};
         sh_basis(sh_degree, direction, basis);
-        for (int band = 0, k = 0; band <= sh_degree; ++band) {
-            const unsigned size = static_cast<unsigned>(2 * band + 1);
-            for (unsigned m = 0; m < size; ++m, ++k) {
-                weight[k] = glm::dot(g, load3(gaussians.sh[band], i * size + m));
-                if (band <= learned_sh_degree) store3(gradients.sh[band], i * size + m, basis[k] * g);
+        WARPAGG_UNROLL
+        for (int band = 0; band < 4; ++band) {
+            if (band > sh_degree) break;
+            const int size = 2 * band + 1;
+            WARPAGG_UNROLL
+            for (int m = 0; m < size; ++m) {
+                const int k = band * band + m;
+                const std::size_t component = static_cast<std::size_t>(3 * m),
+                                  width = static_cast<std::size_t>(3 * size);
+                const auto value = row.template load<3>(w, gaussians.sh[band], component, width);
+                weight[k] = glm::dot(g, value);
+                if (band <= learned_sh_degree)
+                    sink(w, row, sh_band(band), component, width, value, basis[k] * g);
             }
         }
-        const vec3<Real> d = sh_gradient(sh_degree, direction, weight);
+        const vec3<real> d = sh_gradient(sh_degree, direction, weight);
         return (d - direction * glm::dot(direction, d)) * sight.inverse_length;
     }
 
     /// A step that is left out (see `list_room`), or a gradient that is, says nothing of the Gaussian.
-    WARPAGG_HD void note(unsigned i, const vec2<Real>& centre) const {
-        const vec2<Real> halves =
-            centre * vec2<Real>(Real(0.5) * Real(camera.width), Real(0.5) * Real(camera.height));
-        const Real most = largest(halves);
-        const auto norm = static_cast<float>(most > 0 ? most * glm::length(halves / most) : most);
-        if (room.exceeded() || !is_finite(norm) || !is_finite(halves.x) || !is_finite(halves.y)) return;
-        seen[i].gradient += norm;
-        seen[i].seen += 1;
+    WARPAGG_HD void note(const W& w, const value_t<W, unsigned>& i, const mask_t<W>& drawn,
+                         const mask_t<W>& active, const vec2<real>& centre) const {
+        if (room.exceeded()) return;
+        const vec2<real> halves(select(active, centre.x * real(Real(camera.width) / 2), real(0)),
+                                select(active, centre.y * real(Real(camera.height) / 2), real(0)));
+        const real most = largest(halves);
+        const vec2<real> part = halves / select(most > real(0), most, real(1));
+        const real norm = most * warpagg::math::sqrt(glm::dot(part, part));
+        const mask_t<W> sound = drawn && is_finite(norm) && is_finite(halves.x) && is_finite(halves.y);
+        auto* memory = reinterpret_cast<float*>(seen);
+        const auto add = [&](unsigned field, const value_t<W, float>& x) {
+            w.store(memory, 2 * i + field, w.load(memory, 2 * i + field, sound) + x, sound);
+        };
+        add(0, warpagg::math::convert<float>(norm));
+        add(1, value_t<W, float>(1.0f));
     }
 };
 

@@ -71,7 +71,7 @@ class renderer {
         transmittance_.resize(pixels);
         last_.resize(pixels);
         checkpoints_.resize(segments() * checkpoint_values);
-        camera_ = for_device<Real>(view);
+        camera_ = view;
         blend_forward_by<Cut>(background);
         count_ = count;
         gaussians_ = gaussians;
@@ -79,16 +79,20 @@ class renderer {
         background_ = background;
     }
 
-    /// The gradients of the last `forward`'s parameters, colours up to a degree, from those of its picture.
-    /// `seen` may be null.
+    /// From the gradient of the last `forward`'s picture to those of its parameters, colours up to a degree,
+    /// which `sink` is given: see `project_backward`. `seen` may be null.
+    template <class Sink>
     void backward(const Real* picture_gradient, gradient_policy policy, int learned_sh_degree,
-                  const parameter_arrays<Real>& gradients, visibility* seen) {
+                  const Sink& sink, visibility* seen) {
         using device::stage;
         with_policy<Real, Cut>(policy, [&](auto kernel) { blend_backward_by(kernel, picture_gradient); });
         device_.begin(stage::project_backward);
-        device_.for_each_index(
-            count_, project_backward<Real>{gaussians_, camera_, sh_degree_, learned_sh_degree, splats_.data(),
-                                           tiles_.data(), sums_.data(), gradients, seen, room()});
+        using narrow = typename Device::narrow_warp;
+        device_.template for_each_warp<narrow>(
+            (count_ + narrow::size - 1) / narrow::size,
+            project_backward<narrow, Real, Sink>{
+                gaussians_, count_, for_device<value_t<narrow, Real>>(camera_), sh_degree_, learned_sh_degree,
+                splats_.data(), tiles_.data(), sums_.data(), sink, seen, room()});
     }
 
     /// The blending's part of `backward` by this kernel, which is filled in. Returns its sums: see
@@ -188,7 +192,7 @@ class renderer {
     // What `backward` belongs to.
     model gaussians_;
     std::size_t count_ = 0;
-    device_camera<Real> camera_{};
+    camera camera_{};
     int sh_degree_ = 0;
     std::array<float, 3> background_{};
 };

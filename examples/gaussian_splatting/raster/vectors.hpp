@@ -7,7 +7,11 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <type_traits>
 #include <warpagg/simt/math.hpp>
+
+#include "../model/layout.hpp"
+#include "../model/number.hpp"
 
 namespace gs::raster {
 
@@ -21,11 +25,11 @@ template <class Real>
 using mat3 = glm::mat<3, 3, Real>;
 
 template <class Real>
-WARPAGG_HD bool is_finite(Real x) {
-    return x - x == 0;
+WARPAGG_HD flag_of<Real> is_finite(const Real& x) {
+    return x - x == Real(0);
 }
 template <class Real>
-WARPAGG_HD bool is_finite(const vec3<Real>& v) {
+WARPAGG_HD flag_of<Real> is_finite(const vec3<Real>& v) {
     return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
 }
 
@@ -33,7 +37,7 @@ WARPAGG_HD bool is_finite(const vec3<Real>& v) {
 template <int N, class Real>
 WARPAGG_HD Real largest(const glm::vec<N, Real>& v) {
     Real most(0);
-    for (int k = 0; k < N; ++k) most = warpagg::math::max(most, glm::abs(v[k]));
+    for (int k = 0; k < N; ++k) most = warpagg::math::max(most, magnitude(v[k]));
     return most;
 }
 
@@ -53,20 +57,19 @@ struct unit {
     }
 };
 
+/// Three components of Gaussian i, from the k-th on, in an array of `width`: see `place`.
 template <class Real>
-WARPAGG_HD vec3<Real> load3(const Real* p, unsigned i) {
-    return {p[3 * i], p[3 * i + 1], p[3 * i + 2]};
+WARPAGG_HD vec3<Real> load3(const Real* p, unsigned i, unsigned k = 0, unsigned width = 3) {
+    return {p[place(i, k, width)], p[place(i, k + 1, width)], p[place(i, k + 2, width)]};
 }
 template <class Real>
 WARPAGG_HD void store3(Real* p, unsigned i, const vec3<Real>& v) {
-    p[3 * i] = v.x;
-    p[3 * i + 1] = v.y;
-    p[3 * i + 2] = v.z;
+    for (int k = 0; k < 3; ++k) p[place(i, static_cast<unsigned>(k), 3)] = v[k];
 }
 
 template <class Real>
 WARPAGG_HD vec4<Real> load4(const Real* p, unsigned i) {
-    return {p[4 * i], p[4 * i + 1], p[4 * i + 2], p[4 * i + 3]};
+    return {p[place(i, 0, 4)], p[place(i, 1, 4)], p[place(i, 2, 4)], p[place(i, 3, 4)]};
 }
 
 }  // namespace gs::raster

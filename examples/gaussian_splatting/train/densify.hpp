@@ -13,6 +13,12 @@
 
 namespace gs::train {
 
+/// What a densification came to.
+struct densify_tally {
+    std::uint64_t count;        ///< of the new generation
+    unsigned long long silent;  ///< those drawn whose centres took no gradient
+};
+
 /// How a Gaussian came to be in the new generation.
 enum birth : std::uint32_t { kept, copied, split };
 
@@ -49,11 +55,12 @@ struct judge_gaussians {
 struct let_grow {
     const std::uint32_t* urgency;
     const std::uint32_t* gaussian_of;
-    std::size_t room;
+    const std::uint64_t* staying;  ///< how many
+    std::uint64_t cap;
     std::uint32_t* copies;
 
     WARPAGG_HD void operator()(std::size_t rank) const {
-        if (rank < room && urgency[rank] != 0xffffffffu) copies[gaussian_of[rank]] = 2;
+        if (*staying + rank < cap && urgency[rank] != 0xffffffffu) copies[gaussian_of[rank]] = 2;
     }
 };
 
@@ -73,25 +80,24 @@ struct place_copies {
     }
 };
 
-/// Carries one parameter over to the new Gaussians: one index a new value. New ones begin without momentum.
+/// Carries values and moments of one parameter over to the new Gaussians, in whole blocks: one index a new
+/// value. New ones begin without momentum.
 struct carry_over {
+    std::size_t count;  ///< of new Gaussians
     const std::uint32_t* origin;
     const birth* births;
-    std::uint32_t width;
-    const float* from;
-    const float* from_first;
-    const float* from_second;
-    float* to;
-    float* to_first;
-    float* to_second;
+    std::size_t width;
+    const float* from[3];
+    float* to[3];
 
     WARPAGG_HD void operator()(std::size_t i) const {
-        const std::size_t gaussian = i / width;
-        const std::size_t source = std::size_t{origin[gaussian]} * width + i % width;
-        const bool old = births[gaussian] == kept;
-        to[i] = from[source];
-        to_first[i] = old ? from_first[source] : 0;
-        to_second[i] = old ? from_second[source] : 0;
+        const std::size_t gaussian = i / (block_length * width) * block_length + i % block_length;
+        const bool exists = gaussian < count, keeps = exists && births[gaussian] == kept;
+        const std::size_t source =
+            exists ? place(origin[gaussian], i / block_length % width, width) : std::size_t{0};
+        to[0][i] = exists ? from[0][source] : 0;
+        to[1][i] = keeps ? from[1][source] : 0;
+        to[2][i] = keeps ? from[2][source] : 0;
     }
 };
 

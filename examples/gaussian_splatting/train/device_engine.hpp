@@ -10,7 +10,7 @@
 #include "../raster/renderer.hpp"
 #include "../scene/views.hpp"
 #include "adam.hpp"
-#include "densify.hpp"
+#include "densification.hpp"
 #include "engine.hpp"
 #include "photometric.hpp"
 #include "watch.hpp"
@@ -56,13 +56,11 @@ template <class Device>
 class device_engine final : public engine {
     template <class T>
     using buffer = typename Device::template buffer<T>;
-    using arrays = std::array<buffer<float>, parameter_count>;
 
   public:
-    device_engine() : renderer_(device_), photometric_(device_) {
+    device_engine() : renderer_(device_), photometric_(device_), densification_(device_) {
         skipped_.resize(1);
         device_.zero(skipped_.data(), 1);
-        silent_.resize(1);
         found_.resize(1);
         device_.zero(found_.data(), 1);
         take_findings();
@@ -105,53 +103,18 @@ class device_engine final : public engine {
 
     void set_model(const gaussians& model) override {
         sh_degree_ = model.sh_degree;
-        resize(values_, model.count());
-        resize(first_, model.count());
-        resize(second_, model.count());
-        const auto put = [&](parameter p, const std::vector<float>& from) {
-            device_.upload(values_[index(p)].data(), from.data(), from.size());
-        };
-        put(parameter::mean, model.mean);
-        put(parameter::log_scale, model.log_scale);
-        put(parameter::quaternion, model.quaternion);
-        put(parameter::opacity, model.opacity);
-        put(parameter::sh0, model.sh_constant);
-        for (int band = 1; band <= sh_degree_; ++band)
-            put(static_cast<parameter>(static_cast<int>(parameter::sh0) + band), band_of(model, band));
-        for (auto* moments : {&first_, &second_})
-            for (auto& m : *moments) device_.zero(m.data(), m.size());
-        device_.wait();
+        trained_.values.upload(device_, model);
+        for (auto* moments : {&trained_.first, &trained_.second}) {
+            moments->resize(model.count(), sh_degree_);
+            moments->zero(device_);
+        }
         begin_generation(model.count());
         std::ranges::fill(lengths_of_, 0);
+        device_.wait();
         steps_ = 0;
     }
 
-    gaussians get_model() override {
-        gaussians model;
-        model.sh_degree = sh_degree_;
-        const auto get = [&](parameter p, std::vector<float>& to) {
-            to.resize(values_[index(p)].size());
-            device_.download(to.data(), values_[index(p)].data(), to.size());
-        };
-        get(parameter::mean, model.mean);
-        get(parameter::log_scale, model.log_scale);
-        get(parameter::quaternion, model.quaternion);
-        get(parameter::opacity, model.opacity);
-        get(parameter::sh0, model.sh_constant);
-        const auto width = static_cast<std::size_t>(model.rest_width());
-        model.sh_rest.resize(count_ * width);
-        std::size_t at = 0;
-        for (int band = 1; band <= sh_degree_; ++band) {
-            std::vector<float> values;
-            const auto p = static_cast<parameter>(static_cast<int>(parameter::sh0) + band);
-            get(p, values);
-            const auto w = static_cast<std::size_t>(parameter_width[index(p)]);
-            for (std::size_t i = 0; i < count_; ++i)
-                std::copy_n(values.data() + i * w, w, model.sh_rest.data() + i * width + at);
-            at += w;
-        }
-        return model;
-    }
+    gaussians get_model() override { return trained_.values.download(device_, count_, sh_degree_); }
 
     std::size_t count() const override { return count_; }
 
@@ -171,44 +134,15 @@ class device_engine final : public engine {
 
     std::uint64_t densify(const densify_rule& rule) override {
         if (count_ == 0) return 0;
-        device_.zero(silent_.data(), 1);
-        for (auto* b : {&copies_, &large_, &urgency_, &gaussian_of_}) b->resize(count_);
-        device_.for_each_index(
-            count_, judge_gaussians{read(values_), seen_.data(), rule, copies_.data(), large_.data(),
-                                    urgency_.data(), gaussian_of_.data(), silent_.data()});
-        const std::size_t staying = total_of_copies();
-        const std::size_t room = rule.cap > staying ? rule.cap - staying : 0;
-        device_.sort_pairs(urgency_, gaussian_of_, count_);
-        device_.for_each_index(count_, let_grow{urgency_.data(), gaussian_of_.data(), room, copies_.data()});
-        const std::size_t next = total_of_copies();
-
-        origin_.resize(next);
-        births_.resize(next);
-        device_.for_each_index(count_, place_copies{copies_.data(), large_.data(), first_copy_.data(),
-                                                    origin_.data(), births_.data()});
-        for (std::size_t p = 0; p < parameter_count; ++p) {
-            if (!has_parameter(p, sh_degree_)) continue;
-            const auto width = static_cast<std::uint32_t>(parameter_width[p]);
-            for (auto* spare : {&spare_value_, &spare_first_, &spare_second_}) spare->resize(next * width);
-            device_.for_each_index(next * width,
-                                   carry_over{origin_.data(), births_.data(), width, values_[p].data(),
-                                              first_[p].data(), second_[p].data(), spare_value_.data(),
-                                              spare_first_.data(), spare_second_.data()});
-            std::swap(values_[p], spare_value_);
-            std::swap(first_[p], spare_first_);
-            std::swap(second_[p], spare_second_);
-        }
-        device_.for_each_index(next, part_halves{births_.data(), rule.seed, rule.step, write(values_)});
-        begin_generation(next);
-        unsigned long long silent = 0;
-        device_.download(&silent, silent_.data(), 1);
-        return silent;
+        const densify_tally tally = densification_.run(trained_, count_, sh_degree_, seen_.data(), rule);
+        begin_generation(tally.count);
+        return tally.silent;
     }
 
     void reset_opacity(float most) override {
-        constexpr std::size_t p = index(parameter::opacity);
-        device_.for_each_index(
-            count_, lower_opacity{values_[p].data(), first_[p].data(), second_[p].data(), logit(most)});
+        device_.for_each_index(count_,
+                               lower_opacity{trained_.values.write().opacity, trained_.first.write().opacity,
+                                             trained_.second.write().opacity, logit(most)});
     }
 
     void reserve() override {
@@ -216,7 +150,7 @@ class device_engine final : public engine {
         for (std::size_t v = 0; v < shots.size(); ++v) {
             if (lengths_of_[v] > 0) continue;  // a step has seen it
             // It does not depend on colours: the least degree will do.
-            renderer_.measure(read(values_), count_, shots[v].camera, 0);
+            renderer_.measure(trained_.values.read(), count_, shots[v].camera, 0);
             device_.for_each_index(1, note_length{renderer_.room(), lengths_.data() + v});
             lengths_of_[v] = count_;
         }
@@ -284,86 +218,47 @@ class device_engine final : public engine {
         std::size_t first;  ///< byte in `photos_`
     };
 
-    static constexpr std::size_t index(parameter p) { return static_cast<std::size_t>(p); }
     static std::size_t values_of(const camera& c) {
         return 3 * static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height);
     }
 
-    static std::vector<float> band_of(const gaussians& model, int band) {
-        const auto width = static_cast<std::size_t>(model.rest_width());
-        const auto from = static_cast<std::size_t>(3 * (sh_coefficients(band - 1) - 1));
-        const auto to = static_cast<std::size_t>(3 * (sh_coefficients(band) - 1));
-        std::vector<float> values;
-        values.reserve(model.count() * (to - from));
-        for (std::size_t i = 0; i < model.count(); ++i)
-            values.insert(values.end(), model.sh_rest.begin() + static_cast<std::ptrdiff_t>(i * width + from),
-                          model.sh_rest.begin() + static_cast<std::ptrdiff_t>(i * width + to));
-        return values;
-    }
-
-    void resize(arrays& a, std::size_t count) {
-        for (std::size_t p = 0; p < parameter_count; ++p)
-            if (has_parameter(p, sh_degree_))
-                a[p].resize(count * static_cast<std::size_t>(parameter_width[p]));
-    }
-    template <class Real>
-    static parameter_arrays<Real> pointers(const arrays& a) {
-        return {a[0].data(),
-                a[1].data(),
-                a[2].data(),
-                a[3].data(),
-                {a[4].data(), a[5].data(), a[6].data(), a[7].data()}};
-    }
-    static parameter_arrays<const float> read(const arrays& a) { return pointers<const float>(a); }
-    static parameter_arrays<float> write(arrays& a) { return pointers<float>(a); }
-
-    /// `values_` and the moments hold `count` Gaussians that nobody has seen.
+    /// `trained_` holds `count` Gaussians that nobody has seen.
     void begin_generation(std::size_t count) {
         count_ = count;
-        resize(gradients_, count);
         seen_.resize(count);
         device_.zero(seen_.data(), count);
-    }
-
-    std::size_t total_of_copies() {
-        first_copy_.resize(count_ + 1);
-        device_.prefix_sum(copies_, first_copy_, count_);
-        std::uint64_t total = 0;
-        device_.download(&total, first_copy_.data() + count_, 1);
-        return total;
     }
 
     void iterate(const step_plan& plan) {
         using device::stage;
         const photo& shot = train_[downscales_][plan.view];
-        renderer_.forward(read(values_), count_, shot.camera, plan.sh_degree, plan.background);
+        renderer_.forward(trained_.values.read(), count_, shot.camera, plan.sh_degree, plan.background);
         device_.begin(stage::loss);
         photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
                                plan.background);
         const float* by_picture =
             photometric_.gradient(renderer_.picture(), plan.ssim_weight, renderer_.room());
-        renderer_.backward(by_picture, plan.gradient, plan.updates_sh ? plan.sh_degree : 0, write(gradients_),
-                           plan.watch ? seen_.data() : nullptr);
-        device_.begin(stage::adam);
-        descend(plan);
+        const train::watch watch{found_.data(), static_cast<std::uint32_t>(plan.iteration)};
+        renderer_.backward(by_picture, plan.gradient, plan.updates_sh ? plan.sh_degree : 0,
+                           descent(plan, watch), plan.watch ? seen_.data() : nullptr);
+        device_.for_each_index(1, close_step{renderer_.room(), skipped_.data(), lengths_.data() + plan.view,
+                                             photometric_.totals(), watch});
     }
 
-    void descend(const step_plan& plan) {
-        const train::watch watch{found_.data(), static_cast<std::uint32_t>(plan.iteration)};
+    adam<float> descent(const step_plan& plan, const train::watch& watch) {
         ++steps_;
         const double by_first = 1 / (1 - std::pow(adam<float>::beta1, steps_));
         const double by_second = 1 / std::sqrt(1 - std::pow(adam<float>::beta2, steps_));
-        for (std::size_t p = 0; p < parameter_count; ++p) {
-            if (!has_parameter(p, plan.updates_sh ? plan.sh_degree : 0)) continue;
-            const auto width = static_cast<std::uint32_t>(parameter_width[p]);
-            device_.for_each_element(
-                count_ * width,
-                adam<float>{values_[p].data(), first_[p].data(), second_[p].data(), gradients_[p].data(),
-                            static_cast<float>(plan.rates[p] * by_first), static_cast<float>(by_second),
-                            renderer_.room(), watch, static_cast<std::uint32_t>(p), width});
-        }
-        device_.for_each_index(1, close_step{renderer_.room(), skipped_.data(), lengths_.data() + plan.view,
-                                             photometric_.totals(), watch});
+        adam<float> step{trained_.values.write(),
+                         trained_.first.write(),
+                         trained_.second.write(),
+                         {},
+                         static_cast<float>(by_second),
+                         renderer_.room(),
+                         watch};
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            step.rates[p] = static_cast<float>(plan.rates[p] * by_first);
+        return step;
     }
 
     std::uint64_t all_pairs() {
@@ -376,10 +271,10 @@ class device_engine final : public engine {
     void draw(const camera& camera, const std::array<float, 3>& background) {
         const std::uint64_t before = all_pairs();
         device_.pause_times(true);
-        renderer_.forward(read(values_), count_, camera, sh_degree_, background);
+        renderer_.forward(trained_.values.read(), count_, camera, sh_degree_, background);
         if (const std::uint64_t needed = renderer_.instances(); needed > renderer_.reserved_instances()) {
             renderer_.reserve_instances(needed, needed / 4);
-            renderer_.forward(read(values_), count_, camera, sh_degree_, background);
+            renderer_.forward(trained_.values.read(), count_, camera, sh_degree_, background);
         }
         device_.pause_times(false);
         drawn_pairs_ += all_pairs() - before;
@@ -406,18 +301,12 @@ class device_engine final : public engine {
     std::size_t count_ = 0;
     int steps_ = 0;
     std::uint64_t drawn_pairs_ = 0;
-    arrays values_, first_, second_, gradients_;
+    trained_parameters<Device> trained_;
+    densification<Device> densification_;
     buffer<raster::visibility> seen_;
     buffer<std::uint64_t> skipped_;
     buffer<watch::memory> found_;
     buffer<float> shown_;
-
-    // What `densify` works with.
-    buffer<std::uint32_t> copies_, large_, urgency_, gaussian_of_, origin_;
-    buffer<birth> births_;
-    buffer<std::uint64_t> first_copy_;
-    buffer<unsigned long long> silent_;
-    buffer<float> spare_value_, spare_first_, spare_second_;
 };
 
 }  // namespace gs::train

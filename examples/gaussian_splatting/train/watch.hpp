@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cstdint>
-#include <warpagg/simt/target.hpp>
+#include <warpagg/simt/warp.hpp>
 
 #include "../device/atomic.hpp"
 #include "finding.hpp"
@@ -28,6 +28,22 @@ struct watch {
         const auto high = static_cast<unsigned long long>(iteration) << 8 | parameter;
         device::atomic_min(&found->first[static_cast<int>(kind)], high << 32 | gaussian);
         device::atomic_add(&found->count[static_cast<int>(kind)], 1);
+    }
+
+    /// As many times as each lane says; the first lane's Gaussian is `gaussian`.
+    template <class W>
+    WARPAGG_HD void note(const W& w, fault kind, parameter p, std::size_t gaussian,
+                         const warpagg::value_t<W, unsigned>& times) const {
+        using number = unsigned long long;
+        const auto high = static_cast<number>(iteration) << 8 | static_cast<number>(p);
+        const auto k = static_cast<int>(kind);
+        const warpagg::mask_t<W> active = times != warpagg::value_t<W, unsigned>(0);
+        w.atomic(
+            warpagg::operation::minimum{}, [this, k](unsigned) { return &found->first[k]; }, 0u,
+            warpagg::math::convert<number>(w.lane()) + (high << 32 | gaussian), active);
+        w.atomic(
+            warpagg::operation::sum{}, [this, k](unsigned) { return &found->count[k]; }, 0u,
+            warpagg::math::convert<number>(times), active);
     }
 
     static memory clean() {

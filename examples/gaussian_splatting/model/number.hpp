@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <limits>
+#include <type_traits>
+#include <warpagg/simt/warp.hpp>
+
+namespace gs {
+
+/// What is computed of a Gaussian is written for a `Real` that is a number, or SIMD registers that hold one
+/// number for each of several Gaussians (`warpagg::lanes`).
+/// @{
+template <class Real>
+using flag_of = decltype(std::declval<Real>() < std::declval<Real>());
+
+template <class Real>
+WARPAGG_HD constexpr Real constant(double x) {
+    return Real(static_cast<typename warpagg::detail::scalar_of<Real>::type>(x));
+}
+template <class Real>
+WARPAGG_HD Real magnitude(const Real& x) {
+    if constexpr (std::is_arithmetic_v<Real>) {
+        return glm::abs(x);
+    } else {
+        return max(x, -x);
+    }
+}
+template <class Real>
+WARPAGG_HD Real exponential(const Real& x) {
+    if constexpr (std::is_arithmetic_v<Real>) {
+        return glm::exp(x);
+    } else {
+        return exp2(x * constant<Real>(1.4426950408889634));
+    }
+}
+/// @}
+
+}  // namespace gs
+
+namespace warpagg {
+template <class T, int L>
+struct lanes;
+}
+/// For GLM's assertions.
+template <class T, int L>
+struct std::numeric_limits<warpagg::lanes<T, L>> : std::numeric_limits<T> {};

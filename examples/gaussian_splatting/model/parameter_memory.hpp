@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "gaussians.hpp"
+#include "layout.hpp"
+#include "parameters.hpp"
+
+namespace gs {
+
+/// Arrays on a device with a place for each parameter of each Gaussian: see `place`.
+template <class Device>
+class parameter_memory {
+  public:
+    using buffer = typename Device::template buffer<float>;
+
+    /// Loses the contents. Bands above the degree have no memory.
+    void resize(std::size_t count, int sh_degree) {
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            arrays_[p].resize(has_parameter(p, sh_degree)
+                                  ? in_whole_blocks(count) * width_of(static_cast<parameter>(p))
+                                  : 0);
+    }
+    buffer& operator[](std::size_t p) { return arrays_[p]; }
+
+    parameter_arrays<const float> read() const { return pointers<const float>(); }
+    parameter_arrays<float> write() { return pointers<float>(); }
+
+    void zero(Device& device) {
+        for (auto& a : arrays_) device.zero(a.data(), a.size());
+    }
+    /// Waits for the device.
+    void upload(Device& device, const gaussians& model) {
+        resize(model.count(), model.sh_degree);
+        for_each_part(
+            model, [&](parameter p, const std::vector<float>& from, std::size_t stride, std::size_t first) {
+                const auto blocks = to_blocks(from.data() + first, model.count(), stride, width_of(p));
+                buffer& to = arrays_[static_cast<std::size_t>(p)];
+                device.upload(to.data(), blocks.data(), blocks.size());
+                device.wait();
+            });
+    }
+    gaussians download(Device& device, std::size_t count, int sh_degree) const {
+        gaussians model;
+        model.sh_degree = sh_degree;
+        model.mean.resize(3 * count);
+        model.log_scale.resize(3 * count);
+        model.quaternion.resize(4 * count);
+        model.opacity.resize(count);
+        model.sh_constant.resize(3 * count);
+        model.sh_rest.resize(static_cast<std::size_t>(model.rest_width()) * count);
+        for_each_part(model, [&](parameter p, std::vector<float>& to, std::size_t stride, std::size_t first) {
+            const buffer& from = arrays_[static_cast<std::size_t>(p)];
+            std::vector<float> blocks(from.size());
+            device.download(blocks.data(), from.data(), blocks.size());
+            from_blocks(blocks.data(), count, stride, width_of(p), to.data() + first);
+        });
+        return model;
+    }
+
+  private:
+    /// Calls f(parameter, values, stride, first) for each parameter of a model: of each row of `stride`
+    /// values it is those from `first` on.
+    template <class Model, class F>
+    static void for_each_part(Model& model, const F& f) {
+        f(parameter::mean, model.mean, 3, 0);
+        f(parameter::log_scale, model.log_scale, 3, 0);
+        f(parameter::quaternion, model.quaternion, 4, 0);
+        f(parameter::opacity, model.opacity, 1, 0);
+        f(parameter::sh0, model.sh_constant, 3, 0);
+        for (int band = 1; band <= model.sh_degree; ++band)
+            f(sh_band(band), model.sh_rest, static_cast<std::size_t>(model.rest_width()),
+              static_cast<std::size_t>(3 * (sh_coefficients(band - 1) - 1)));
+    }
+
+    template <class Real>
+    parameter_arrays<Real> pointers() const {
+        const auto& a = arrays_;
+        return {a[0].data(),
+                a[1].data(),
+                a[2].data(),
+                a[3].data(),
+                {a[4].data(), a[5].data(), a[6].data(), a[7].data()}};
+    }
+
+    std::array<buffer, parameter_count> arrays_;
+};
+
+}  // namespace gs

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+
+#include "../model/parameter_memory.hpp"
+#include "densify.hpp"
+
+namespace gs::train {
+
+/// What is trained: values and the moments of Adam.
+template <class Device>
+struct trained_parameters {
+    parameter_memory<Device> values, first, second;
+};
+
+/// From one generation of Gaussians to the next, on a device, and the memory that it takes.
+template <class Device>
+class densification {
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+
+  public:
+    explicit densification(Device& device) : device_(device) { tally_.resize(1); }
+
+    /// Replaces `count` Gaussians by those of `densify_rule`, and says how many there are then and how many
+    /// of those before were silent. Waits for the device, once.
+    densify_tally run(trained_parameters<Device>& of, std::size_t count, int sh_degree,
+                      const raster::visibility* seen, const densify_rule& rule) {
+        for (auto* b : {&copies_, &large_, &urgency_, &gaussian_of_}) b->resize(count);
+        const std::size_t most = std::min(2 * count, std::max<std::size_t>(count, rule.cap));
+        origin_.resize(most);
+        births_.resize(most);
+        first_copy_.resize(count + 1);
+
+        device_.zero(tally_.data(), 1);
+        device_.for_each_index(count,
+                               judge_gaussians{of.values.read(), seen, rule, copies_.data(), large_.data(),
+                                               urgency_.data(), gaussian_of_.data(), &tally_.data()->silent});
+        device_.prefix_sum(copies_, first_copy_, count);
+        device_.sort_pairs(urgency_, gaussian_of_, count);
+        device_.for_each_index(count, let_grow{urgency_.data(), gaussian_of_.data(),
+                                               first_copy_.data() + count, rule.cap, copies_.data()});
+        device_.prefix_sum(copies_, first_copy_, count);
+        device_.for_each_index(count, place_copies{copies_.data(), large_.data(), first_copy_.data(),
+                                                   origin_.data(), births_.data()});
+        device_.copy(&tally_.data()->count, first_copy_.data() + count, 1);
+        densify_tally tally;
+        device_.download(&tally, tally_.data(), 1);
+
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            if (has_parameter(p, sh_degree)) carry(of, p, tally.count);
+        device_.for_each_index(tally.count,
+                               part_halves{births_.data(), rule.seed, rule.step, of.values.write()});
+        return tally;
+    }
+
+  private:
+    void carry(trained_parameters<Device>& of, std::size_t p, std::size_t count) {
+        const std::size_t width = width_of(static_cast<parameter>(p)), n = in_whole_blocks(count) * width;
+        const std::array arrays{&of.values[p], &of.first[p], &of.second[p]};
+        for (auto& s : spare_) s.resize(n);
+        device_.for_each_index(n, carry_over{count,
+                                             origin_.data(),
+                                             births_.data(),
+                                             width,
+                                             {arrays[0]->data(), arrays[1]->data(), arrays[2]->data()},
+                                             {spare_[0].data(), spare_[1].data(), spare_[2].data()}});
+        for (std::size_t k = 0; k < arrays.size(); ++k) {
+            arrays[k]->resize(n);
+            device_.copy(arrays[k]->data(), spare_[k].data(), n);
+        }
+    }
+
+    Device& device_;
+    buffer<std::uint32_t> copies_, large_, urgency_, gaussian_of_, origin_;
+    buffer<birth> births_;
+    buffer<std::uint64_t> first_copy_;
+    buffer<densify_tally> tally_;
+    std::array<buffer<float>, 3> spare_;  ///< for values and moments of one parameter
+};
+
+}  // namespace gs::train
