@@ -9,6 +9,7 @@
 #include <random>
 
 #include "contest.hpp"
+#include "model/parameter_memory.hpp"
 #include "raster/renderer.hpp"
 
 /// Holds the contest on a device.

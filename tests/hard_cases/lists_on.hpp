@@ -77,7 +77,7 @@ class lists_on {
         }
 
         buffer<splat<Real>> splats;
-        buffer<std::uint32_t> gaussian_of, last, tile_of_segment;
+        buffer<std::uint32_t> gaussian_of, last, tile_of_segment, class_counts, ordered_tiles;
         buffer<tile_range> ranges;
         buffer<Real> picture, transmittance, checkpoints, gradient, sums;
         buffer<unsigned long long> pairs;
@@ -101,8 +101,14 @@ class lists_on {
                                                      tile_of_segment.data()});
         const tile_lists<Real> lists{splats.data(), gaussian_of.data(), ranges.data(), across, q.width,
                                      q.height};
+        class_counts.resize(tile_order::classes);
+        device.zero(class_counts.data(), class_counts.size());
+        ordered_tiles.resize(tile_order::classes * tiles.size());
+        const tile_order in_order{class_counts.data(), ordered_tiles.data(),
+                                  static_cast<std::uint32_t>(tiles.size())};
+        device.for_each_index(tiles.size(), order_tiles{ranges.data(), in_order});
         const blend_forward<Real, shape> forward{
-            lists,       background,         picture.data(), transmittance.data(),
+            lists,       in_order,           background,  picture.data(), transmittance.data(),
             last.data(), checkpoints.data(), pairs.data()};
         device.for_each_warp(forward.template warps<warp>(tiles.size()), forward);
         blend_answer a;

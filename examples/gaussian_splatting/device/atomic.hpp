@@ -7,6 +7,7 @@
 namespace gs::device {
 
 /// What rare events are counted with, from kernels over an index: no warp is there to add up first.
+/// @{
 WARPAGG_HD void atomic_add(unsigned long long* to, unsigned long long value) {
 #if defined(__CUDA_ARCH__)
     atomicAdd(to, value);
@@ -21,6 +22,16 @@ WARPAGG_HD void atomic_min(unsigned long long* to, unsigned long long value) {
 #else
     warpagg::emulator::serial{}.atomic(
         warpagg::operation::minimum{}, [to](unsigned) { return to; }, 0, value, true);
+#endif
+}
+/// @}
+
+/// Returns what was there before.
+WARPAGG_HD std::uint32_t atomic_add(std::uint32_t* to, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+    return atomicAdd(to, value);
+#else
+    return __atomic_fetch_add(to, value, __ATOMIC_RELAXED);
 #endif
 }
 

@@ -54,8 +54,12 @@ __global__ void for_each_index(std::size_t n, F f) {
     if (i < n) f(i);
 }
 
+/// Kernels with scratch walk lists: they get few enough registers for half of an SM's warps.
 template <class F>
-__global__ void __launch_bounds__(block_size) for_each_warp(unsigned n, F f) {
+constexpr int least_blocks = has_scratch<F, warpagg::cuda::warp> ? 32 / warps_per_block : 1;
+
+template <class F>
+__global__ void __launch_bounds__(block_size, least_blocks<F>) for_each_warp(unsigned n, F f) {
     await_kernel_before();
     const unsigned i = blockIdx.x * warps_per_block + threadIdx.x / 32;
     using warp = warpagg::cuda::warp;

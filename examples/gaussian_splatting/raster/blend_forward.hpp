@@ -5,6 +5,7 @@
 #include <warpagg/atomic.hpp>
 
 #include "list_reader.hpp"
+#include "tile_order.hpp"
 
 namespace gs::raster {
 
@@ -13,6 +14,7 @@ namespace gs::raster {
 template <class Real, class Cut>
 struct blend_forward {
     tile_lists<Real> lists;
+    tile_order order;
     glm::vec<3, Real> background;
 
     Real* picture;              ///< three planes
@@ -32,7 +34,7 @@ struct blend_forward {
         using real = value_t<W, Real>;
         constexpr unsigned rows = Cut::rows;
         using patch = raster::patch<W, Real, Cut>;
-        const unsigned tile = warp_index / patch::per_tile, in_tile = warp_index % patch::per_tile;
+        const unsigned tile = order[warp_index / patch::per_tile], in_tile = warp_index % patch::per_tile;
         const patch p(w, tile, in_tile, lists.tiles_across, lists.width, lists.height);
         const tile_range range = lists.ranges[tile];
 

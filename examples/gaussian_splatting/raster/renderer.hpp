@@ -130,9 +130,14 @@ class renderer {
     template <class Shape>
     void blend_forward_by(const std::array<float, 3>& background) {
         using shorter = pixel_a_lane<Shape>;
-        const blend_forward<Real, Shape> blend{
-            lists(),      colour(background),  picture_.data(), transmittance_.data(),
-            last_.data(), checkpoints_.data(), pairs_.data()};
+        const blend_forward<Real, Shape> blend{lists(),
+                                               order(),
+                                               colour(background),
+                                               picture_.data(),
+                                               transmittance_.data(),
+                                               last_.data(),
+                                               checkpoints_.data(),
+                                               pairs_.data()};
         const std::size_t n = blend.template warps<warp>(tiles());
         if constexpr (!std::is_same_v<Shape, shorter>) {
             if (n < device_.resident_warps()) return blend_forward_by<shorter>(background);
@@ -167,11 +172,19 @@ class renderer {
         device_.for_each_index(segments(),
                                number_segments<Cut>{ranges_.data(), static_cast<std::uint32_t>(tiles()),
                                                     reserve(tile_of_segment_, segments()).data()});
+        class_counts_.resize(tile_order::classes);
+        ordered_tiles_.resize(tile_order::classes * tiles());
+        device_.zero(class_counts_.data(), class_counts_.size());
+        device_.for_each_index(tiles(), order_tiles{ranges_.data(), order()});
     }
     void list_by_tile(std::size_t count, std::uint64_t room) {
         device_.distribute(
             count, splats_by_depth<Real>{order_.data(), splats_.data(), boxes_.data(), tiles_across_},
             tiles(), room, gaussian_of_.data(), reserve(ranges_, tiles()).data(), needed_.data());
+    }
+
+    tile_order order() const {
+        return {class_counts_.data(), ordered_tiles_.data(), static_cast<std::uint32_t>(tiles())};
     }
 
     static vec3<Real> colour(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
@@ -183,7 +196,7 @@ class renderer {
     buffer<std::uint64_t> needed_;
     buffer<tile_range> ranges_;
     buffer<Real> picture_, transmittance_, checkpoints_, sums_;
-    buffer<std::uint32_t> last_, tile_of_segment_;
+    buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
     buffer<unsigned long long> pairs_;
     std::uint64_t capacity_ = 0;
 

@@ -68,27 +68,26 @@ class checkpoint {
     using real = warpagg::value_t<W, Real>;
 
     WARPAGG_HD checkpoint(Real* all, std::size_t segment, unsigned in_tile)
-        : at_(all + segment * checkpoint_values),
-          first_(in_tile / Patch::per_row * Patch::rows * Patch::per_row + in_tile % Patch::per_row) {}
+        : at_(all + segment * checkpoint_values +
+              (in_tile / Patch::per_row * Patch::rows * Patch::per_row + in_tile % Patch::per_row) * block) {}
 
     /// Of the block in row k of the patch.
     /// @{
     WARPAGG_HD void store(const W& w, unsigned k, const real (&state)[4]) const {
-        for (unsigned i = 0; i < 4; ++i) w.store_row(at_, place(k, i), state[i], all_lanes(w));
+        for (unsigned i = 0; i < 4; ++i) w.store_row(at_, place(k, i), state[i], true);
     }
     WARPAGG_HD void load(const W& w, unsigned k, real (&state)[4]) const {
-        for (unsigned i = 0; i < 4; ++i) state[i] = w.load_row(at_, place(k, i), all_lanes(w));
+        for (unsigned i = 0; i < 4; ++i) state[i] = w.load_row(at_, place(k, i));
     }
     /// @}
 
   private:
-    WARPAGG_HD std::ptrdiff_t place(unsigned k, unsigned i) const {
-        return static_cast<std::ptrdiff_t>((4 * (first_ + k * Patch::per_row) + i) * W::size);
+    static constexpr unsigned block = 4 * W::size;  ///< values of a block
+    static WARPAGG_HD std::ptrdiff_t place(unsigned k, unsigned i) {
+        return static_cast<std::ptrdiff_t>(k * Patch::per_row * block + i * W::size);
     }
-    static WARPAGG_HD warpagg::mask_t<W> all_lanes(const W& w) { return w.lane() < W::size; }
 
     Real* at_;
-    unsigned first_;
 };
 
 }  // namespace gs::raster

@@ -43,9 +43,8 @@ struct adam {
             const V g = gradient[n];
             const V next_m = constant<V>(beta1) * m[n] + constant<V>(1 - beta1) * g;
             const V next_v = constant<V>(beta2) * v[n] + constant<V>(1 - beta2) * g * g;
-            const V next =
-                value[n] -
-                rate * next_m / (warpagg::math::sqrt(next_v) * V(correction) + constant<V>(epsilon));
+            const V spread = warpagg::math::approximate_sqrt(next_v) * V(correction) + constant<V>(epsilon);
+            const V next = value[n] - warpagg::math::divide(rate * next_m, spread);
             bounded[n] = g < most && -g < most;
             sound[n] = bounded[n] && raster::is_finite(next);
             all_sound = all_sound && sound[n];

@@ -287,6 +287,10 @@ WARPAGG_HD lanes<T, L> abs(const lanes<T, L>& a) {
     return max(a, -a);
 }
 template <class T, int L>
+WARPAGG_HD lanes<T, L> approximate_sqrt(const lanes<T, L>& a) {
+    return sqrt(a);
+}
+template <class T, int L>
 WARPAGG_HD lanes<T, L> divide(const lanes<T, L>& a, const lanes<T, L>& b) {
     return a / b;
 }
@@ -383,6 +387,7 @@ WARPAGG_HD T uniform(const lanes<T, L>& a) {
 /// arguments.
 namespace math {
 using warpagg::abs;
+using warpagg::approximate_sqrt;
 using warpagg::convert;
 using warpagg::countr_zero;
 using warpagg::divide;
