@@ -185,7 +185,7 @@ class cuda {
     template <class F>
     void iteration(const iteration_shape& shape, const F& f) {
         const bool is_new = shapes_.insert(shape).second;
-        if (launches_graphs && !is_new && !times_.is_sampled())
+        if (!is_new && !times_.is_sampled())
             graph_.launch(stream_, f);
         else
             f();
@@ -205,8 +205,6 @@ class cuda {
     void wait() { check(cudaStreamSynchronize(stream_)); }
 
   private:
-    static constexpr bool launches_graphs = true, overlaps_launches = true;
-
     /// A stream that other objects can be made with.
     struct owned_stream {
         cudaStream_t stream{};
@@ -235,7 +233,7 @@ class cuda {
         config.dynamicSmemBytes = shared_bytes;
         config.stream = stream_;
         config.attrs = &overlap;
-        config.numAttrs = overlaps_launches && kernels_await_ ? 1 : 0;
+        config.numAttrs = kernels_await_ ? 1 : 0;
         check(cudaLaunchKernelEx(&config, kernel, arguments...));
     }
 
