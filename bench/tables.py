@@ -11,7 +11,10 @@ import itertools
 import json
 import pathlib
 import re
+import statistics
 import sys
+
+from scenes import where
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TABLE = re.compile(r"(<!-- table (\w+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
@@ -238,6 +241,28 @@ def roofline():
     return markdown(head, rows) + f"\n{machine(f)}\n"
 
 
+def schedules():
+    """Each switch of the training schedule: PSNR, seconds in the loop and Gaussians, and how they stand to the default's."""
+    f = results("schedules")
+    scenes = list(f["to_default"])
+    rows = []
+    for name in dict.fromkeys(r["options"] for r in f["runs"]):
+        row = [name]
+        for scene in scenes:
+            same = [r for r in f["runs"] if r["scene"] == scene and r["options"] == name]
+            to = f["to_default"][scene].get(name)
+            middle = lambda pick: statistics.median(pick(r) for r in same)
+            psnr, loop, gaussians = middle(lambda r: r["psnr"]), middle(lambda r: r["seconds"]["train"]), middle(lambda r: r["gaussians"])
+            row += [f"{psnr:.2f}" + (f" ({to['dB']:+.2f})" if to else ""),
+                    f"{loop:.1f}" + (f" ({to['loop']:.2f}×)" if to else ""),
+                    f"{gaussians:,.0f}" + (f" ({to['Gaussians']:.2f}×)" if to else "")]
+        rows.append(row)
+    head = ["options"] + [cell for s in scenes for cell in (f"{s}: held-out PSNR, dB", "loop, s", "Gaussians")]
+    options = " ".join(["-i", str(f["runs"][0]["iterations"]), *f["options"]])
+    machine_and_seeds = where(f).split(";")[0]
+    return markdown(head, rows) + f"\n`{options}`, {machine_and_seeds}; medians, in brackets how they stand to the default's.\n"
+
+
 def machine(figures):
     return f"{figures['gpu_and_driver']}, {figures['nvcc']}, commit {figures['commit']}."
 
@@ -252,7 +277,7 @@ EXAMPLES = {
 }
 
 TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability, hard_cases,
-                                 against_double, backward_ladder, backward_contenders, roofline)}
+                                 against_double, backward_ladder, backward_contenders, roofline, schedules)}
 TABLES.update({f"{name}_{m}": example(m, title) for name, title in EXAMPLES.items() for m in ("emulator", "gpu")})
 
 

@@ -385,6 +385,13 @@ TEST_CASE("contradictory options are refused") {
     check_refusal_without_trace(
         train_spheres + words{"-i", "20", "--num-downscales", "2", "--resolution-schedule", "10"},
         {"--num-downscales 2", "--resolution-schedule 10", "20"});
+    check_refusal_without_trace(
+        train_spheres + words{"-i", "20", "--prune-share", "0.5", "--densify-until-iter", "20"},
+        {"--prune-share", "--densify-until-iter", "at 20"});
+    check_refusal_without_trace(train_spheres + words{"--budget", "2000", "--max-cap", "1999"},
+                                {"--budget 2000", "--max-cap 1999"});
+    check_refusal_without_trace(train_spheres + words{"--budget", "2000", "--densify-grad-threshold", "1e-4"},
+                                {"--budget", "--densify-grad-threshold"});
     check_refusal_without_trace({"render", "model.ply", "--orbit-views", "3", "-d", "synthetic:spheres"},
                                 {"--orbit-views", "--data"});
     check_refusal_without_trace({"render", "model.ply", "--eval"}, {"--eval", "--data"});
@@ -441,11 +448,16 @@ TEST_CASE("a number that makes no sense is refused") {
                                                         {"--densification-interval", "0", ""},
                                                         {"--densify-from-iter", "-1", ""},
                                                         {"--densify-until-iter", "1.5", ""},
+                                                        {"--sh-lr", "0", ""},
+                                                        {"--budget", "0", ""},
+                                                        {"--prune-share", "1", ""},
+                                                        {"--prune-share", "nan", ""},
                                                         {"--num-downscales", "9", ""},
                                                         {"--resolution-schedule", "0", ""},
                                                         {"--sh-update-interval", "0", ""},
                                                         {"--background", "beige", ""},
                                                         {"--device", "tpu", ""},
+                                                        {"--quality", "best", ""},
                                                         {"--gradient", "magic", ""},
                                                         {"-i", "99999999999999999999", "--iterations"}};
     for (const auto& [option, value, long_name] : cases)
@@ -656,6 +668,7 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
     const json expected{{"position_lr_init", 1.6e-4},
                         {"position_lr_final", 1.6e-6},
                         {"feature_lr", 2.5e-3},
+                        {"sh_lr", 1.25e-4},
                         {"opacity_lr", 2.5e-2},
                         {"scaling_lr", 5e-3},
                         {"rotation_lr", 1e-3},
@@ -665,18 +678,33 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
                         {"densify_until_iter", 30},
                         {"num_downscales", 0},
                         {"resolution_schedule", 3000},
-                        {"sh_update_interval", 1}};
+                        {"sh_update_interval", 1},
+                        {"prune_share", 0},
+                        {"budget", 0},
+                        {"revised_opacity", false}};
     for (const auto& [name, value] : expected.items()) {
         CAPTURE(name);
         CHECK(usual.at(name) == value);
     }
 
-    json others{{"position_lr_init", 1e-3},     {"position_lr_final", 1e-5},   {"feature_lr", 2e-3},
-                {"opacity_lr", 3e-2},           {"scaling_lr", 4e-3},          {"rotation_lr", 2e-3},
-                {"opacity_reset_interval", 25}, {"densification_interval", 5}, {"densify_from_iter", 10},
-                {"densify_until_iter", 20},     {"num_downscales", 1},         {"resolution_schedule", 7},
-                {"sh_update_interval", 2}};
-    words options{"-q"};
+    json others{{"position_lr_init", 1e-3},
+                {"position_lr_final", 1e-5},
+                {"feature_lr", 2e-3},
+                {"opacity_lr", 3e-2},
+                {"scaling_lr", 4e-3},
+                {"rotation_lr", 2e-3},
+                {"opacity_reset_interval", 25},
+                {"densification_interval", 5},
+                {"densify_from_iter", 10},
+                {"densify_until_iter", 20},
+                {"num_downscales", 1},
+                {"resolution_schedule", 7},
+                {"sh_update_interval", 2},
+                {"sh_lr", 1e-3},
+                {"budget", 1000},
+                {"max_cap", 1001},
+                {"prune_share", 0.5}};
+    words options{"-q", "--revised-opacity"};
     for (const auto& [name, value] : others.items()) options = options + words{"--" + name, value.dump()};
     check_success(small_training(folder / "other") + options);
     const json chosen = read_json(folder / "other/settings.json");
@@ -684,9 +712,37 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
         CAPTURE(name);
         CHECK(chosen.at(name) == value);
     }
+    CHECK(chosen.at("revised_opacity") == true);
     // They are not only noted: it densifies before iteration 20.
     CHECK(read_json(folder / "other/metrics.json").at("gaussians") !=
           read_json(folder / "default/metrics.json").at("gaussians"));
+}
+
+TEST_CASE("--quality fast sets what pays, and nothing that was said") {
+    const temporary_folder folder;
+    const words fast{"train",     "-r",  "16", "--device", "cpu", "-q", "-d", "synthetic:spheres",
+                     "--quality", "fast"};
+    const auto settings_of = [&](const char* name, const words& options) {
+        check_success(fast + words{"-o", (folder / name).string()} + options);
+        return read_json(folder / name / "settings.json");
+    };
+    const json expected{{"quality", "fast"},   {"iterations", 20},        {"scaling_lr", 1e-2},
+                        {"sh_lr", 5e-4},       {"revised_opacity", true}, {"sh_degree_interval", 500},
+                        {"num_downscales", 1}, {"resolution_schedule", 4}};
+    const json chosen = settings_of("chosen", {"-i", "20"});
+    for (const auto& [name, value] : expected.items()) {
+        CAPTURE(name);
+        CHECK(chosen.at(name) == value);
+    }
+    const json said = settings_of(
+        "said", {"-i", "20", "--sh-lr", "1e-4", "--revised-opacity=false", "--num-downscales", "0"});
+    CHECK(said.at("sh_lr") == 1e-4);
+    CHECK(said.at("revised_opacity") == false);
+    CHECK(said.at("num_downscales") == 0);
+    check_success(small_training(folder / "full") + words{"-q", "--quality", "full"});
+    check_success(small_training(folder / "default") + words{"-q"});
+    CHECK(read_json(folder / "full/settings.json") == read_json(folder / "default/settings.json"));
+    check_refusal_without_trace(fast + words{"--save-iterations", "4001"}, {"4001", "1 to 4000"});
 }
 
 TEST_CASE("--quiet prints nothing") {

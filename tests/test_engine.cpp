@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "engines.hpp"
 #include "error.hpp"
@@ -272,6 +273,90 @@ TEST_CASE("the most urgent grow first, and none past the cap") {
     }
 }
 
+TEST_CASE("births are limited, whatever room there is, to the most urgent") {
+    const gs::scene scene = small_scene();
+    const gaussians model = gs::from_points(scene.points, 0, 1000, 1);
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        auto still = plan_for(0);
+        still.rates = {};
+        densify_rule rule;
+        rule.gradient = 0;  // whatever moved at all
+        rule.least_opacity = 0;
+        rule.dense_scale = 1e9f;
+        rule.cap = 1100;
+        const auto grown = [&](std::size_t most_births) {
+            e->set_model(model);
+            e->reserve();
+            e->step(still);
+            rule.most_births = most_births;
+            e->densify(rule);
+            return e->get_model();
+        };
+        CHECK(grown(0).count() == 1000);
+        const gaussians few = grown(40), many = grown(1000);
+        CHECK(few.count() == 1040);
+        CHECK(many.count() == 1100);
+        // The 40 are among the 100: all that is there twice in one is in the other.
+        const auto places_there_twice = [](const gaussians& g) {
+            std::set<std::array<float, 3>> once, twice;
+            for (std::size_t i = 0; i < g.count(); ++i) {
+                const std::array place{g.mean[3 * i], g.mean[3 * i + 1], g.mean[3 * i + 2]};
+                if (!once.insert(place).second) twice.insert(place);
+            }
+            return twice;
+        };
+        const auto first = places_there_twice(few), all = places_there_twice(many);
+        CHECK(first.size() == 40);
+        CHECK(std::ranges::includes(all, first));
+    }
+}
+
+TEST_CASE("a copy and its original together are as opaque as it was alone") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 0, 200, 1);
+    for (std::size_t i = 0; i < 200; ++i) model.opacity[i] = -8 + 0.1f * static_cast<float>(i % 160);
+    model.opacity[0] = 200;
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(model);
+        e->reserve();
+        auto still = plan_for(0);
+        still.rates = {};
+        for (still.view = 0; still.view < scene.train.size(); ++still.view) e->step(still);
+        densify_rule rule;
+        rule.gradient = 1e-12f;
+        rule.least_opacity = 0;
+        rule.dense_scale = 1e9f;
+        rule.cap = 1000;
+        rule.revised_opacity = true;
+        e->densify(rule);
+        const gaussians grown = e->get_model();
+        REQUIRE(grown.count() > 300);
+        for (std::size_t i = 0, parent = 0; i < grown.count(); ++parent) {
+            const double logit = static_cast<double>(model.opacity[parent]);
+            const bool is_copied = i + 1 < grown.count() &&
+                                   std::equal(grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                                              grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i + 3),
+                                              grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
+            CAPTURE(logit);
+            if (!is_copied) {
+                CHECK(grown.opacity[i++] == model.opacity[parent]);
+                continue;
+            }
+            CHECK(std::isfinite(grown.opacity[i]));
+            CHECK(grown.opacity[i] == grown.opacity[i + 1]);
+            // What shines through both is what shone through one: log1p(e^logit) is -log of that.
+            const double through_one = std::log1p(std::exp(static_cast<double>(grown.opacity[i])));
+            if (logit < 80)
+                CHECK(2 * through_one == doctest::Approx(std::log1p(std::exp(logit))).epsilon(1e-5));
+            i += 2;
+        }
+    }
+}
+
 TEST_CASE("a split leaves two that are 1.6 times smaller, near their parent") {
     const gs::scene scene = small_scene();
     const gaussians model = gs::from_points(scene.points, 0, 200, 1);
@@ -331,6 +416,36 @@ TEST_CASE("the transparent and the huge are dropped") {
         rule.most_scale = 2;
         e->densify(rule);
         CHECK(e->count() == 100);
+    }
+}
+
+TEST_CASE("pruning drops the share that the views made least of, and keeps the others to the bit") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 1, 300, 1);
+    for (std::size_t i = 0; i < 300; i += 4) model.opacity[i] = -20;  // in no picture
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(model);
+        e->reserve();
+        auto still = plan_for(0);
+        still.rates = {};
+        for (still.view = 0; still.view < scene.train.size(); ++still.view) e->step(still);
+        e->prune(0.001);  // less than one
+        CHECK(e->count() == 300);
+        e->prune(0.2);
+        const gaussians rest = e->get_model();
+        REQUIRE(rest.count() == 240);
+        CHECK(std::ranges::count(rest.opacity, -20.0f) == 15);
+        for (std::size_t i = 0, from = 0; i < 240; ++i, ++from) {
+            while (from < 300 && rest.mean[3 * i] != model.mean[3 * from]) {
+                CHECK(model.opacity[from] == -20);
+                ++from;
+            }
+            REQUIRE(from < 300);
+            CHECK(rest.opacity[i] == model.opacity[from]);
+            CHECK(std::equal(&rest.sh_rest[9 * i], &rest.sh_rest[9 * i] + 9, &model.sh_rest[9 * from]));
+        }
     }
 }
 

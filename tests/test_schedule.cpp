@@ -65,6 +65,33 @@ TEST_CASE("densification ends half-way, and opacities are reset only while it la
     CHECK(s.densify_until() == 15000);
 }
 
+TEST_CASE("pruning follows densification, half-way to the end at the latest") {
+    schedule s;
+    s.iterations = 1000;
+    s.densify_until_iter = 600;
+    CHECK(s.prune_after(50) == 0);
+    s.prune_share = 0.1;
+    CHECK(s.prune_after(50) == 650);
+    CHECK(s.watches(650, 50));
+    CHECK_FALSE(s.watches(651, 50));
+    CHECK(s.prune_after(500) == 800);
+}
+
+TEST_CASE("how many densifications are left, this one among them") {
+    schedule s;
+    for (const auto& [from, interval, until] : {std::array{100, 50, 501}, {100, 50, 500}, {10, 7, 100}}) {
+        s.densify_from_iter = from;
+        s.densification_interval = interval;
+        s.densify_until_iter = until;
+        for (int now = 1; now < until; ++now) {
+            int left = 0;
+            for (int i = now; i < until; ++i) left += s.densifies(i) ? 1 : 0;
+            CAPTURE(now);
+            CHECK(s.densifications_from(now) == left);
+        }
+    }
+}
+
 TEST_CASE("rates and intervals are the reference implementation's, and can be others") {
     schedule s;
     s.iterations = 30000;
@@ -85,6 +112,8 @@ TEST_CASE("rates and intervals are the reference implementation's, and can be ot
     CHECK(s.rates_at(15000)[0] == doctest::Approx(1e-3));
     CHECK(s.rates_at(30001)[0] == doctest::Approx(1e-4));
     CHECK(s.rates_at(7) == std::array<float, 8>{s.rates_at(7)[0], 1, 2, 3, 40, 2, 2, 2});
+    s.sh_lr = 5;
+    CHECK(s.rates_at(7) == std::array<float, 8>{s.rates_at(7)[0], 1, 2, 3, 40, 5, 5, 5});
 }
 
 TEST_CASE("densification and resets keep to their intervals") {
@@ -99,8 +128,8 @@ TEST_CASE("densification and resets keep to their intervals") {
     CHECK_FALSE(s.densifies(35));
     CHECK(s.densifies(890));
     CHECK_FALSE(s.densifies(900));
-    CHECK(s.watches(899));
-    CHECK_FALSE(s.watches(900));
+    CHECK(s.watches(899, 5));
+    CHECK_FALSE(s.watches(900, 5));
     CHECK(s.resets_opacity(30));
     CHECK_FALSE(s.resets_opacity(40));
     CHECK(s.resets_opacity(870));

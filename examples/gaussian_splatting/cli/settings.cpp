@@ -7,10 +7,12 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "../error.hpp"
 #include "../raster/gradient_policy.hpp"
+#include "quality.hpp"
 
 namespace gs::cli {
 
@@ -80,14 +82,15 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
 }
 
 /// CLI11's own check lets nan pass.
-CLI::Validator positive_number() {
-    const auto refusal = [](const std::string& text) {
+CLI::Validator positive_number(std::optional<int> below = {}) {
+    const auto refusal = [below](const std::string& text) {
         float value = 0;
         const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
         const bool number = problem == std::errc() && end == text.data() + text.size();
-        return number && std::isfinite(value) && value > 0
+        const std::string limit = below ? "below " + std::to_string(*below) : "that float can hold";
+        return number && std::isfinite(value) && value > 0 && (!below || value < static_cast<float>(*below))
                    ? std::string()
-                   : "must be a positive number that float can hold, not '" + text + "'";
+                   : "must be a positive number " + limit + ", not '" + text + "'";
     };
     return {refusal, "positive"};
 }
@@ -137,7 +140,10 @@ void add_schedule(CLI::App& app, train::schedule& s) {
     rate("--position-lr-init", s.position_lr_init,
          "Adam's rate of positions at first, by the scene's extent");
     rate("--position-lr-final", s.position_lr_final, "The same at the end");
-    rate("--feature-lr", s.feature_lr, "Of colours; a twentieth of it for what depends on direction");
+    rate("--feature-lr", s.feature_lr, "Of colours");
+    app.add_option("--sh-lr", s.sh_lr,
+                   "Of colours that depend on direction; by default a twentieth of --feature-lr")
+        ->check(positive_number());
     rate("--opacity-lr", s.opacity_lr, "Of opacities");
     rate("--scaling-lr", s.scaling_lr, "Of log scales");
     rate("--rotation-lr", s.rotation_lr, "Of quaternions");
@@ -151,6 +157,9 @@ void add_schedule(CLI::App& app, train::schedule& s) {
           "Iterations until they are halved once less, and again once less");
     count("--sh-update-interval", s.sh_update_interval, 1,
           "Iterations between two steps of colours that depend on direction");
+    app.add_option("--prune-share", s.prune_share,
+                   "Of the Gaussians, those that matter least are dropped when densification has ended")
+        ->check(positive_number(1));
     app.add_option("--densify-until-iter", s.densify_until_iter,
                    "And before this one; by default half of the iterations, at most 15000")
         ->check(whole_number(0, 10000000));
@@ -161,6 +170,11 @@ CLI::App* add_train(CLI::App& app, settings& s) {
     add_scene(*train, s, true);
     add_common(*train, s);
     train->add_option("-o,--output,-m,--model-path", s.output, "Folder for the results")->required();
+    train
+        ->add_option("--quality", s.quality,
+                     "fast: 4000 iterations and the options of the schedule that pay; what is said wins")
+        ->check(CLI::IsMember({"full", "fast"}))
+        ->capture_default_str();
     train->add_option("-i,--iterations", s.schedule.iterations)
         ->check(whole_number(1, 10000000))
         ->capture_default_str();
@@ -178,6 +192,13 @@ CLI::App* add_train(CLI::App& app, settings& s) {
     add_schedule(*train, s.schedule);
     train->add_option("--max-cap", s.max_cap, "Most Gaussians; by default one for 32 pixels of the photos")
         ->check(whole_number(1, 100000000));
+    train
+        ->add_option("--budget", s.budget,
+                     "Gaussians to grow to, evenly and the most urgent first, whatever their gradients")
+        ->check(whole_number(1, 100000000))
+        ->excludes(train->get_option("--densify-grad-threshold"));
+    train->add_flag("--revised-opacity", s.revised_opacity,
+                    "A copied Gaussian and its copy are together as opaque as it was alone");
     std::set<std::string> policies(gradient_policy_names.begin(), gradient_policy_names.end());
     train->add_option("--gradient", s.gradient, "How gradients are added up")
         ->check(CLI::IsMember(policies))
@@ -229,6 +250,19 @@ void refuse_endless_shrinking(const train::schedule& s) {
                     std::to_string(until) + ", but there are only " + std::to_string(s.iterations));
 }
 
+void refuse_pruning_at_no_time(const train::schedule& s) {
+    if (s.prune_share > 0 && s.densify_until() >= s.iterations)
+        throw error("--prune-share is dropped after densification, which --densify-until-iter ends at " +
+                    std::to_string(s.densify_until()) + ", but there are only " +
+                    std::to_string(s.iterations) + " iterations");
+}
+
+void refuse_large_budget(const settings& s) {
+    if (s.max_cap > 0 && s.budget > s.max_cap)
+        throw error("--budget " + std::to_string(s.budget) + " is more than --max-cap " +
+                    std::to_string(s.max_cap));
+}
+
 }  // namespace
 
 settings parse(int argc, char** argv) {
@@ -256,11 +290,14 @@ settings parse(int argc, char** argv) {
     }
     s.command = app.get_subcommands().front()->get_name();
     s.scene.seed = s.seed;
+    if (s.quality == "fast") choose_fast(*app.get_subcommand("train"), s.schedule);
     if (s.command != "train" && s.background == "random")
         throw error("--background random is for training: " + s.command + " needs one colour");
     refuse_late(s.save_iterations, s.schedule.iterations, "--save-iterations");
     refuse_late(s.test_iterations, s.schedule.iterations, "--test-iterations");
     refuse_endless_shrinking(s.schedule);
+    refuse_pruning_at_no_time(s.schedule);
+    refuse_large_budget(s);
     if (s.command == "render" && s.scene.data.empty() && s.scene.eval)
         throw error("--eval picks views of a scene: it needs --data");
     return s;

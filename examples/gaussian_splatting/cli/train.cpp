@@ -28,6 +28,8 @@ train::train_options options_of(const settings& s, const scene& scene,
     o.schedule = s.schedule;
     o.densify_gradient = s.densify_grad_threshold;
     o.max_cap = s.max_cap > 0 ? s.max_cap : train::default_cap(scene);
+    o.budget = s.budget;
+    o.revised_opacity = s.revised_opacity;
     o.seed = s.seed;
     o.gradient = policy_of(s.gradient);
     o.background = background;
@@ -62,12 +64,14 @@ ordered_json settings_json(const settings& s, const train::train_options& o) {
             {"resolution", s.scene.resolution},
             {"eval", s.scene.eval},
             {"test_every", s.scene.test_every},
+            {"quality", s.quality},
             {"iterations", plan.iterations},
             {"sh_degree", plan.sh_degree},
             {"sh_degree_interval", plan.sh_degree_interval},
             {"position_lr_init", plan.position_lr_init},
             {"position_lr_final", plan.position_lr_final},
             {"feature_lr", plan.feature_lr},
+            {"sh_lr", plan.sh_rate()},
             {"opacity_lr", plan.opacity_lr},
             {"scaling_lr", plan.scaling_lr},
             {"rotation_lr", plan.rotation_lr},
@@ -78,8 +82,11 @@ ordered_json settings_json(const settings& s, const train::train_options& o) {
             {"num_downscales", plan.num_downscales},
             {"resolution_schedule", plan.resolution_schedule},
             {"sh_update_interval", plan.sh_update_interval},
+            {"prune_share", plan.prune_share},
             {"densify_grad_threshold", o.densify_gradient},
             {"max_cap", o.max_cap},
+            {"budget", o.budget},
+            {"revised_opacity", o.revised_opacity},
             {"gradient", s.gradient},
             {"save_iterations", o.save_iterations},
             {"test_iterations", o.test_iterations},

@@ -28,35 +28,57 @@ class densification {
     /// of those before were silent. Waits for the device, once.
     densify_tally run(trained_parameters<Device>& of, std::size_t count, int sh_degree,
                       const raster::visibility* seen, const densify_rule& rule) {
-        for (auto* b : {&copies_, &large_, &urgency_, &gaussian_of_}) b->resize(count);
-        const std::size_t most = std::min(2 * count, std::max<std::size_t>(count, rule.cap));
-        origin_.resize(most);
-        births_.resize(most);
-        first_copy_.resize(count + 1);
-
-        device_.zero(tally_.data(), 1);
+        begin(count, std::min(2 * count, std::max<std::size_t>(count, rule.cap)));
         device_.for_each_index(count,
                                judge_gaussians{of.values.read(), seen, rule, copies_.data(), large_.data(),
                                                urgency_.data(), gaussian_of_.data(), &tally_.data()->silent});
         device_.prefix_sum(copies_, first_copy_, count);
         device_.sort_pairs(urgency_, gaussian_of_, count);
-        device_.for_each_index(count, let_grow{urgency_.data(), gaussian_of_.data(),
-                                               first_copy_.data() + count, rule.cap, copies_.data()});
+        device_.for_each_index(
+            count, let_grow{urgency_.data(), gaussian_of_.data(), first_copy_.data() + count, rule.cap,
+                            rule.most_births, copies_.data()});
+        const densify_tally tally = renew(of, count, sh_degree);
+        device_.for_each_index(tally.count,
+                               part_halves{births_.data(), rule.seed, rule.step, of.values.write()});
+        if (rule.revised_opacity)
+            device_.for_each_index(tally.count, revise_opacity{births_.data(), of.values.write().opacity});
+        return tally;
+    }
+
+    /// Drops those of `count` Gaussians that matter least, so many, by what views saw of them. Waits for the
+    /// device, once.
+    void drop_least(trained_parameters<Device>& of, std::size_t count, int sh_degree,
+                    const raster::visibility* seen, std::size_t dropped) {
+        begin(count, count);
+        device_.for_each_index(count,
+                               rate_gaussians{seen, copies_.data(), urgency_.data(), gaussian_of_.data()});
+        device_.sort_pairs(urgency_, gaussian_of_, count);
+        device_.for_each_index(dropped, drop_ranked{gaussian_of_.data(), copies_.data()});
+        renew(of, count, sh_degree);
+    }
+
+  private:
+    void begin(std::size_t count, std::size_t most) {
+        for (auto* b : {&copies_, &large_, &urgency_, &gaussian_of_}) b->resize(count);
+        origin_.resize(most);
+        births_.resize(most);
+        first_copy_.resize(count + 1);
+        device_.zero(tally_.data(), 1);
+    }
+
+    /// As many of each Gaussian as `copies_` says.
+    densify_tally renew(trained_parameters<Device>& of, std::size_t count, int sh_degree) {
         device_.prefix_sum(copies_, first_copy_, count);
         device_.for_each_index(count, place_copies{copies_.data(), large_.data(), first_copy_.data(),
                                                    origin_.data(), births_.data()});
         device_.copy(&tally_.data()->count, first_copy_.data() + count, 1);
         densify_tally tally;
         device_.download(&tally, tally_.data(), 1);
-
         for (std::size_t p = 0; p < parameter_count; ++p)
             if (has_parameter(p, sh_degree)) carry(of, p, tally.count);
-        device_.for_each_index(tally.count,
-                               part_halves{births_.data(), rule.seed, rule.step, of.values.write()});
         return tally;
     }
 
-  private:
     void carry(trained_parameters<Device>& of, std::size_t p, std::size_t count) {
         const std::size_t width = width_of(static_cast<parameter>(p)), n = in_whole_blocks(count) * width;
         const std::array arrays{&of.values[p], &of.first[p], &of.second[p]};

@@ -20,7 +20,7 @@ struct densify_tally {
 };
 
 /// How a Gaussian came to be in the new generation.
-enum birth : std::uint32_t { kept, copied, split };
+enum birth : std::uint32_t { kept, original, copy, split };
 
 /// Who stays, who wants to grow, and who would do it by splitting: one index a Gaussian.
 struct judge_gaussians {
@@ -57,11 +57,35 @@ struct let_grow {
     const std::uint32_t* gaussian_of;
     const std::uint64_t* staying;  ///< how many
     std::uint64_t cap;
+    std::uint64_t most_births;
     std::uint32_t* copies;
 
     WARPAGG_HD void operator()(std::size_t rank) const {
-        if (*staying + rank < cap && urgency[rank] != 0xffffffffu) copies[gaussian_of[rank]] = 2;
+        if (*staying + rank < cap && rank < most_births && urgency[rank] != 0xffffffffu)
+            copies[gaussian_of[rank]] = 2;
     }
+};
+
+/// How much each Gaussian matters to the views that saw it: one index a Gaussian. All stay, so far.
+struct rate_gaussians {
+    const raster::visibility* seen;
+    std::uint32_t* stays;
+    std::uint32_t* rating;  ///< sort key: the less it matters the smaller
+    std::uint32_t* identities;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        stays[i] = 1;
+        rating[i] = raster::bits_of(seen[i].gradient);  // not negative: sorts as its bits do
+        identities[i] = static_cast<std::uint32_t>(i);
+    }
+};
+
+/// One index a rank.
+struct drop_ranked {
+    const std::uint32_t* gaussian_of;
+    std::uint32_t* copies;
+
+    WARPAGG_HD void operator()(std::size_t rank) const { copies[gaussian_of[rank]] = 0; }
 };
 
 /// Where each new Gaussian comes from: one index an old one.
@@ -75,7 +99,7 @@ struct place_copies {
     WARPAGG_HD void operator()(std::size_t i) const {
         for (std::uint32_t c = 0; c < copies[i]; ++c) {
             origin[first[i] + c] = static_cast<std::uint32_t>(i);
-            births[first[i] + c] = copies[i] == 1 ? kept : large[i] != 0 ? split : c == 0 ? kept : copied;
+            births[first[i] + c] = copies[i] == 1 ? kept : large[i] != 0 ? split : c == 0 ? original : copy;
         }
     }
 };
@@ -92,7 +116,8 @@ struct carry_over {
 
     WARPAGG_HD void operator()(std::size_t i) const {
         const std::size_t gaussian = i / (block_length * width) * block_length + i % block_length;
-        const bool exists = gaussian < count, keeps = exists && births[gaussian] == kept;
+        const bool exists = gaussian < count,
+                   keeps = exists && (births[gaussian] == kept || births[gaussian] == original);
         const std::size_t source =
             exists ? place(origin[gaussian], i / block_length % width, width) : std::size_t{0};
         to[0][i] = exists ? from[0][source] : 0;
@@ -120,6 +145,20 @@ struct part_halves {
         const glm::vec3 mean = raster::load3(gaussians.mean, i) + offset;
         if (raster::is_finite(mean)) raster::store3(gaussians.mean, i, mean);
         raster::store3(gaussians.log_scale, i, log_scale - glm::vec3(0.47000363f));  // log 1.6
+    }
+};
+
+/// Makes each of two copies as opaque as leaves both together what their original was: one index a new
+/// Gaussian.
+struct revise_opacity {
+    const birth* births;
+    float* opacity;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        if (births[i] != original && births[i] != copy) return;
+        // Of 1 - sqrt(1 - o) the logit: with e = o / (1 - o), log(sqrt(1 + e) - 1) without its cancellation.
+        const float e = glm::exp(warpagg::math::min(opacity[i], 80.0f));
+        opacity[i] -= glm::log(1 + warpagg::math::sqrt(1 + e));
     }
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace gs::train {
 
@@ -16,7 +17,10 @@ struct densify_rule {
     float least_opacity = 0.005f;  ///< drops below it
     float most_scale = 0;          ///< world units: drops above it; 0 for never
     std::size_t cap = 0;           ///< no growth past this many
-    std::uint64_t seed = 0;        ///< where the halves of a split come to lie
+    std::size_t most_births = std::numeric_limits<std::size_t>::max();  ///< at once, the most urgent first
+    /// A copied Gaussian and its copy are together as opaque as it was alone (Rota Bulo et al. 2024).
+    bool revised_opacity = false;
+    std::uint64_t seed = 0;  ///< where the halves of a split come to lie
     std::uint64_t step = 0;
 };
 

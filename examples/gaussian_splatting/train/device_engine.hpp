@@ -139,6 +139,13 @@ class device_engine final : public engine {
         return tally.silent;
     }
 
+    void prune(double share) override {
+        const auto dropped = static_cast<std::size_t>(share * static_cast<double>(count_));
+        if (dropped == 0) return;
+        densification_.drop_least(trained_, count_, sh_degree_, seen_.data(), dropped);
+        begin_generation(count_ - dropped);
+    }
+
     void reset_opacity(float most) override {
         device_.for_each_index(count_,
                                lower_opacity{trained_.values.write().opacity, trained_.first.write().opacity,

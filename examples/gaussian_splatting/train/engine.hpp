@@ -28,7 +28,7 @@ struct step_plan {
     gradient_policy gradient = gradient_policy::split;
     std::array<float, 8> rates{};  ///< of Adam, by `parameter`
     double ssim_weight = 0.2;
-    bool watch = false;  ///< note what `densify` wants to know
+    bool watch = false;  ///< note what `densify` and `prune` want to know
 };
 
 /// A model in training on a device, and all that happens to it. The host says what is done; nothing comes
@@ -55,6 +55,9 @@ class engine {
     /// Copies, splits and drops Gaussians by what `step`s have seen since the last call. Returns how many
     /// were drawn while their centres took no gradient, as where alpha is too low everywhere.
     virtual std::uint64_t densify(const densify_rule& rule) = 0;
+    /// Drops this share of the Gaussians: those whose centres took the least gradients in all `step`s since
+    /// the last `densify` together.
+    virtual void prune(double share) = 0;
     virtual void reset_opacity(float most) = 0;
     /// Makes room for the longest lists of the training views, and for what they may grow to: by how long
     /// each was when a `step` last saw it, and how many Gaussians there are now. To be called after

@@ -19,7 +19,7 @@ std::array<float, 8> schedule::rates_at(int iteration) const {
     const double t = std::min(1.0, static_cast<double>(iteration) / iterations);
     const double mean =
         extent * std::exp(std::log(position_lr_init) * (1 - t) + std::log(position_lr_final) * t);
-    const double sh = feature_lr, band = feature_lr / 20;
+    const double sh = feature_lr, band = sh_rate();
     std::array<float, 8> rates{};
     std::ranges::transform(std::array{mean, scaling_lr, rotation_lr, opacity_lr, sh, band, band, band},
                            rates.begin(), [](double rate) { return static_cast<float>(rate); });
@@ -31,6 +31,16 @@ int schedule::densify_until() const { return densify_until_iter.value_or(std::mi
 bool schedule::densifies(int iteration) const {
     return iteration > densify_from_iter && iteration < densify_until() &&
            iteration % densification_interval == 0;
+}
+
+int schedule::prune_after(int views) const {
+    const int until = densify_until();
+    return prune_share > 0 ? std::min(until + views, (until + iterations + 1) / 2) : 0;
+}
+
+int schedule::densifications_from(int iteration) const {
+    const int first = std::max(iteration, densify_from_iter + 1);
+    return (densify_until() - 1) / densification_interval - (first - 1) / densification_interval;
 }
 
 bool schedule::resets_opacity(int iteration) const {

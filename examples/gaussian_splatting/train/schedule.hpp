@@ -19,7 +19,8 @@ struct schedule {
 
     /// Of Adam. Those of positions are by extent and fall from `init` to `final`, geometrically.
     double position_lr_init = 1.6e-4, position_lr_final = 1.6e-6;
-    double feature_lr = 2.5e-3;  ///< of the constant colour; a twentieth of it for what depends on direction
+    double feature_lr = 2.5e-3;   ///< of the constant colour
+    std::optional<double> sh_lr;  ///< of colours that depend on direction: a twentieth, where it is not said
     double opacity_lr = 2.5e-2, scaling_lr = 5e-3, rotation_lr = 1e-3;
 
     int opacity_reset_interval = 3000;
@@ -34,17 +35,29 @@ struct schedule {
     /// Colours that depend on direction learn in every so many iterations.
     int sh_update_interval = 1;
 
+    /// Of the Gaussians, those that matter least are dropped when densification has ended.
+    double prune_share = 0;
+
     static constexpr double ssim_weight = 0.2;
     static constexpr float reset_opacity = 0.01f;
 
     int sh_degree_at(int iteration) const;
     bool updates_sh(int iteration) const { return iteration % sh_update_interval == 0; }
     int downscales_at(int iteration) const;
+    double sh_rate() const { return sh_lr.value_or(feature_lr / 20); }
     /// Adam's rates by `parameter`.
     std::array<float, 8> rates_at(int iteration) const;
     int densify_until() const;
-    bool watches(int iteration) const { return iteration < densify_until(); }
+    /// The iteration after which `prune_share` is dropped, when each of the training views has been seen
+    /// about once since the last densification; 0 for none.
+    int prune_after(int views) const;
+    bool watches(int iteration, int views) const {
+        return iteration < densify_until() || iteration <= prune_after(views);
+    }
     bool densifies(int iteration) const;
+    /// How many densifications there are in this iteration and after it. Precondition: it is not past the
+    /// last.
+    int densifications_from(int iteration) const;
     bool resets_opacity(int iteration) const;
     /// Gaussians that are large in the world are dropped once opacities have been reset. Those that are large
     /// on the screen are not: that costs lego 1.7 dB.

@@ -46,12 +46,20 @@ std::array<float, 3> random_colour(std::mt19937_64& random) {
     return {r, g, b};
 }
 
-densify_rule rule_at(int iteration, const schedule& schedule, const train_options& options) {
+densify_rule rule_at(int iteration, const schedule& schedule, const train_options& options,
+                     std::size_t gaussians) {
     densify_rule rule;
     rule.dense_scale = static_cast<float>(0.01 * schedule.extent);
     if (schedule.drops_large(iteration)) rule.most_scale = static_cast<float>(0.1 * schedule.extent);
     rule.gradient = options.densify_gradient;
     rule.cap = options.max_cap;
+    if (options.budget > 0) {
+        const auto left = static_cast<std::size_t>(schedule.densifications_from(iteration));
+        rule.gradient = 0;
+        rule.cap = std::min(rule.cap, options.budget);
+        rule.most_births = options.budget > gaussians ? (options.budget - gaussians + left - 1) / left : 0;
+    }
+    rule.revised_opacity = options.revised_opacity;
     rule.seed = options.seed;
     rule.step = static_cast<std::uint64_t>(iteration);
     return rule;
@@ -113,6 +121,7 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     std::mt19937_64 colours(options.seed + 1);
     finite_watch watch;
     train_result result;
+    const int views = static_cast<int>(scene.train.size());
     engine.take_findings();  // of steps that are not ours
     int downscales = schedule.downscales_at(1);
     engine.set_downscales(downscales);
@@ -135,17 +144,20 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
         plan.gradient = options.gradient;
         plan.rates = schedule.rates_at(iteration);
         plan.ssim_weight = schedule::ssim_weight;
-        plan.watch = schedule.watches(iteration);
+        plan.watch = schedule.watches(iteration, views);
         plan.iteration = iteration;
         engine.step(plan);
         watch.shows(plan.view);
 
-        if (schedule.densifies(iteration) || iteration % reserve_every == 0) {
+        const bool prunes = iteration == schedule.prune_after(views);
+        if (schedule.densifies(iteration) || prunes || iteration % reserve_every == 0) {
             engine.wait();
             const auto from = clock::now();
             if (schedule.densifies(iteration))
                 result.silent_gaussians =
-                    std::max(result.silent_gaussians, engine.densify(rule_at(iteration, schedule, options)));
+                    std::max(result.silent_gaussians,
+                             engine.densify(rule_at(iteration, schedule, options, engine.count())));
+            if (prunes) engine.prune(schedule.prune_share);
             engine.reserve();
             result.densify_seconds += seconds_since(from);
         }

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "train/trainer.hpp"
+
+namespace {
+
+using gs::train::densify_rule;
+using gs::train::step_plan;
+
+/// Has nothing but a number of Gaussians, which grow as they may, and notes what it was told to do.
+class recorder final : public gs::train::engine {
+  public:
+    struct made_step {
+        step_plan plan;
+        int downscales;
+    };
+    std::vector<made_step> steps;
+    std::vector<densify_rule> rules;
+    std::vector<int> sizes_reserved;
+    std::vector<std::size_t> counts;  ///< after each densification
+    std::size_t dropped = 0;          ///< in each
+
+    explicit recorder(std::size_t count) : count_(count) {}
+
+    std::string device_name() const override { return "none"; }
+    void set_views(const std::vector<gs::view>&, const std::vector<gs::view>&, int) override {}
+    void set_model(const gs::gaussians&) override {}
+    gs::gaussians get_model() override { return {}; }
+    std::size_t count() const override { return count_; }
+    void set_downscales(int times) override { downscales_ = times; }
+    void step(const step_plan& plan) override {
+        CHECK(sizes_reserved.back() == downscales_);
+        steps.push_back({plan, downscales_});
+    }
+    std::uint64_t densify(const densify_rule& rule) override {
+        rules.push_back(rule);
+        const std::size_t staying = count_ - dropped, room = rule.cap - std::min(staying, rule.cap);
+        count_ = staying + std::min({room, rule.most_births, staying});
+        counts.push_back(count_);
+        return 0;
+    }
+    std::vector<std::size_t> pruned_after;  ///< so many steps
+    void prune(double share) override {
+        CHECK(share == 0.25);
+        CHECK(pruned_after.empty());
+        pruned_after.push_back(steps.size());
+    }
+    void reset_opacity(float) override {}
+    void reserve() override { sizes_reserved.push_back(downscales_); }
+    gs::train::quality take_training_quality() override { return {}; }
+    std::uint64_t skipped_steps() override { return 0; }
+    gs::train::findings take_findings() override { return {}; }
+    std::vector<float> render(const gs::camera&, const std::array<float, 3>&) override { return {}; }
+    gs::train::quality measure(std::size_t, const std::array<float, 3>&, std::vector<float>*) override {
+        return {};
+    }
+    void sample_times(int) override {}
+    gs::device::stage_times times() override { return {}; }
+    std::uint64_t pairs() override { return 0; }
+    std::size_t peak_device_bytes() const override { return 0; }
+    void wait() override {}
+
+  private:
+    std::size_t count_;
+    int downscales_ = 7;  // of some training before
+};
+
+/// What happens in 20 iterations, densifying after 4, 6, ..., 14.
+recorder trained(gs::train::train_options o, std::size_t gaussians = 50, std::size_t dropped = 0) {
+    gs::scene scene;
+    scene.train.resize(3);
+    o.schedule.iterations = 20;
+    o.schedule.densify_from_iter = 2;
+    o.schedule.densification_interval = 2;
+    o.schedule.densify_until_iter = 15;
+    o.max_cap = 100;
+    recorder made(gaussians);
+    made.dropped = dropped;
+    const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
+    gs::train::train(made, scene, o, quiet);
+    CHECK(made.steps.size() == 20);
+    CHECK(made.rules.size() == 6);
+    return made;
+}
+
+}  // namespace
+
+TEST_CASE("by default every step learns all from whole photos, and growth is free up to the cap") {
+    const recorder made = trained({});
+    for (const auto& [plan, downscales] : made.steps) {
+        CHECK(downscales == 0);
+        CHECK(plan.updates_sh);
+    }
+    for (const densify_rule& rule : made.rules) {
+        CHECK(rule.cap == 100);
+        CHECK(rule.most_births == densify_rule{}.most_births);
+        CHECK_FALSE(rule.revised_opacity);
+    }
+}
+
+TEST_CASE("photos grow by the schedule, and lists are sized anew for them") {
+    gs::train::train_options o;
+    o.schedule.num_downscales = 2;
+    o.schedule.resolution_schedule = 6;
+    const recorder made = trained(o);
+    for (std::size_t i = 0; i < 20; ++i) CHECK(made.steps[i].downscales == (i < 6 ? 2 : i < 12 ? 1 : 0));
+}
+
+TEST_CASE("colours that depend on direction learn every so many steps") {
+    gs::train::train_options o;
+    o.schedule.sh_update_interval = 4;
+    const recorder made = trained(o);
+    for (std::size_t i = 0; i < 20; ++i) CHECK(made.steps[i].plan.updates_sh == ((i + 1) % 4 == 0));
+}
+
+TEST_CASE("a budget is grown to evenly from where training stands, whatever is dropped, and below the cap") {
+    gs::train::train_options o;
+    o.budget = 60;
+    o.revised_opacity = true;
+    const recorder made = trained(o, 30);
+    CHECK(made.counts == std::vector<std::size_t>{35, 40, 45, 50, 55, 60});
+    for (const densify_rule& rule : made.rules) {
+        CHECK(rule.gradient == 0);
+        CHECK(rule.revised_opacity);
+    }
+    CHECK(trained(o, 30, 5).counts == std::vector<std::size_t>{30, 31, 34, 38, 44, 55});
+    CHECK(trained(o, 70).counts == std::vector<std::size_t>(6, 70));
+    o.budget = 120;
+    CHECK(trained(o, 30).rules.back().cap == 100);
+}
+
+TEST_CASE(
+    "pruning comes once the views have been round after densification, and they are watched until then") {
+    gs::train::train_options o;
+    CHECK(trained(o).pruned_after.empty());
+    o.schedule.prune_share = 0.25;
+    const recorder made = trained(o);  // densifies before 15; three views
+    CHECK(made.pruned_after == std::vector<std::size_t>{18});
+    for (std::size_t i = 0; i < 20; ++i) CHECK(made.steps[i].plan.watch == (i < 18));
+    CHECK(made.sizes_reserved.size() == 1 + 6 + 1);
+}
