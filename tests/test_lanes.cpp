@@ -341,6 +341,35 @@ TEST_CASE("exp2 of a double") {
     });
 }
 
+TEST_CASE("log2 of a float errs by less than 3 ulp") {
+    // Even in [-126, 128), and as much again about 1, where the logarithm is small.
+    constexpr int samples = 1 << 21;
+    double worst = 0;
+    for (int first = 0; first < 2 * samples; first += count) {
+        const auto x = each([&](std::size_t i) {
+            const int k = first + static_cast<int>(i);
+            return static_cast<float>(k < samples
+                                          ? std::exp2(-126.0 + 254.0 * k / samples)
+                                          : std::exp2(static_cast<double>(k - samples) / samples - 0.5));
+        });
+        const auto y = log2(vector_of(x));
+        for (int i = 0; i < count; ++i) {
+            const double exact = std::log2(double{x[static_cast<std::size_t>(i)]});
+            const double ulp = std::ldexp(1.0, std::ilogb(exact == 0 ? 1e-30 : exact) - 23);
+            worst = std::max(worst, std::fabs(double{y[i]} - exact) / ulp);
+        }
+    }
+    MESSAGE("worst: ", worst, " ulp");
+    CHECK(worst <= 3.0);
+}
+
+TEST_CASE("log2 where it is exact, of zero, and of a double") {
+    for (int n = -126; n < 128; ++n)
+        CHECK(log2(vector<float>(std::ldexp(1.0f, n)))[n & 31] == static_cast<float>(n));
+    CHECK(log2(vector<float>(0.0f))[3] == -127.0f);
+    for (const double x : {0.3, 1.0, 7e300}) CHECK(log2(vector<double>(x))[7] == std::log2(x));
+}
+
 TEST_CASE("the lanes' numbers") {
     CHECK(same_bits(warp.lane(), each([](std::size_t i) { return static_cast<unsigned>(i); })));
 }

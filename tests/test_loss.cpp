@@ -100,9 +100,9 @@ TEST_CASE("measures and gradient do not depend on how many strips the picture is
         return std::pair(std::vector<float>(gradient, gradient + picture.size()), photometric.take());
     };
     REQUIRE(gs::train::picture_strip<gs::device::cpu::warp>::rows_for(width, height, 4) == height);
-    REQUIRE(gs::train::picture_strip<gs::device::cpu::warp>::rows_for(width, height, 32) < height / 2);
+    REQUIRE(gs::train::picture_strip<gs::device::cpu::warp>::rows_for(width, height, 64) < height / 2);
     const auto [gradient, all] = compare(1);
-    const auto [by_strips, parts] = compare(8);
+    const auto [by_strips, parts] = compare(16);
     CHECK(gradient == by_strips);
     CHECK(all.absolute == doctest::Approx(parts.absolute).epsilon(1e-6));
     CHECK(all.square == doctest::Approx(parts.square).epsilon(1e-6));

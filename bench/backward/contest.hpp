@@ -30,6 +30,7 @@ struct standing {
 
 struct contest_result {
     std::string device;
+    int cores = 1;  ///< of a CPU, threads
     std::vector<standing> standings;
 };
 

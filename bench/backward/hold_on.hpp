@@ -73,7 +73,8 @@ class contest_on {
     void enter_cut() {
         gs::raster::with_policy<float, Cut>(gs::gradient_policy::split, [&](auto kernel) {
             enter(std::to_string(Cut::across) + " across, " + std::to_string(Cut::rows) +
-                      " a lane, segments of " + std::to_string(Cut::segment),
+                      " a lane, segments of " + std::to_string(Cut::segment) +
+                      (Cut::sparse ? ", row by row" : ""),
                   false, renderer<Cut>(), kernel);
         });
     }
@@ -94,7 +95,7 @@ class contest_on {
                 standings_[i].backward.push_back(ms(gs::device::stage::blend_backward));
                 standings_[i].pairs = (pairs_[i]() - before) / static_cast<double>(contest_.cameras.size());
             }
-        return {device_.name(), standings_};
+        return {device_.name(), 1, standings_};
     }
 
   private:

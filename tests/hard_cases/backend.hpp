@@ -138,10 +138,12 @@ struct backend {
 
 /// Double, one lane a warp: what the others are measured by.
 const backend& reference();
-/// Those in float that are to be measured: lanes, serial, and the GPU where the build has one.
+/// Those in float that are to be measured: lanes, 8 and 32 a warp, serial, and the GPU where the build has
+/// one.
 const std::vector<backend>& backends();
 
 backend lanes_backend();
+backend lanes_32_backend();
 backend serial_backend();
 backend cuda_backend();
 

@@ -18,7 +18,7 @@ const backend& reference() {
 
 const std::vector<backend>& backends() {
     static const std::vector<backend> all {
-        lanes_backend(), serial_backend(),
+        lanes_backend(), lanes_32_backend(), serial_backend(),
 #if defined(WARPAGG_TEST_CUDA)
             cuda_backend(),
 #endif

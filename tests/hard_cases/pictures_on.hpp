@@ -118,10 +118,13 @@ class pictures_on {
             return static_cast<unsigned>((pixels + gs::raster::tile_size - 1) / gs::raster::tile_size);
         };
         const gs::camera& camera = q.view.camera;
-        device.for_each_index(
-            n, gs::raster::project<Real>{read(values), gs::raster::for_device<Real>(camera), q.sh_degree,
-                                         tiles_along(camera.width), tiles_along(camera.height), splats.data(),
-                                         boxes.data(), depths.data(), identities.data(), tiles.data()});
+        using narrow = typename Device::narrow_warp;
+        using projection = gs::raster::project<narrow, Real>;
+        device.template for_each_warp<narrow>(
+            projection::warps(n),
+            projection{read(values), n, gs::raster::for_device<warpagg::value_t<narrow, Real>>(camera),
+                       q.sh_degree, tiles_along(camera.width), tiles_along(camera.height), splats.data(),
+                       boxes.data(), depths.data(), identities.data(), tiles.data()});
         const auto host = on.get_as_they_are(splats.data(), n);
         const auto depth = on.get_as_they_are(depths.data(), n), met = on.get_as_they_are(tiles.data(), n);
         std::vector<projected_splat> found(n);

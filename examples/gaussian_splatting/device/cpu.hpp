@@ -100,7 +100,11 @@ class basic_cpu {
 
     template <class T>
     void zero(T* p, std::size_t n) {
-        if (n > 0) std::memset(static_cast<void*>(p), 0, n * sizeof(T));
+        constexpr std::size_t piece = (std::size_t{1} << 16) / sizeof(T);
+        if (n == 0) return;
+#pragma omp parallel for schedule(static) if (n > 2 * piece)
+        for (std::size_t first = 0; first < n; first += piece)
+            std::memset(static_cast<void*>(p + first), 0, std::min(piece, n - first) * sizeof(T));
     }
     template <class T>
     void copy(T* to, const T* from, std::size_t n) {
@@ -133,25 +137,28 @@ class basic_cpu {
     void distribute(std::size_t n, const items auto& all, std::size_t buckets, std::uint64_t room,
                     std::uint32_t* listed, Range* ranges, std::uint64_t* needed) {
         // Slices of the items, more than threads since some have far more candidates; each has its row of
-        // counts, which become places.
+        // counts, which become places, and keeps what it found for the second time.
         const auto slices = 4 * static_cast<std::size_t>(omp_get_max_threads());
         places_.resize(slices * buckets);
         totals_.resize(buckets);
         first_.resize(buckets + 1);
+        if (found_.size() < slices) found_.resize(slices);
         const auto for_each_slice = [&](const auto& f) {
 #pragma omp parallel for schedule(dynamic)
-            for (std::size_t s = 0; s < slices; ++s) {
-                std::uint64_t* mine = places_.data() + s * buckets;
-                for (std::size_t i = n * s / slices; i < n * (s + 1) / slices; ++i) {
-                    const auto item = all(i);
-                    for (std::uint32_t k = 0; k < item.size(); ++k)
-                        if (const std::uint32_t bucket = item.bucket(k); bucket != no_bucket)
-                            f(mine[bucket], item.value);
-                }
-            }
+            for (std::size_t s = 0; s < slices; ++s) f(found_[s], places_.data() + s * buckets, s);
         };
         zero(places_.data(), slices * buckets);
-        for_each_slice([](std::uint64_t& count, std::uint32_t) { ++count; });
+        for_each_slice([&](std::vector<instance>& found, std::uint64_t* counts, std::size_t s) {
+            found.clear();
+            for (std::size_t i = n * s / slices; i < n * (s + 1) / slices; ++i) {
+                const auto item = all(i);
+                for (std::uint32_t k = 0; k < item.size(); ++k)
+                    if (const std::uint32_t bucket = item.bucket(k); bucket != no_bucket) {
+                        ++counts[bucket];
+                        found.push_back({bucket, item.value});
+                    }
+            }
+        });
         for_each_index(buckets, [&](std::size_t b) {
             std::uint64_t total = 0;
             for (std::size_t s = 0; s < slices; ++s) total += places_.data()[s * buckets + b];
@@ -165,9 +172,9 @@ class basic_cpu {
             ranges[b] = {static_cast<std::uint32_t>(std::min(first_.data()[b], room)),
                          static_cast<std::uint32_t>(std::min(at, room))};
         });
-        for_each_slice([&](std::uint64_t& place, std::uint32_t value) {
-            if (place < room) listed[place] = value;
-            ++place;
+        for_each_slice([&](const std::vector<instance>& found, std::uint64_t* places, std::size_t) {
+            for (const auto& [bucket, value] : found)
+                if (const std::uint64_t place = places[bucket]++; place < room) listed[place] = value;
         });
     }
 
@@ -220,40 +227,45 @@ class basic_cpu {
   private:
     using clock = std::chrono::steady_clock;
 
-    /// One pass of a stable radix sort: each thread counts and then moves its own slice.
+    /// One pass of a stable radix sort: each slice of the pairs is counted and then moved.
     void sort_by_digit(const std::uint32_t* keys, const std::uint32_t* values, std::size_t n, int shift,
                        int bits) {
         const std::size_t digits = std::size_t{1} << bits;
         const auto digit = [&](std::uint32_t key) { return key >> shift & (digits - 1); };
         std::uint32_t* to_keys = other_keys_.data();
         std::uint32_t* to_values = other_values_.data();
-        histograms_.assign(digits * static_cast<std::size_t>(omp_get_max_threads()), 0);
-#pragma omp parallel
-        {
-            const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-            const auto threads = static_cast<std::size_t>(omp_get_num_threads());
-            const std::size_t from = n * thread / threads, to = n * (thread + 1) / threads;
-            std::size_t* mine = histograms_.data() + thread * digits;
-            for (std::size_t i = from; i < to; ++i) ++mine[digit(keys[i])];
-#pragma omp barrier
-#pragma omp single
-            for (std::size_t d = 0, sum = 0; d < digits; ++d)
-                for (std::size_t t = 0; t < threads; ++t) {
-                    const std::size_t count = histograms_[t * digits + d];
-                    histograms_[t * digits + d] = sum;
-                    sum += count;
-                }
+        // Of a few thousand keys the sums over the slices' digits, which one thread makes, would take longer.
+        const std::size_t slices =
+            std::clamp<std::size_t>(n / (2 * digits), 1, static_cast<std::size_t>(omp_get_max_threads()));
+        histograms_.resize(digits * slices);
+        const auto for_each_slice = [&](const auto& f) {
+#pragma omp parallel for schedule(static, 1)
+            for (std::size_t s = 0; s < slices; ++s)
+                f(n * s / slices, n * (s + 1) / slices, histograms_.data() + s * digits);
+        };
+        for_each_slice([&](std::size_t from, std::size_t to, std::size_t* counts) {
+            std::fill_n(counts, digits, std::size_t{0});
+            for (std::size_t i = from; i < to; ++i) ++counts[digit(keys[i])];
+        });
+        for (std::size_t d = 0, sum = 0; d < digits; ++d)
+            for (std::size_t s = 0; s < slices; ++s) sum += std::exchange(histograms_[s * digits + d], sum);
+        for_each_slice([&](std::size_t from, std::size_t to, std::size_t* places) {
             for (std::size_t i = from; i < to; ++i) {
-                const std::size_t at = mine[digit(keys[i])]++;
+                const std::size_t at = places[digit(keys[i])]++;
                 to_keys[at] = keys[i];
                 to_values[at] = values[i];
             }
-        }
+        });
     }
 
     buffer<std::uint32_t> other_keys_, other_values_;
     std::vector<std::size_t> histograms_;
-    buffer<std::uint64_t> places_, first_;  // of `distribute`
+    // Of `distribute`.
+    struct instance {
+        std::uint32_t bucket, value;
+    };
+    std::vector<std::vector<instance>> found_;  // by slice
+    buffer<std::uint64_t> places_, first_;
     buffer<std::uint32_t> totals_;
     stage_times times_;
     stage running_ = stage::count;

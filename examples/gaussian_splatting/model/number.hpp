@@ -33,7 +33,10 @@ WARPAGG_HD Real exponential(const Real& x) {
     if constexpr (std::is_arithmetic_v<Real>) {
         return glm::exp(x);
     } else {
-        return exp2(x * constant<Real>(1.4426950408889634));
+        // exp2 ends at the largest number, but a scale that no number holds is to be seen.
+        using limits = std::numeric_limits<Real>;
+        const Real log2 = x * constant<Real>(1.4426950408889634);
+        return select(log2 < Real(limits::max_exponent), exp2(log2), Real(limits::infinity()));
     }
 }
 /// @}

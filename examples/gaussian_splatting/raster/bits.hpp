@@ -3,17 +3,19 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <warpagg/simt/target.hpp>
 
 namespace gs::raster {
 
-/// The bits of a float as a sort key: non-negative floats sort as their bits do.
-WARPAGG_HD std::uint32_t bits_of(float x) {
-#if defined(__CUDA_ARCH__)
-    return __float_as_uint(x);
-#else
-    return __builtin_bit_cast(std::uint32_t, x);
-#endif
+/// The bits of a float as a sort key: non-negative floats sort as their bits do. Of a lane value, of each
+/// lane's.
+template <class Bits = std::uint32_t, class V>
+WARPAGG_HD Bits bits_of(const V& x) {
+    Bits bits;
+    static_assert(sizeof bits == sizeof x);
+    std::memcpy(&bits, &x, sizeof x);
+    return bits;
 }
 
 }  // namespace gs::raster

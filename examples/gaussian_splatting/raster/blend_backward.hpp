@@ -92,7 +92,11 @@ struct blend_backward {
         while (base > from && !some_pass(base)) base -= W::size;
         list_reader<W, Real, Patch> reader(w, lists, p, begin, from, to, stage, base, base - W::size);
         for (;; base -= W::size) {
-            for (unsigned i = reader.stage(w, base, base - W::size, base - 2 * W::size); i-- > 0;)
+            const unsigned staged = reader.stage(w, base, base - W::size, base - 2 * W::size);
+            if constexpr (!std::is_same_v<mask_t<W>, bool>)  // one thread, which would wait for each
+                for (unsigned i = 0; i < staged; ++i)
+                    __builtin_prefetch(sums + stage.gaussians[i] * record_stride, 1);
+            for (unsigned i = staged; i-- > 0;)
                 add_splat(w, p, stage.splats[i], stage.ranks[i], end, pixels,
                           stage.gaussians[i] * record_stride);
             if (base <= from) break;

@@ -6,6 +6,7 @@
 
 #include "../model/spherical_harmonics.hpp"
 #include "bits.hpp"
+#include "gaussian_row.hpp"
 #include "geometry.hpp"
 #include "splat.hpp"
 
@@ -19,27 +20,26 @@ struct tile_box {
 };
 
 /// Whether the splat's ellipse reaches pixels of the tile in this column and row.
-template <class Real>
-WARPAGG_HD bool reaches_tile(const splat<Real>& s, unsigned column, unsigned row) {
-    const Real x0 = Real(column * tile_size) + Real(0.5) - s.x, y0 = Real(row * tile_size) + Real(0.5) - s.y;
-    const Real side = tile_size - 1;
+template <class Real, class Index>
+WARPAGG_HD flag_of<Real> reaches_tile(const splat<Real>& s, const Index& column, const Index& row) {
+    using scalar = typename warpagg::detail::scalar_of<Real>::type;
+    const auto centre = [](const Index& tile) {  // of its first pixel
+        return warpagg::math::convert<scalar>(tile * Index(tile_size)) + constant<Real>(0.5);
+    };
+    const Real x0 = centre(column) - s.x, y0 = centre(row) - s.y, side = constant<Real>(tile_size - 1);
     return least_exponent<Real>(s.p, s.q, s.r, s.slope_x, s.slope_y, x0, x0 + side, y0, y0 + side) <= s.reach;
 }
 
-/// Whether it reaches any tile of the box.
-template <class Real>
-WARPAGG_HD bool reaches_any(const splat<Real>& s, const tile_box& box) {
-    for (unsigned row = box.y0; row < box.y1; ++row)
-        for (unsigned column = box.x0; column < box.x1; ++column)
-            if (reaches_tile(s, column, row)) return true;
-    return false;
-}
-
-/// Gaussians to splats: one index a Gaussian.
-template <class Real>
+/// Gaussians to splats, a Gaussian a lane.
+template <class W, class Real>
 struct project {
+    using real = value_t<W, Real>;
+    using whole = value_t<W, int>;
+    using number = value_t<W, std::uint32_t>;
+
     parameter_arrays<const Real> gaussians;
-    device_camera<Real> camera;
+    std::size_t count;
+    device_camera<real> camera;
     int sh_degree;
     unsigned tiles_across, tiles_down;
 
@@ -49,24 +49,55 @@ struct project {
     std::uint32_t* identities;  ///< i: the value that is sorted along
     std::uint32_t* tiles;       ///< how many tiles the splat's box has; zero if it is not drawn
 
-    WARPAGG_HD void operator()(std::size_t index) const {
-        const auto i = static_cast<unsigned>(index);
-        identities[i] = i;
-        depths[i] = 0xffffffffu;
-        tiles[i] = 0;
-        boxes[i] = {0, 0, 0, 0};
-        splats[i] = {};
+    static std::size_t warps(std::size_t count) { return (count + W::size - 1) / W::size; }
 
-        const vec3<Real> at = in_camera(load3(gaussians.mean, i), camera);
-        if (!(at.z > Real(near_plane))) return;
-        const footprint<Real> f =
-            see(at, load3(gaussians.log_scale, i), load4(gaussians.quaternion, i), camera);
-        if (!f.drawable || !is_finite(gaussians.opacity[i])) return;
-        splat<Real> s{};
-        const Real opacity = sigmoid(gaussians.opacity[i]);
-        s.strength = glm::log2(opacity);
-        s.reach = glm::log2(opacity * Real(1 / least_alpha));
-        if (!(s.reach > 0)) return;
+    WARPAGG_HD void operator()(const W& w, unsigned warp_index) const {
+        const number i = w.lane() + warp_index * W::size;
+        const mask_t<W> inside = i < number(static_cast<std::uint32_t>(count));
+        gaussian_row<W> row{std::size_t{warp_index} * W::size, inside, inside};
+        const vec3<real> mean = row.template load<3>(w, gaussians.mean, 0, 3);
+        const vec3<real> at = in_camera(mean, camera);
+        row.active = inside && at.z > constant<real>(near_plane);
+        drawing d{};
+        if (w.any(row.active)) draw(w, row, mean, at, d);
+
+        const auto first = static_cast<std::ptrdiff_t>(row.first);
+        const auto drawn = [&]<class V>(const V& value) { return select(row.active, value, V(0)); };
+        const auto depth = warpagg::math::convert<float>(at.z);
+        w.store_row(identities, first, i, inside);
+        w.store_row(depths, first, select(row.active, bits_of<number>(depth), number(0xffffffffu)), inside);
+        w.store_row(tiles, first, drawn((d.x1 - d.x0) * (d.y1 - d.y0)), inside);
+        // As they lie in memory.
+        auto* corners = reinterpret_cast<std::uint32_t*>(boxes);
+        w.store(corners, 2 * i, drawn(d.x0 | d.y0 << number(16u)), inside);
+        w.store(corners, 2 * i + 1, drawn(d.x1 | d.y1 << number(16u)), inside);
+        const splat<real>& s = d.shape;
+        const real values[splat_width] = {drawn(s.x),       drawn(s.y),     drawn(s.p),
+                                          drawn(s.q),       drawn(s.r),     drawn(s.slope_x),
+                                          drawn(s.slope_y), drawn(s.reach), drawn(s.strength),
+                                          drawn(s.red),     drawn(s.green), drawn(s.blue)};
+        w.store_packed(reinterpret_cast<Real*>(splats), i * splat_width, values, inside);
+    }
+
+  private:
+    struct drawing {
+        splat<real> shape;
+        number x0, y0, x1, y1;  ///< its `tile_box`
+    };
+
+    /// Of the row's active Gaussians; those that are not to be drawn are not active afterwards.
+    WARPAGG_HD void draw(const W& w, gaussian_row<W>& row, const vec3<real>& mean, const vec3<real>& at,
+                         drawing& d) const {
+        const auto log_scale = row.template load<3>(w, gaussians.log_scale, 0, 3);
+        const auto quaternion = row.template load<4>(w, gaussians.quaternion, 0, 4);
+        const real logit = row.template load<1>(w, gaussians.opacity, 0, 1).x;
+        const footprint<real> f = see(at, log_scale, quaternion, camera);
+        const real opacity = sigmoid(logit);
+        splat<real>& s = d.shape;
+        s.strength = warpagg::math::log2(opacity);
+        s.reach = warpagg::math::log2(opacity * constant<real>(1 / least_alpha));
+        row.active = row.active && f.drawable && is_finite(logit) && s.reach > real(0);
+        if (!w.any(row.active)) return;
         s.x = f.x;
         s.y = f.y;
         s.p = f.shape.p;
@@ -74,50 +105,66 @@ struct project {
         s.r = f.shape.r;
         s.slope_x = f.shape.slope_x;
         s.slope_y = f.shape.slope_y;
-        const Real far = warpagg::math::sqrt(s.reach);
-        const tile_box box = bounds(s, far * f.shape.width, far * f.shape.height);
-        if (!reaches_any(s, box)) return;
+        const real far = warpagg::math::sqrt(s.reach);
+        bound(far * f.shape.width, far * f.shape.height, d);
+        row.active = reaches_any(w, d, row.active);
+        if (!w.any(row.active)) return;
 
-        const vec3<Real> rgb = colour(i);
-        if (!is_finite(rgb)) return;
+        const vec3<real> rgb = colour(w, row, mean);
+        row.active = row.active && is_finite(rgb);
         s.red = held(rgb.x);
         s.green = held(rgb.y);
         s.blue = held(rgb.z);
-        splats[i] = s;
-        boxes[i] = box;
-        tiles[i] = box.size();
-        depths[i] = bits_of(static_cast<float>(f.at.z));
     }
 
-  private:
     /// The tiles that hold a pixel centre within these half extents.
-    WARPAGG_HD tile_box bounds(const splat<Real>& s, Real half_x, Real half_y) const {
-        const auto tile = [](Real pixel, unsigned end) {
-            const Real t = glm::floor(pixel / tile_size);
-            return static_cast<std::uint16_t>(warpagg::math::min(warpagg::math::max(Real(0), t), Real(end)));
+    WARPAGG_HD void bound(const real& half_x, const real& half_y, drawing& d) const {
+        using namespace warpagg::math;
+        const auto tile = [](const real& pixel, unsigned end) {
+            const real t = pixel * constant<real>(1.0 / tile_size);
+            return convert<std::uint32_t>(convert<int>(min(max(real(0), t), real(Real(end)))));
         };
-        const Real half(0.5);
-        return {tile(s.x - half_x - half, tiles_across), tile(s.y - half_y - half, tiles_down),
-                tile(s.x + half_x - half + tile_size, tiles_across),
-                tile(s.y + half_y - half + tile_size, tiles_down)};
+        const real half = constant<real>(0.5), side = constant<real>(tile_size);
+        const real x = d.shape.x - half, y = d.shape.y - half;
+        d.x0 = tile(x - half_x, tiles_across);
+        d.y0 = tile(y - half_y, tiles_down);
+        d.x1 = tile(x + half_x + side, tiles_across);
+        d.y1 = tile(y + half_y + side, tiles_down);
     }
 
-    static WARPAGG_HD Real held(Real channel) {
-        return warpagg::math::min(warpagg::math::max(channel, Real(0)), Real(most_colour));
+    /// Whether it reaches any tile of its box, of those that are `asked`.
+    static WARPAGG_HD mask_t<W> reaches_any(const W& w, const drawing& d, const mask_t<W>& asked) {
+        const auto index = [](const number& n) { return warpagg::math::convert<int>(n); };
+        const whole x0 = index(d.x0), x1 = index(d.x1), y1 = index(d.y1);
+        whole column = x0, row = index(d.y0);
+        mask_t<W> open = asked && column < x1 && row < y1, found = false;
+        while (w.any(open)) {
+            found = found || (open && reaches_tile(d.shape, column, row));
+            column += whole(1);
+            const mask_t<W> wraps = column >= x1;
+            row = select(wraps, row + whole(1), row);
+            column = select(wraps, x0, column);
+            open = open && !found && row < y1;
+        }
+        return found;
     }
 
-    WARPAGG_HD vec3<Real> colour(unsigned i) const {
-        const vec3<Real> direction = unit(load3(gaussians.mean, i) - camera.centre).direction;
-        Real basis[16]{};
+    static WARPAGG_HD real held(const real& channel) {
+        return warpagg::math::min(warpagg::math::max(channel, real(0)), constant<real>(most_colour));
+    }
+
+    WARPAGG_HD vec3<real> colour(const W& w, const gaussian_row<W>& row, const vec3<real>& mean) const {
+        const vec3<real> direction = unit(mean - camera.centre).direction;
+        real basis[16]{};
         sh_basis(sh_degree, direction, basis);
-        vec3<Real> sum(0.5);
+        vec3<real> sum(constant<real>(0.5));
         WARPAGG_UNROLL
         for (unsigned band = 0; band < 4; ++band) {
             if (static_cast<int>(band) > sh_degree) break;
             const unsigned size = 2 * band + 1;
             WARPAGG_UNROLL
             for (unsigned m = 0; m < size; ++m)
-                sum += basis[band * band + m] * load3(gaussians.sh[band], i, 3 * m, 3 * size);
+                sum += basis[band * band + m] * row.template load<3>(w, gaussians.sh[band], 3 * m, 3 * size);
         }
         return sum;
     }

@@ -125,11 +125,10 @@ class renderer {
     }
 
     std::size_t tiles() const { return std::size_t{tiles_across_} * tiles_down_; }
-    /// Patches of a pixel a lane are shorter work: they are taken where higher ones would leave the device
-    /// idle.
+    /// Lower patches are shorter work: they are taken where higher ones would leave the device idle.
     template <class Shape>
     void blend_forward_by(const std::array<float, 3>& background) {
-        using shorter = pixel_a_lane<Shape>;
+        using shorter = lower<Shape>;
         const blend_forward<Real, Shape> blend{lists(),
                                                order(),
                                                colour(background),
@@ -158,11 +157,14 @@ class renderer {
                         " has more than 2^29 pixels: lower --resolution");
         tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
-        device_.for_each_index(
-            count, project<Real>{gaussians, for_device<Real>(view), sh_degree, tiles_across_, tiles_down_,
-                                 reserve(splats_, count).data(), reserve(boxes_, count).data(),
-                                 reserve(depths_, count).data(), reserve(order_, count).data(),
-                                 reserve(tiles_, count).data()});
+        using narrow = typename Device::narrow_warp;
+        using projection = project<narrow, Real>;
+        device_.template for_each_warp<narrow>(
+            projection::warps(count),
+            projection{gaussians, count, for_device<value_t<narrow, Real>>(view), sh_degree, tiles_across_,
+                       tiles_down_, reserve(splats_, count).data(), reserve(boxes_, count).data(),
+                       reserve(depths_, count).data(), reserve(order_, count).data(),
+                       reserve(tiles_, count).data()});
     }
 
     /// Lists of Gaussians per tile, front to back: equal depths keep the order of the Gaussians.

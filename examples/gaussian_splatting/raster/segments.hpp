@@ -28,6 +28,9 @@ using cut_for = std::conditional_t<W::size == 1, cut<1, 1, 128>,
 /// The same with a pixel a lane.
 template <class Cut>
 using pixel_a_lane = cut<Cut::across, 1, Cut::segment>;
+/// The same with lower patches, where higher ones are too few to keep a device busy.
+template <class Cut>
+using lower = std::conditional_t<Cut::sparse, cut<Cut::across, 8, Cut::segment, true>, pixel_a_lane<Cut>>;
 
 /// Segments are numbered by tile and then by place: that of a place of tile t is t + place / Segment. Not
 /// every number is taken.

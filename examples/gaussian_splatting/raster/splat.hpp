@@ -11,9 +11,9 @@ inline constexpr int tile_size = 16;  ///< pixels along a side of a tile, the un
 /// A Gaussian as the picture sees it. Its alpha at offset d from its centre is 2^(strength - u^2 - v^2) with
 /// u = p dx and v = q dy + r dx, and zero where the exponent u^2 + v^2 exceeds `reach`, where alpha falls
 /// below `least_alpha`. As a sum of squares the exponent is never negative, however long and thin the splat
-/// is.
+/// is. Lane values as `Real` are several splats.
 template <class Real>
-struct alignas(16) splat {
+struct alignas(16) alignas(Real) splat {
     // The first eight say which pixels it reaches.
     Real x, y;              ///< pixels
     Real p, q, r;           ///< Cholesky factor of the inverse covariance over 2 ln 2
@@ -26,6 +26,9 @@ struct alignas(16) splat {
 inline constexpr double least_alpha = 1.0 / 255;
 inline constexpr double most_alpha = 0.99;
 inline constexpr double least_transmittance = 1e-4;
+
+/// The values of a splat, in the order above.
+inline constexpr unsigned splat_width = 12;
 
 /// Offsets in units of the splat's own width: the exponent is u^2 + v^2.
 template <class V>

@@ -66,6 +66,11 @@ WARPAGG_HD float exp2(float a) {
 }
 /// 2^a.
 WARPAGG_HD double exp2(double a) { return ::exp2(a); }
+/// The logarithm to base 2.
+/// @{
+WARPAGG_HD float log2(float a) { return ::log2f(a); }
+WARPAGG_HD double log2(double a) { return ::log2(a); }
+/// @}
 
 /// a / b. On CUDA the float version is the hardware's approximate reciprocal and one step of Newton's: within
 /// 1 ulp, a / a is 1. Precondition there: b, 1 / b and the quotient are normal numbers.

@@ -346,6 +346,38 @@ WARPAGG_HD lanes<double, L> exp2(const lanes<double, L>& a) {
     return r;
 }
 
+/// log2 of a, within 3 ulp for normal a > 0; -127 for zero, and of no meaning for all others. With a = 2^n m
+/// and m in [sqrt(1/2), sqrt(2)), log2(m) is 2 / ln 2 artanh(s) of s = (m - 1) / (m + 1), whose series ends
+/// at s^11, where the rest is 2e-11 of it.
+template <int L>
+WARPAGG_HD lanes<float, L> log2(const lanes<float, L>& a) {
+    using real = lanes<float, L>;
+    using integer = lanes<std::int32_t, L>;
+    constexpr std::int32_t least = 0x3f3504f3;  // sqrt(1/2)
+    integer bits, rest;
+    static_assert(sizeof bits == sizeof a);
+    std::memcpy(&bits, &a, sizeof a);
+    const integer n = (bits - integer(least)) >> integer(23);
+    rest = bits - (n << integer(23));
+    real m;
+    std::memcpy(&m, &rest, sizeof m);
+    const real s = (m - real(1.0f)) / (m + real(1.0f)), ss = s * s;
+    real p(0x1.0c9a84p-2f);  // 2 / (11 ln 2)
+    p = fma(p, ss, real(0x1.484b14p-2f));
+    p = fma(p, ss, real(0x1.a61762p-2f));
+    p = fma(p, ss, real(0x1.2776c6p-1f));
+    p = fma(p, ss, real(0x1.ec709ep-1f));
+    p = fma(p, ss, real(0x1.715476p+1f));
+    return fma(p, s, convert<float>(n));
+}
+template <int L>
+WARPAGG_HD lanes<double, L> log2(const lanes<double, L>& a) {
+    lanes<double, L> r;
+    WARPAGG_UNROLL
+    for (int k = 0; k < L; ++k) r.set(k, math::log2(a[k]));
+    return r;
+}
+
 template <int L>
 WARPAGG_HD lanes<std::uint32_t, L> popcount(const lanes<std::uint32_t, L>& a) {
     lanes<std::uint32_t, L> r;
@@ -393,6 +425,7 @@ using warpagg::countr_zero;
 using warpagg::divide;
 using warpagg::exp2;
 using warpagg::fma;
+using warpagg::log2;
 using warpagg::max;
 using warpagg::min;
 using warpagg::popcount;
