@@ -726,23 +726,21 @@ TEST_CASE("--quality fast sets what pays, and nothing that was said") {
         check_success(fast + words{"-o", (folder / name).string()} + options);
         return read_json(folder / name / "settings.json");
     };
-    const json expected{{"quality", "fast"},   {"iterations", 20},        {"scaling_lr", 1e-2},
-                        {"sh_lr", 5e-4},       {"revised_opacity", true}, {"sh_degree_interval", 500},
-                        {"num_downscales", 1}, {"resolution_schedule", 4}};
+    const json expected{{"quality", "fast"},       {"iterations", 20},          {"scaling_lr", 1e-2},
+                        {"sh_lr", 5e-4},           {"sh_degree_interval", 500}, {"num_downscales", 1},
+                        {"resolution_schedule", 4}};
     const json chosen = settings_of("chosen", {"-i", "20"});
     for (const auto& [name, value] : expected.items()) {
         CAPTURE(name);
         CHECK(chosen.at(name) == value);
     }
-    const json said = settings_of(
-        "said", {"-i", "20", "--sh-lr", "1e-4", "--revised-opacity=false", "--num-downscales", "0"});
+    const json said = settings_of("said", {"-i", "20", "--sh-lr", "1e-4", "--num-downscales", "0"});
     CHECK(said.at("sh_lr") == 1e-4);
-    CHECK(said.at("revised_opacity") == false);
     CHECK(said.at("num_downscales") == 0);
     check_success(small_training(folder / "full") + words{"-q", "--quality", "full"});
     check_success(small_training(folder / "default") + words{"-q"});
     CHECK(read_json(folder / "full/settings.json") == read_json(folder / "default/settings.json"));
-    check_refusal_without_trace(fast + words{"--save-iterations", "4001"}, {"4001", "1 to 4000"});
+    check_refusal_without_trace(fast + words{"--save-iterations", "5001"}, {"5001", "1 to 5000"});
 }
 
 TEST_CASE("--quiet prints nothing") {

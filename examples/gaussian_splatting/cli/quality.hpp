@@ -19,11 +19,10 @@ inline void choose_fast(CLI::App& train, const train::schedule& schedule) {
         option->add_result(value);
         option->run_callback();
     };
-    choose("--iterations", "4000");
+    choose("--iterations", "5000");
     choose("--scaling-lr", "1e-2");
     choose("--sh-lr", "5e-4");
     choose("--sh-degree-interval", "500");
-    choose("--revised-opacity", "true");
     choose("--num-downscales", "1");
     choose("--resolution-schedule", std::to_string(std::max(1, schedule.iterations / 5)));
 }

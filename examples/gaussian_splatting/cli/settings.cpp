@@ -172,7 +172,7 @@ CLI::App* add_train(CLI::App& app, settings& s) {
     train->add_option("-o,--output,-m,--model-path", s.output, "Folder for the results")->required();
     train
         ->add_option("--quality", s.quality,
-                     "fast: 4000 iterations and the options of the schedule that pay; what is said wins")
+                     "fast: 5000 iterations and the options of the schedule that pay; what is said wins")
         ->check(CLI::IsMember({"full", "fast"}))
         ->capture_default_str();
     train->add_option("-i,--iterations", s.schedule.iterations)
