@@ -449,6 +449,73 @@ TEST_CASE("pruning drops the share that the views made least of, and keeps the o
     }
 }
 
+TEST_CASE("pruning takes those that are pulled less before those that are pulled more") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 0, 300, 1);
+    for (std::size_t i = 0; i < 300; i += 4) model.opacity[i] = -20;    // in no picture
+    for (std::size_t i = 1; i < 300; i += 4) model.opacity[i] = -5.3f;  // hardly to be seen
+    const auto count = [](const gaussians& of, float opacity) {
+        return std::ranges::count(of.opacity, opacity);
+    };
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(model);
+        e->reserve();
+        auto still = plan_for(0);
+        still.rates = {};
+        for (still.view = 0; still.view < scene.train.size(); ++still.view) e->step(still);
+        e->prune(0.4);
+        const gaussians rest = e->get_model();
+        REQUIRE(rest.count() == 180);
+        CHECK(count(rest, -20.0f) == 0);
+        CHECK(count(rest, -5.3f) <= 75 - 40);  // at least 40 of the other 45 that are dropped
+    }
+}
+
+TEST_CASE("momentum goes along with those that pruning keeps") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 1, 300, 1);
+    for (std::size_t i = 0; i < 240; i += 4) model.opacity[i] = -20;  // in no picture: to be dropped
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        const auto trained = [&](bool prunes) {
+            e->set_model(model);
+            e->reserve();
+            auto plan = plan_for(0);
+            plan.sh_degree = 1;
+            plan.rates = {};
+            for (plan.view = 0; plan.view < scene.train.size(); ++plan.view) e->step(plan);
+            if (prunes) e->prune(0.2);
+            plan.view = 0;
+            plan.rates.fill(0.01f);
+            e->step(plan);
+            return e->get_model();
+        };
+        const gaussians all = trained(false), rest = trained(true);
+        REQUIRE(rest.count() == 240);
+        // But where a gradient is rounding alone, a step is the same.
+        std::size_t values = 0, alike = 0;
+        const auto compare = [&](const std::vector<float>& a, const std::vector<float>& b,
+                                 std::size_t width) {
+            for (std::size_t i = 0, from = 0; from < 300; ++from) {
+                if (model.opacity[from] == -20) continue;
+                for (std::size_t k = 0; k < width; ++k, ++values)
+                    if (std::abs(a[i * width + k] - b[from * width + k]) < 1e-4f) ++alike;
+                ++i;
+            }
+        };
+        compare(rest.mean, all.mean, 3);
+        compare(rest.log_scale, all.log_scale, 3);
+        compare(rest.quaternion, all.quaternion, 4);
+        compare(rest.opacity, all.opacity, 1);
+        compare(rest.sh_constant, all.sh_constant, 3);
+        compare(rest.sh_rest, all.sh_rest, 9);
+        CHECK(alike > values * 98 / 100);
+    }
+}
+
 TEST_CASE("opacities are brought down, never up") {
     const gs::scene scene = small_scene();
     gaussians model = gs::from_points(scene.points, 0, 4, 1);

@@ -111,6 +111,7 @@ struct bucket_lists {
 /// The kernels on one device. Each function waits for its result.
 struct backend {
     std::string name;
+    unsigned lanes;  ///< of a warp
 
     std::string (*device_name)();
     answer (*ask)(const question&);

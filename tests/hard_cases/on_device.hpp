@@ -15,6 +15,7 @@ backend make_backend(const char* name) {
     using lists = lists_on<Device, Real>;
     using training = training_on<Device, Real>;
     return {name,
+            Device::warp::size,
             [] { return Device().name(); },
             pictures::ask,
             pictures::loss,

@@ -23,8 +23,9 @@ inline void choose_fast(CLI::App& train, const train::schedule& schedule) {
     choose("--scaling-lr", "1e-2");
     choose("--sh-lr", "5e-4");
     choose("--sh-degree-interval", "500");
-    choose("--num-downscales", "1");
-    choose("--resolution-schedule", std::to_string(std::max(1, schedule.iterations / 5)));
+    if (schedule.iterations > 1) choose("--num-downscales", "1");
+    choose("--resolution-schedule",
+           std::to_string(std::max(1, schedule.iterations / (4 + std::max(1, schedule.num_downscales)))));
 }
 
 }  // namespace gs::cli

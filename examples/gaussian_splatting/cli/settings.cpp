@@ -150,6 +150,9 @@ void add_schedule(CLI::App& app, train::schedule& s) {
     count("--opacity-reset-interval", s.opacity_reset_interval, 1, "Iterations between two resets");
     count("--densification-interval", s.densification_interval, 1, "Iterations between two densifications");
     count("--densify-from-iter", s.densify_from_iter, 0, "Densify after this iteration");
+    app.add_option("--densify-until-iter", s.densify_until_iter,
+                   "And before this one; by default half of the iterations, at most 15000")
+        ->check(whole_number(0, 10000000));
     app.add_option("--num-downscales", s.num_downscales, "How often photos are halved at first")
         ->check(whole_number(0, 8))
         ->capture_default_str();
@@ -160,9 +163,6 @@ void add_schedule(CLI::App& app, train::schedule& s) {
     app.add_option("--prune-share", s.prune_share,
                    "Of the Gaussians, those that matter least are dropped when densification has ended")
         ->check(positive_number(1));
-    app.add_option("--densify-until-iter", s.densify_until_iter,
-                   "And before this one; by default half of the iterations, at most 15000")
-        ->check(whole_number(0, 10000000));
 }
 
 CLI::App* add_train(CLI::App& app, settings& s) {

@@ -27,7 +27,7 @@ train::train_options options_of(const settings& s, const scene& scene,
     train::train_options o;
     o.schedule = s.schedule;
     o.densify_gradient = s.densify_grad_threshold;
-    o.max_cap = s.max_cap > 0 ? s.max_cap : train::default_cap(scene);
+    o.max_cap = s.max_cap > 0 ? s.max_cap : std::max(train::default_cap(scene), s.budget);
     o.budget = s.budget;
     o.revised_opacity = s.revised_opacity;
     o.seed = s.seed;
@@ -43,10 +43,11 @@ train::train_options options_of(const settings& s, const scene& scene,
 /// matters.
 gaussians first_model(const scene& scene, const train::train_options& o) {
     constexpr std::size_t most_random = 100000;
+    const std::size_t most = o.budget > 0 ? o.budget : o.max_cap;
     const auto points = scene.points.empty()
-                            ? random_points(scene, std::min(most_random, o.max_cap / 2 + 1), o.seed)
+                            ? random_points(scene, std::min(most_random, most / 2 + 1), o.seed)
                             : scene.points;
-    return from_points(points, o.schedule.sh_degree, o.max_cap, o.seed);
+    return from_points(points, o.schedule.sh_degree, most, o.seed);
 }
 
 std::filesystem::path ply_of(const std::filesystem::path& output, int iteration) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <warpagg/simt/serial.hpp>
 
 namespace gs::device {

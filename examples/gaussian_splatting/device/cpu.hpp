@@ -9,11 +9,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <memory>
-#include <numeric>
+#include <new>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 #include <warpagg/simt/lanes.hpp>
@@ -48,7 +50,7 @@ class basic_cpu {
       public:
         void resize(std::size_t n) {
             if (n > capacity_) {
-                memory_ = std::make_unique_for_overwrite<T[]>(n);
+                memory_.reset(static_cast<T*>(::operator new[](n * sizeof(T), line)));
                 capacity_ = n;
             }
             size_ = n;
@@ -57,7 +59,12 @@ class basic_cpu {
         std::size_t size() const { return size_; }
 
       private:
-        std::unique_ptr<T[]> memory_;
+        static_assert(std::is_trivially_copyable_v<T>);
+        static constexpr std::align_val_t line{64};  // no row of lanes lies in two lines of the cache
+        struct release {
+            void operator()(T* p) const { ::operator delete[](p, line); }
+        };
+        std::unique_ptr<T[], release> memory_;
         std::size_t size_ = 0, capacity_ = 0;
     };
 
@@ -148,16 +155,18 @@ class basic_cpu {
             for (std::size_t s = 0; s < slices; ++s) f(found_[s], places_.data() + s * buckets, s);
         };
         zero(places_.data(), slices * buckets);
-        for_each_slice([&](std::vector<instance>& found, std::uint64_t* counts, std::size_t s) {
+        for_each_slice([&](std::vector<instance>& kept, std::uint64_t* counts, std::size_t s) {
+            auto found = std::move(kept);  // whose end else shares a line of the cache with other threads'
             found.clear();
             for (std::size_t i = n * s / slices; i < n * (s + 1) / slices; ++i) {
                 const auto item = all(i);
                 for (std::uint32_t k = 0; k < item.size(); ++k)
                     if (const std::uint32_t bucket = item.bucket(k); bucket != no_bucket) {
                         ++counts[bucket];
-                        found.push_back({bucket, item.value});
+                        if (room > 0) found.push_back({bucket, item.value});
                     }
             }
+            kept = std::move(found);
         });
         for_each_index(buckets, [&](std::size_t b) {
             std::uint64_t total = 0;

@@ -7,7 +7,6 @@
 #include <thrust/iterator/transform_iterator.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cub/device/device_scan.cuh>
 #include <set>

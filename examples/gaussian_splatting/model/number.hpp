@@ -6,6 +6,7 @@
 #include <glm/exponential.hpp>
 #include <limits>
 #include <type_traits>
+#include <utility>
 #include <warpagg/simt/warp.hpp>
 
 namespace gs {

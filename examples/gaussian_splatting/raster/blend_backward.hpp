@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <type_traits>
 #include <warpagg/atomic.hpp>
 
 #include "list_reader.hpp"

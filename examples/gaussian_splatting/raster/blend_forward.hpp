@@ -53,7 +53,7 @@ struct blend_forward {
             mask_t<W> alive[rows];
             const std::uint32_t living =
                 rows_with<Cut>(w, [&](unsigned k) { return alive[k] = state[k][0] > real(0); });
-            if (!w.any(any_of(alive))) break;
+            if (Cut::sparse ? living == 0 : !w.any(any_of(alive))) break;
             if (base % Cut::segment == 0 && base > range.begin)
                 for (unsigned k = 0; k < rows; ++k)
                     checkpoint<W, Real, patch>(checkpoints, tile + base / Cut::segment, in_tile)

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+#include <type_traits>
+
 #include "../model/layout.hpp"
 #include "../model/parameters.hpp"
 #include "vectors.hpp"

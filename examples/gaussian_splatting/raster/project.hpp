@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "../model/spherical_harmonics.hpp"
@@ -13,7 +14,7 @@
 namespace gs::raster {
 
 /// The tiles that a splat's bounding box meets: [x0, x1) × [y0, y1).
-struct tile_box {
+struct alignas(4) tile_box {
     std::uint16_t x0, y0, x1, y1;
 
     WARPAGG_HD std::uint32_t size() const { return std::uint32_t(x1 - x0) * std::uint32_t(y1 - y0); }

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+
 #include "../model/spherical_harmonics.hpp"
 #include "gaussian_row.hpp"
 #include "geometry.hpp"

@@ -7,7 +7,6 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <type_traits>
 #include <warpagg/simt/math.hpp>
 
 #include "../model/layout.hpp"
@@ -57,10 +56,10 @@ struct unit {
     }
 };
 
-/// Three components of Gaussian i, from the k-th on, in an array of `width`: see `place`.
+/// The components of Gaussian i in an array of three: see `place`.
 template <class Real>
-WARPAGG_HD vec3<Real> load3(const Real* p, unsigned i, unsigned k = 0, unsigned width = 3) {
-    return {p[place(i, k, width)], p[place(i, k + 1, width)], p[place(i, k + 2, width)]};
+WARPAGG_HD vec3<Real> load3(const Real* p, unsigned i) {
+    return {p[place(i, 0, 3)], p[place(i, 1, 3)], p[place(i, 2, 3)]};
 }
 template <class Real>
 WARPAGG_HD void store3(Real* p, unsigned i, const vec3<Real>& v) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+
 #include "../raster/gaussian_row.hpp"
 #include "../raster/list_room.hpp"
 #include "watch.hpp"
@@ -13,9 +15,10 @@ using warpagg::value_t;
 using warpagg::math::select;
 
 /// One step of Adam (Kingma and Ba 2015, algorithm 1, with the corrections of bias folded into the rate) for
-/// what `project_backward` gives it. A gradient that is not finite, or whose square would not be, is left
-/// out, and so is a step that would not end in a finite value: value and moments stay as they were. Squared,
-/// such a gradient would hold its value still for ever.
+/// what `project_backward` gives it; their t counts all steps, those that a Gaussian took no part in, too. A
+/// gradient that is not finite, or whose square would not be, is left out, and so is a step that would not
+/// end in a finite value: value and moments stay as they were. Squared, such a gradient would hold its value
+/// still for ever.
 template <class Real>
 struct adam {
     parameter_arrays<Real> values, first, second;  ///< and the moments
