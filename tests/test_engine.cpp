@@ -32,6 +32,17 @@ double psnr_between(const std::vector<float>& a, const std::vector<float>& b) {
     return -10 * std::log10(square / static_cast<double>(a.size()) + 1e-20);
 }
 
+/// A step in each training view by rates of zero: gradients are noted and momentum is gained, nothing moves.
+void look_at_all(engine& e, const gs::scene& scene, const gaussians& model, int sh_degree = 0) {
+    e.set_views(scene.train, scene.test);
+    e.set_model(model);
+    e.reserve();
+    auto still = plan_for(0);
+    still.sh_degree = sh_degree;
+    still.rates = {};
+    for (still.view = 0; still.view < scene.train.size(); ++still.view) e.step(still);
+}
+
 }  // namespace
 
 TEST_CASE("a model comes back from the device as it went, at every degree") {
@@ -320,12 +331,7 @@ TEST_CASE("a copy and its original together are as opaque as it was alone") {
     model.opacity[0] = 200;
     for (const auto make : engines()) {
         const auto e = make();
-        e->set_views(scene.train, scene.test);
-        e->set_model(model);
-        e->reserve();
-        auto still = plan_for(0);
-        still.rates = {};
-        for (still.view = 0; still.view < scene.train.size(); ++still.view) e->step(still);
+        look_at_all(*e, scene, model);
         densify_rule rule;
         rule.gradient = 1e-12f;
         rule.least_opacity = 0;
@@ -425,12 +431,7 @@ TEST_CASE("pruning drops the share that the views made least of, and keeps the o
     for (std::size_t i = 0; i < 300; i += 4) model.opacity[i] = -20;  // in no picture
     for (const auto make : engines()) {
         const auto e = make();
-        e->set_views(scene.train, scene.test);
-        e->set_model(model);
-        e->reserve();
-        auto still = plan_for(0);
-        still.rates = {};
-        for (still.view = 0; still.view < scene.train.size(); ++still.view) e->step(still);
+        look_at_all(*e, scene, model);
         e->prune(0.001);  // less than one
         CHECK(e->count() == 300);
         e->prune(0.2);
@@ -459,12 +460,7 @@ TEST_CASE("pruning takes those that are pulled less before those that are pulled
     };
     for (const auto make : engines()) {
         const auto e = make();
-        e->set_views(scene.train, scene.test);
-        e->set_model(model);
-        e->reserve();
-        auto still = plan_for(0);
-        still.rates = {};
-        for (still.view = 0; still.view < scene.train.size(); ++still.view) e->step(still);
+        look_at_all(*e, scene, model);
         e->prune(0.4);
         const gaussians rest = e->get_model();
         REQUIRE(rest.count() == 180);
@@ -479,16 +475,11 @@ TEST_CASE("momentum goes along with those that pruning keeps") {
     for (std::size_t i = 0; i < 240; i += 4) model.opacity[i] = -20;  // in no picture: to be dropped
     for (const auto make : engines()) {
         const auto e = make();
-        e->set_views(scene.train, scene.test);
         const auto trained = [&](bool prunes) {
-            e->set_model(model);
-            e->reserve();
+            look_at_all(*e, scene, model, 1);
+            if (prunes) e->prune(0.2);
             auto plan = plan_for(0);
             plan.sh_degree = 1;
-            plan.rates = {};
-            for (plan.view = 0; plan.view < scene.train.size(); ++plan.view) e->step(plan);
-            if (prunes) e->prune(0.2);
-            plan.view = 0;
             plan.rates.fill(0.01f);
             e->step(plan);
             return e->get_model();
