@@ -740,6 +740,8 @@ TEST_CASE("--quality fast sets what pays, and nothing that was said") {
     check_success(small_training(folder / "full") + words{"-q", "--quality", "full"});
     check_success(small_training(folder / "default") + words{"-q"});
     CHECK(read_json(folder / "full/settings.json") == read_json(folder / "default/settings.json"));
+    CHECK(settings_of("one", {"-i", "1"}).at("num_downscales") == 0);
+    CHECK(settings_of("small", {"-i", "20", "--num-downscales", "3"}).at("resolution_schedule") == 2);
     check_refusal_without_trace(fast + words{"--save-iterations", "5001"}, {"5001", "1 to 5000"});
 }
 

@@ -12,7 +12,7 @@
 
 #include "../error.hpp"
 #include "../raster/gradient_policy.hpp"
-#include "quality.hpp"
+#include "choose_fast.hpp"
 
 namespace gs::cli {
 
