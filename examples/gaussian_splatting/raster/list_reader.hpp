@@ -98,7 +98,7 @@ class list_reader {
     }
     WARPAGG_HD void fetch(const W& w, unsigned base, unsigned next) {
         gaussian_ = waiting_;
-        w.load_packed(reinterpret_cast<const Real*>(lists_.splats), gaussian_ * 12u, field_,
+        w.load_packed(reinterpret_cast<const Real*>(lists_.splats), gaussian_ * splat_width, field_,
                       is_valid(w, base));
         waiting_ = load_gaussians(w, next);
     }
@@ -108,7 +108,7 @@ class list_reader {
     const Patch& patch_;
     unsigned begin_, from_, to_;
     splat_stage<W, Real>& stage_;
-    real field_[12];            // of the splats that were fetched
+    real field_[splat_width];   // of the splats that were fetched
     index gaussian_, waiting_;  // theirs, and those of the next places
 };
 

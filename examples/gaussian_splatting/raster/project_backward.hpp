@@ -144,11 +144,10 @@ struct project_backward {
     WARPAGG_HD vec3<real> colour(const W& w, const gaussian_row<W>& row, const value_t<W, unsigned>& i,
                                  const vec3<real>& mean, const real* s) const {
         // A channel that the forward pass held at a bound takes no gradient.
-        constexpr unsigned stride = sizeof(splat<Real>) / sizeof(Real),
-                           red = offsetof(splat<Real>, red) / sizeof(Real);
+        constexpr unsigned red = offsetof(splat<Real>, red) / sizeof(Real);
         const auto free = [&](unsigned channel) {
             const real shown =
-                w.load(reinterpret_cast<const Real*>(splats), i * stride + red + channel, row.active);
+                w.load(reinterpret_cast<const Real*>(splats), i * splat_width + red + channel, row.active);
             return select(shown > real(0) && shown < constant<real>(most_colour), s[sum_red + channel],
                           real(0));
         };
