@@ -120,9 +120,11 @@ struct backend {
     blend_answer (*blend)(const blend_question&);
     compare_answer (*compare)(const compare_question&);
     /// Values after each step of Adam from 0: `gradients[step][value]`. `takes_part`, alike, is none for all.
+    /// The first step's number is `steps_before` + 1.
     std::vector<std::vector<double>> (*descend)(const std::vector<std::vector<double>>& gradients,
                                                 double rate,
-                                                const std::vector<std::vector<std::uint32_t>>& takes_part);
+                                                const std::vector<std::vector<std::uint32_t>>& takes_part,
+                                                std::uint32_t steps_before);
     judgement (*judge)(const std::vector<sighting>&, const std::vector<double>& opacities,
                        const gs::train::densify_rule&);
     std::vector<std::uint64_t> (*prefix_sum)(const std::vector<std::uint32_t>&);

@@ -29,7 +29,7 @@ struct descend_row {
         const gs::raster::gaussian_row<W> row{first, inside, inside && part != value_t<W, unsigned>(0)};
         const auto opacity = row.template load<1>(w, step.values.opacity, 0, 1);
         const auto gradient = row.template load<1>(w, gradients, 0, 1);
-        step(w, row, gs::parameter::opacity, 0, 1, opacity, gradient);
+        step.for_row(w, row)(gs::parameter::opacity, 0, 1, opacity, gradient);
     }
 };
 
@@ -57,9 +57,10 @@ class training_on {
         return a;
     }
 
-    static std::vector<std::vector<double>> descend(
-        const std::vector<std::vector<double>>& gradients, double rate,
-        const std::vector<std::vector<std::uint32_t>>& takes_part) {
+    static std::vector<std::vector<double>> descend(const std::vector<std::vector<double>>& gradients,
+                                                    double rate,
+                                                    const std::vector<std::vector<std::uint32_t>>& takes_part,
+                                                    std::uint32_t steps_before) {
         using adam = gs::train::adam<float>;
         Device device;
         memory_on<Device, float> on(device);
@@ -67,7 +68,8 @@ class training_on {
         const std::size_t n = gradients.front().size(), places = gs::in_whole_blocks(n);
         buffer<float> values, first, second, gradient;
         for (auto* b : {&values, &first, &second}) on.put(*b, std::vector<double>(places, 0.0));
-        buffer<std::uint32_t> part;
+        buffer<std::uint32_t> part, last_step;
+        on.put_as_they_are(last_step, std::vector<std::uint32_t>(places, 0));
         buffer<gs::train::watch::memory> found;
         on.put_as_they_are(found, std::vector{gs::train::watch::clean()});
         std::vector<std::vector<double>> path;
@@ -77,8 +79,10 @@ class training_on {
             auto who = takes_part.empty() ? std::vector<std::uint32_t>(n, 1) : takes_part[path.size()];
             who.resize(places);
             on.put_as_they_are(part, who);
-            const auto t = static_cast<double>(path.size() + 1);
             adam step{};
+            step.last_step = last_step.data();
+            step.step = steps_before + static_cast<std::uint32_t>(path.size()) + 1;
+            const auto t = static_cast<double>(step.step);
             step.watch.found = found.data();
             step.values.opacity = values.data();
             step.first.opacity = first.data();

@@ -34,20 +34,30 @@ struct store_gradients {
     static constexpr bool takes_zeros = true;
     WARPAGG_HD bool idle() const { return false; }
 
-    template <class W, int N, class V>
-    WARPAGG_HD void operator()(const W& w, const gaussian_row<W>& row, parameter p, std::size_t k,
-                               std::size_t width, const glm::vec<N, V>&,
-                               const glm::vec<N, V>& gradient) const {
-        for (int n = 0; n < N; ++n)
-            w.store_row(to[p], row.at(k, n, width), select(row.active, gradient[n], V(0)), row.inside);
+    template <class W>
+    struct row_sink {
+        const store_gradients& of;
+        const W& w;
+        const gaussian_row<W>& row;
+
+        template <int N, class V>
+        WARPAGG_HD void operator()(parameter p, std::size_t k, std::size_t width, const glm::vec<N, V>&,
+                                   const glm::vec<N, V>& gradient) const {
+            for (int n = 0; n < N; ++n)
+                w.store_row(of.to[p], row.at(k, n, width), select(row.active, gradient[n], V(0)), row.inside);
+        }
+    };
+    template <class W>
+    WARPAGG_HD row_sink<W> for_row(const W& w, const gaussian_row<W>& row) const {
+        return {*this, w, row};
     }
 };
 
 /// From the sums over pixels to the gradients of the parameters, a Gaussian a lane. A Gaussian takes part in
-/// the step if any of its sums is not zero: else all its gradients are. Of those that take part, `Sink` is
-/// given each parameter's value and gradient, three components or so at a time, and may change the value at
-/// once: it has been read by all that needs it. `Sink::takes_zeros` says whether it wants the others' as
-/// well.
+/// the step if any of its sums is not zero: else all its gradients are. Of those that take part, What
+/// `Sink::for_row` returns is given each parameter's value and gradient, three components or so at a time,
+/// and may change the value at once: it has been read by all that needs it. `Sink::takes_zeros` says whether
+/// it wants the others' as well.
 template <class W, class Real, class Sink>
 struct project_backward {
     using real = value_t<W, Real>;
@@ -89,6 +99,7 @@ struct project_backward {
         const auto quaternion = row.template load<4>(w, gaussians.quaternion, 0, 4);
         const auto opacity = row.template load<1>(w, gaussians.opacity, 0, 1);
         const footprint<real> f = see(in_camera(mean, camera), log_scale, quaternion, camera);
+        const auto put = sink.for_row(w, row);
         // L depends on the exponent through alpha = o exp(-ln2 (u^2 + v^2)), and s = dL/dalpha alpha. With M
         // the rows (p, 0), (r, q), the inverse covariance is 2 ln2 M^T M and (u, v) = M d.
         const real two_ln2 = constant<real>(1.3862943611198906);
@@ -105,10 +116,10 @@ struct project_backward {
 
         const vec3<real> by_position =
             position(f, centre, f.rotation * (dax * f.scale), f.rotation * (day * f.scale));
-        sink(w, row, parameter::log_scale, 0, 3, log_scale, nx * wx + ny * wy);
-        sink(w, row, parameter::quaternion, 0, 4, quaternion, turn(f, dax * f.scale, day * f.scale));
-        sink(w, row, parameter::opacity, 0, 1, opacity, glm::vec<1, real>(s[sum_s] * sigmoid(-opacity.x)));
-        sink(w, row, parameter::mean, 0, 3, mean, by_position + colour(w, row, i, mean, s));
+        put(parameter::log_scale, 0, 3, log_scale, nx * wx + ny * wy);
+        put(parameter::quaternion, 0, 4, quaternion, turn(f, dax * f.scale, day * f.scale));
+        put(parameter::opacity, 0, 1, opacity, glm::vec<1, real>(s[sum_s] * sigmoid(-opacity.x)));
+        put(parameter::mean, 0, 3, mean, by_position + colour(w, row, put, i, mean, s));
         return centre;
     }
 
@@ -141,8 +152,9 @@ struct project_backward {
     }
 
     /// ... and the direction that the colour is seen from: returns the gradient through that.
-    WARPAGG_HD vec3<real> colour(const W& w, const gaussian_row<W>& row, const value_t<W, unsigned>& i,
-                                 const vec3<real>& mean, const real* s) const {
+    template <class Put>
+    WARPAGG_HD vec3<real> colour(const W& w, const gaussian_row<W>& row, const Put& put,
+                                 const value_t<W, unsigned>& i, const vec3<real>& mean, const real* s) const {
         // A channel that the forward pass held at a bound takes no gradient.
         constexpr unsigned red = offsetof(splat<Real>, red) / sizeof(Real);
         const auto free = [&](unsigned channel) {
@@ -167,8 +179,7 @@ struct project_backward {
                                   width = static_cast<std::size_t>(3 * size);
                 const auto value = row.template load<3>(w, gaussians.sh[band], component, width);
                 weight[k] = glm::dot(g, value);
-                if (band <= learned_sh_degree)
-                    sink(w, row, sh_band(band), component, width, value, basis[k] * g);
+                if (band <= learned_sh_degree) put(sh_band(band), component, width, value, basis[k] * g);
             }
         }
         const vec3<real> d = sh_gradient(sh_degree, direction, weight);

@@ -16,6 +16,7 @@ namespace gs::train {
 template <class Device>
 struct trained_parameters {
     parameter_memory<Device> values, first, second;
+    typename Device::template buffer<std::uint32_t> last_step;
 };
 
 /// From one generation of Gaussians to the next, on a device, and the memory that it takes.
@@ -79,6 +80,11 @@ class densification {
         device_.download(&tally, tally_.data(), 1);
         for (std::size_t p = 0; p < parameter_count; ++p)
             if (has_parameter(p, sh_degree)) carry(of, p, tally.count);
+        spare_steps_.resize(tally.count);
+        device_.for_each_index(tally.count,
+                               carry_steps{origin_.data(), of.last_step.data(), spare_steps_.data()});
+        of.last_step.resize(tally.count);
+        device_.copy(of.last_step.data(), spare_steps_.data(), tally.count);
         return tally;
     }
 
@@ -104,6 +110,7 @@ class densification {
     buffer<std::uint64_t> first_copy_;
     buffer<densify_tally> tally_;
     std::array<buffer<float>, 3> spare_;  ///< for values and moments of one parameter
+    buffer<std::uint32_t> spare_steps_;
 };
 
 }  // namespace gs::train

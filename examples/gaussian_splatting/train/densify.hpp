@@ -126,6 +126,15 @@ struct carry_over {
     }
 };
 
+/// The step that each new Gaussian took part in last is its origin's: one index a new Gaussian.
+struct carry_steps {
+    const std::uint32_t* origin;
+    const std::uint32_t* from;
+    std::uint32_t* to;
+
+    WARPAGG_HD void operator()(std::size_t i) const { to[i] = from[origin[i]]; }
+};
+
 /// Both halves of a split draw a place from their parent's distribution and are 1.6 times smaller: one index
 /// a new Gaussian.
 struct part_halves {

@@ -108,6 +108,8 @@ class device_engine final : public engine {
             moments->resize(model.count(), sh_degree_);
             moments->zero(device_);
         }
+        trained_.last_step.resize(model.count());
+        device_.zero(trained_.last_step.data(), model.count());
         begin_generation(model.count());
         std::ranges::fill(lengths_of_, 0);
         device_.wait();
@@ -259,6 +261,8 @@ class device_engine final : public engine {
         adam<float> step{trained_.values.write(),
                          trained_.first.write(),
                          trained_.second.write(),
+                         trained_.last_step.data(),
+                         steps_,
                          {},
                          static_cast<float>(by_second),
                          renderer_.room(),
@@ -306,7 +310,7 @@ class device_engine final : public engine {
 
     int sh_degree_ = 0;
     std::size_t count_ = 0;
-    int steps_ = 0;
+    std::uint32_t steps_ = 0;
     std::uint64_t drawn_pairs_ = 0;
     trained_parameters<Device> trained_;
     densification<Device> densification_;

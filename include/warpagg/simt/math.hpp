@@ -53,6 +53,22 @@ requires std::is_arithmetic_v<T> WARPAGG_HD T min(T a, T b) { return b < a ? b :
 template <class T>
 requires std::is_arithmetic_v<T> WARPAGG_HD T max(T a, T b) { return a < b ? b : a; }
 /// @}
+/// The lesser of a and an upper bound, the greater of a and a lower bound; the bound if a is NaN. On CUDA one
+/// instruction of floats, where `min` and `max` are two. Precondition: the bound is not NaN.
+/// @{
+template <class V>
+WARPAGG_HD V at_most(const V& a, const V& bound) {
+    return min(bound, a);
+}
+template <class V>
+WARPAGG_HD V at_least(const V& a, const V& bound) {
+    return max(bound, a);
+}
+#if defined(__CUDA_ARCH__)
+WARPAGG_HD float at_most(float a, float bound) { return ::fminf(a, bound); }
+WARPAGG_HD float at_least(float a, float bound) { return ::fmaxf(a, bound); }
+#endif
+/// @}
 
 /// 2^a. On CUDA the float version is the hardware's approximation: 2 ulp, denormal results flushed to zero.
 WARPAGG_HD float exp2(float a) {
