@@ -289,7 +289,8 @@ TEST_CASE_TEMPLATE("sqrt is rounded correctly", T, float, double) {
         CHECK(same_bits(sqrt(vector_of(a)), each([&](std::size_t i) { return std::sqrt(a[i]); })));
     });
     CHECK(std::isnan(sqrt(vector<T>(T(-1)))[7]));
-    CHECK(approximate_sqrt(vector<T>(T(2)))[3] == std::sqrt(T(2)));  // on lanes no other
+    CHECK(inverse_sqrt(vector<T>(T(2)))[3] == 1 / std::sqrt(T(2)));
+    CHECK(warpagg::math::inverse_sqrt(T(2)) == 1 / std::sqrt(T(2)));
 }
 
 TEST_CASE("convert") {

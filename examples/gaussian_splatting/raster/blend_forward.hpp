@@ -61,7 +61,7 @@ struct blend_forward {
             const unsigned staged = reader.stage(w, base, base + W::size, base + 2 * W::size);
             walked += staged;
             for (unsigned i = 0; i < staged; ++i) {
-                const staged_splat<Real> s = stage.splats[i];
+                const staged_splat<Real>& s = stage.splats[i];
                 const value_t<W, unsigned> rank(stage.ranks[i]);
                 const column_view<W, Real> seen(s, p.x);
                 real strength[rows];

@@ -95,7 +95,7 @@ struct capped_alpha {
     WARPAGG_HD explicit capped_alpha(const value_t<W, Real>& strength) {
         const value_t<W, Real> most{Real(most_alpha)}, full = warpagg::math::exp2(strength);
         free = full < most;
-        alpha = warpagg::math::at_most(full, most);
+        alpha = warpagg::math::min(full, most);
     }
 };
 

@@ -287,8 +287,8 @@ WARPAGG_HD lanes<T, L> abs(const lanes<T, L>& a) {
     return max(a, -a);
 }
 template <class T, int L>
-WARPAGG_HD lanes<T, L> approximate_sqrt(const lanes<T, L>& a) {
-    return sqrt(a);
+WARPAGG_HD lanes<T, L> inverse_sqrt(const lanes<T, L>& a) {
+    return lanes<T, L>(T(1)) / sqrt(a);
 }
 template <class T, int L>
 WARPAGG_HD lanes<T, L> divide(const lanes<T, L>& a, const lanes<T, L>& b) {
@@ -419,12 +419,12 @@ WARPAGG_HD T uniform(const lanes<T, L>& a) {
 /// arguments.
 namespace math {
 using warpagg::abs;
-using warpagg::approximate_sqrt;
 using warpagg::convert;
 using warpagg::countr_zero;
 using warpagg::divide;
 using warpagg::exp2;
 using warpagg::fma;
+using warpagg::inverse_sqrt;
 using warpagg::log2;
 using warpagg::max;
 using warpagg::min;
