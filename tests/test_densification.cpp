@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <set>
 
 #include "engines.hpp"
 #include "model/initialise.hpp"
+#include "model/opacity.hpp"
+#include "raster/geometry.hpp"
 
 namespace {
 
@@ -304,5 +307,38 @@ TEST_CASE("opacities are brought down, never up") {
         e->reset_opacity(0.01f);
         const float most = std::log(0.01f / 0.99f);
         CHECK(e->get_model().opacity == std::vector<float>{-9, -4.6f, most, most});
+    }
+}
+
+TEST_CASE("what is nearer to a training camera than the near plane is hidden, and nothing else") {
+    const gs::scene scene = small_scene();
+    const float near = static_cast<float>(gs::raster::near_plane), hidden = gs::logit(0);
+    // Around each camera, of those to learn from and of those that are held out.
+    std::vector<gs::coloured_point> points;
+    for (const auto* views : {&scene.train, &scene.test})
+        for (const gs::view& v : *views)
+            for (const double distance : {0.0, 0.5, 0.99, 1.01, 3.0})
+                points.push_back(
+                    {v.camera.centre() + distance * double{near} * glm::dvec3(0, 0.6, -0.8), {}});
+    gaussians model = gs::from_points(points, 0, points.size(), 1);
+    for (std::size_t i = 0; i < model.count(); i += 7) model.opacity[i] = hidden - 1;  // no higher
+    std::size_t near_ones = 0;
+    std::vector<float> expected = model.opacity;
+    for (std::size_t i = 0; i < model.count(); ++i) {
+        double least = 1e30;
+        for (const gs::view& v : scene.train)
+            least = std::min(least, glm::distance(v.camera.centre(), points[i].position));
+        if (least >= double{near}) continue;
+        ++near_ones;
+        expected[i] = std::min(expected[i], hidden);
+    }
+    REQUIRE(near_ones == 3 * scene.train.size());
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(model);
+        e->clear_cameras();
+        CHECK(e->get_model().opacity == expected);
+        CHECK(e->get_model().mean == model.mean);
     }
 }

@@ -51,6 +51,8 @@ class recorder final : public gs::train::engine {
         pruned_after.push_back(steps.size());
     }
     void reset_opacity(float) override {}
+    std::vector<std::size_t> cleared_after;  ///< so many steps
+    void clear_cameras() override { cleared_after.push_back(steps.size()); }
     void reserve() override { sizes_reserved.push_back(downscales_); }
     gs::train::quality take_training_quality() override { return {}; }
     std::uint64_t skipped_steps() override { return 0; }
@@ -96,6 +98,9 @@ TEST_CASE("by default every step learns all from whole photos, and growth is fre
         CHECK(downscales == 0);
         CHECK(plan.updates_sh);
     }
+    std::vector<std::size_t> every_second(10);
+    for (std::size_t i = 0; i < 10; ++i) every_second[i] = 2 * i + 2;
+    CHECK(made.cleared_after == every_second);  // after densification has ended, too
     for (const densify_rule& rule : made.rules) {
         CHECK(rule.cap == 100);
         CHECK(rule.most_births == densify_rule{}.most_births);

@@ -7,6 +7,7 @@
 #include "checks.hpp"
 #include "healthy.hpp"
 #include "questions.hpp"
+#include "raster/geometry.hpp"
 #include "table.hpp"
 
 using namespace hard_cases;
@@ -76,7 +77,7 @@ TEST_CASE("case 16: opacities at the least that is drawn") {
 }
 
 TEST_CASE("case 17: depths of zero and of either sign, and at the near plane") {
-    constexpr float near = 0.2f;
+    constexpr auto near = static_cast<float>(gs::raster::near_plane);
     const auto at_depth = [](question& q, double z, double opacity, double red) {
         gaussian g;
         g.mean = {0, 0, z};

@@ -10,7 +10,7 @@
 namespace gs::raster {
 
 /// Gaussians nearer than this are not drawn.
-inline constexpr double near_plane = 0.2;
+inline constexpr double near_plane = 0.15;
 
 /// Colours are held between 0 and this, so that their squares stay finite; photos end at 1.
 inline constexpr double most_colour = 32768;

@@ -96,6 +96,10 @@ class device_engine final : public engine {
         put(train, train_[0]);
         for (std::size_t level = 0; level < levels; ++level) put(shrunk[level], train_[1 + level]);
         put(test, test_);
+        std::vector<glm::vec3> centres;
+        for (const view& v : train) centres.emplace_back(v.camera.centre());
+        cameras_.resize(centres.size());
+        device_.upload(cameras_.data(), centres.data(), centres.size());
         lengths_.resize(train.size());
         set_downscales(0);
         device_.wait();
@@ -152,6 +156,12 @@ class device_engine final : public engine {
         device_.for_each_index(count_,
                                lower_opacity{trained_.values.write().opacity, trained_.first.write().opacity,
                                              trained_.second.write().opacity, logit(most)});
+    }
+
+    void clear_cameras() override {
+        device_.for_each_index(
+            count_, hide_near_cameras{cameras_.data(), cameras_.size(), trained_.values.read().mean,
+                                      trained_.values.write().opacity, logit(0)});
     }
 
     void reserve() override {
@@ -303,6 +313,7 @@ class device_engine final : public engine {
     buffer<std::uint8_t> photos_;
     std::vector<std::vector<photo>> train_;  ///< by how often they were shrunk
     std::vector<photo> test_;
+    buffer<glm::vec3> cameras_;  ///< where those to learn from were taken
     std::size_t downscales_ = 0;
 
     buffer<std::uint64_t> lengths_;        // of each training view's lists when it was last seen,

@@ -59,6 +59,9 @@ class engine {
     /// the last `densify` together.
     virtual void prune(double share) = 0;
     virtual void reset_opacity(float most) = 0;
+    /// Hides Gaussians nearer to a training camera than the near plane, by an opacity of zero. That camera
+    /// does not draw them, so its photo cannot speak against them, and other views' pictures suffer.
+    virtual void clear_cameras() = 0;
     /// Makes room for the longest lists of the training views, and for what they may grow to: by how long
     /// each was when a `step` last saw it, and how many Gaussians there are now. To be called after
     /// `set_model` and `densify`, and now and then.
