@@ -249,17 +249,17 @@ TEST_CASE_TEMPLATE("min and max", T, float, double, std::int32_t, std::uint32_t)
 }
 
 TEST_CASE_TEMPLATE("a bound that is no NaN bounds a NaN", T, float, double) {
-    using warpagg::math::at_least;
-    using warpagg::math::at_most;
+    using warpagg::math::not_above;
+    using warpagg::math::not_below;
     for_random_pairs<T>([](const scalars<T>& a, scalars<T> bound) {
         for (T& b : bound)
             if (std::isnan(b)) b = T(1);
         const auto most = each([&](std::size_t i) { return a[i] < bound[i] ? a[i] : bound[i]; });
         const auto least = each([&](std::size_t i) { return a[i] > bound[i] ? a[i] : bound[i]; });
-        CHECK(same_bits(at_most(vector_of(a), vector_of(bound)), most));
-        CHECK(same_bits(at_least(vector_of(a), vector_of(bound)), least));
-        CHECK(same_bits(vector_of(most), each([&](std::size_t i) { return at_most(a[i], bound[i]); })));
-        CHECK(same_bits(vector_of(least), each([&](std::size_t i) { return at_least(a[i], bound[i]); })));
+        CHECK(same_bits(not_above(vector_of(a), vector_of(bound)), most));
+        CHECK(same_bits(not_below(vector_of(a), vector_of(bound)), least));
+        CHECK(same_bits(vector_of(most), each([&](std::size_t i) { return not_above(a[i], bound[i]); })));
+        CHECK(same_bits(vector_of(least), each([&](std::size_t i) { return not_below(a[i], bound[i]); })));
     });
 }
 

@@ -32,8 +32,8 @@ struct evaluate {
             results[power * count + i] = math::exp2(b[i]);
             results[inverse_root * count + i] = math::inverse_sqrt(a[i]);
             results[quotient * count + i] = math::divide(a[i], b[i]);
-            results[capped * count + i] = math::at_most(a[i], b[i]);
-            results[raised * count + i] = math::at_least(a[i], b[i]);
+            results[capped * count + i] = math::not_above(a[i], b[i]);
+            results[raised * count + i] = math::not_below(a[i], b[i]);
         }
     }
 };

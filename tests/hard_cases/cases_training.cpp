@@ -181,16 +181,20 @@ TEST_CASE("Adam moves those that take part as a dense one does all, and touches 
     // of its return; later all are 1.
     for (const std::uint32_t before : {0u, 30000u}) {
         CAPTURE(before);
-        // The paper's algorithm 1, with gradients of zero for those that take no part.
+        // The paper's algorithm 1, with gradients of zero for those that take no part, once they do again.
         std::vector<std::vector<double>> expected(steps, std::vector<double>(count));
         for (std::size_t i = 0; i < count; ++i) {
             double m = 0, v = 0, x = 0;
-            for (std::size_t s = 0; s < steps; ++s) {
-                const double g = takes_part[s][i] != 0 ? gradients[s][i] : 0;
+            for (std::size_t s = 0, next = 0; s < steps; ++s) {
+                if (takes_part[s][i] == 0) continue;
                 const auto t = static_cast<double>(before + s + 1);
-                m = 0.9 * m + 0.1 * g;
-                v = 0.999 * v + 0.001 * g * g;
-                x -= rate * (m / (1 - std::pow(0.9, t))) / (std::sqrt(v / (1 - std::pow(0.999, t))) + 1e-15);
+                for (; next <= s; ++next) {
+                    const double g = next == s ? gradients[s][i] : 0;
+                    m = 0.9 * m + 0.1 * g;
+                    v = 0.999 * v + 0.001 * g * g;
+                    x -= rate * (m / (1 - std::pow(0.9, t))) /
+                         (std::sqrt(v / (1 - std::pow(0.999, t))) + 1e-15);
+                }
                 expected[s][i] = x;
             }
         }
@@ -206,7 +210,7 @@ TEST_CASE("Adam moves those that take part as a dense one does all, and touches 
                     CAPTURE(i);
                     if (takes_part[s][i] == 0)
                         CHECK(path[s][i] == (s > 0 ? path[s - 1][i] : 0));
-                    else if (before > 0 || i % 3 == 0)
+                    else
                         CHECK(std::abs(path[s][i] - expected[s][i]) <=
                               1e-5 * rate * static_cast<double>(s + 1));
                 }

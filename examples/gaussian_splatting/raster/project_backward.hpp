@@ -54,8 +54,8 @@ struct store_gradients {
 };
 
 /// From the sums over pixels to the gradients of the parameters, a Gaussian a lane. A Gaussian takes part in
-/// the step if any of its sums is not zero: else all its gradients are. Of those that take part, What
-/// `Sink::for_row` returns is given each parameter's value and gradient, three components or so at a time,
+/// the step if any of its sums is not zero: else all its gradients are. What `Sink::for_row` returns is given
+/// the value and the gradient of each parameter of those that take part, three components or so at a time,
 /// and may change the value at once: it has been read by all that needs it. `Sink::takes_zeros` says whether
 /// it wants the others' as well.
 template <class W, class Real, class Sink>

@@ -46,14 +46,15 @@ struct whitened {
 template <class V>
 WARPAGG_HD V least_exponent(const V& p, const V& q, const V& r, const V& slope_x, const V& slope_y,
                             const V& x0, const V& x1, const V& y0, const V& y1) {
-    using warpagg::math::at_least;
-    using warpagg::math::at_most;
+    using warpagg::math::not_above;
+    using warpagg::math::not_below;
     const V zero(0);
-    const V x = at_most(at_least(zero, x0), x1);  // the side's abscissa, or zero inside
-    const V y = at_most(at_least(zero, y0), y1);
-    const V y_on = at_most(at_least(slope_y * x, y0), y1);
-    const V x_on = at_most(at_least(slope_x * y, x0), x1);
-    return at_most(whitened<V>(p, q, r, x, y_on).exponent(), whitened<V>(p, q, r, x_on, y).exponent());
+    const V x = not_above(not_below(zero, x0), x1);  // the side's abscissa, or zero inside
+    const V y = not_above(not_below(zero, y0), y1);
+    const V y_on = not_above(not_below(slope_y * x, y0), y1);
+    const V x_on = not_above(not_below(slope_x * y, x0), x1);
+    return warpagg::math::min(whitened<V>(p, q, r, x, y_on).exponent(),
+                              whitened<V>(p, q, r, x_on, y).exponent());
 }
 
 }  // namespace gs::raster

@@ -23,8 +23,9 @@ struct frame {
     glm::dvec3 out_of(const glm::dvec3& internal) const { return origin + scale * internal; }
 };
 
-/// The scene's extent in its internal frame: the near plane of the kernels, 0.15, is 3.75 % of it. Nearer and
-/// farther ones cost held-out views of sparsely photographed scenes some tenths of a dB.
+/// The scene's extent in its internal frame: the near plane of the kernels, 0.15, is 3.75 % of it. One
+/// farther off costs held-out views of sparsely photographed scenes some tenths of a dB; a nearer one,
+/// others.
 inline constexpr double internal_extent = 4;
 
 /// Where the training cameras are: their mean is the origin, their extent `internal_extent`. The scale is

@@ -21,7 +21,8 @@ using warpagg::math::select;
 /// geometric series: that is made up for first. The rate and the corrections are those of now, which for
 /// steps of long ago is not quite what they were. A gradient that is not finite, or whose square would not
 /// be, is left out, and so is a step that would not end in a finite value: value and moments stay as they
-/// were. Squared, such a gradient would hold its value still for ever.
+/// were, and what was missed is forgotten, as it is for bands of colour that this step does not update.
+/// Squared, such a gradient would hold its value still for ever.
 template <class Real>
 struct adam {
     parameter_arrays<Real> values, first, second;  ///< and the moments
@@ -46,7 +47,7 @@ struct adam {
         const W& w;
         const raster::gaussian_row<W>& row;
         real first_left, second_left;  ///< of the moments, after the steps missed: beta1^k, beta2^k
-        real drift;                    ///< how often rate m / sqrt(v) the value moved meanwhile
+        real drift;                    ///< the value moved by so many times rate m / sqrt(v) meanwhile
 
         template <int N>
         WARPAGG_HD void operator()(parameter p, std::size_t k, std::size_t width,
@@ -92,16 +93,17 @@ struct adam {
         const number last = w.load_row(last_step, at, row.active);
         w.store_row(last_step, at, number(step), row.active);
         const real missed = warpagg::math::convert<Real>(number(step - 1) - last);
-        // log2 of beta1, of beta2, and of r = beta1 / sqrt(beta2). By r + r^2 + ... + r^k the value moved.
+        // By r + r^2 + ... + r^k the value moved, with r = beta1 / sqrt(beta2): r / (1 - r) (1 - r^k). The
+        // first factors are log2 of beta1, beta2 and r.
         const real first_left = warpagg::math::exp2(constant<real>(-0.15200309344504995) * missed);
         const real second_left = warpagg::math::exp2(constant<real>(-0.0014434168696687186) * missed);
-        const real r = warpagg::math::exp2(constant<real>(-0.15128138501021560) * missed);
-        return {*this, w, row, first_left, second_left, constant<real>(9.0452374997021932) * (1 - r)};
+        const real r_left = warpagg::math::exp2(constant<real>(-0.15128138501021560) * missed);
+        return {*this, w, row, first_left, second_left, constant<real>(9.0452374997021932) * (1 - r_left)};
     }
 
   private:
-    /// m over the root of v, corrected. Epsilon is below the root: more than it, and at most 1.4 times as
-    /// much.
+    /// m / sqrt(v + epsilon^2), v corrected: at least the paper's m / (sqrt(v) + epsilon) in size, and at
+    /// most sqrt(2) times that.
     template <class V>
     WARPAGG_HD V relative(const V& m, const V& v) const {
         const V variance = warpagg::math::fma(v, V(correction * correction), constant<V>(epsilon * epsilon));

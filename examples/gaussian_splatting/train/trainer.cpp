@@ -162,9 +162,9 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
             result.densify_seconds += seconds_since(from);
         }
         if (schedule.resets_opacity(iteration)) engine.reset_opacity(schedule::reset_opacity);
+
         const bool last = iteration == schedule.iterations;
         if (iteration % schedule.densification_interval == 0 || last) engine.clear_cameras();
-
         const bool tests = options.test_iterations.contains(iteration);
         const bool saves = options.save_iterations.contains(iteration);
         if (iteration % report_every == 0 || last || tests || saves)

@@ -57,20 +57,26 @@ requires std::is_arithmetic_v<T> WARPAGG_HD T max(T a, T b) { return a < b ? b :
 /// instruction of floats, where `min` and `max` are two. Precondition: the bound is not NaN.
 /// @{
 template <class V>
-WARPAGG_HD V at_most(const V& a, const V& bound) {
-    return min(bound, a);
+WARPAGG_HD V not_above(const V& a, const V& bound) {
+#if defined(__CUDA_ARCH__)
+    if constexpr (std::is_same_v<V, float>)
+        return ::fminf(a, bound);
+    else
+#endif
+        return min(bound, a);
 }
 template <class V>
-WARPAGG_HD V at_least(const V& a, const V& bound) {
-    return max(bound, a);
-}
+WARPAGG_HD V not_below(const V& a, const V& bound) {
 #if defined(__CUDA_ARCH__)
-WARPAGG_HD float at_most(float a, float bound) { return ::fminf(a, bound); }
-WARPAGG_HD float at_least(float a, float bound) { return ::fmaxf(a, bound); }
+    if constexpr (std::is_same_v<V, float>)
+        return ::fmaxf(a, bound);
+    else
 #endif
+        return max(bound, a);
+}
 /// @}
 
-/// 2^a. On CUDA the float version is the hardware's approximation: within 2^-22.5 of the result (PTX ISA,
+/// 2^a. On CUDA the float version is the hardware's approximation: relative error at most 2^-22.5 (PTX ISA,
 /// ex2.approx), denormal results flushed to zero.
 WARPAGG_HD float exp2(float a) {
 #if defined(__CUDA_ARCH__)
