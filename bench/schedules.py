@@ -26,11 +26,12 @@ DEFAULT = "default"
 def variants(iterations, gaussians):
     """By name, the options of each. `gaussians`: what the default grows to."""
     length = ["-i", str(iterations)]
-    alone = [["--sh-lr", "5e-4"],
+    alone = [["--sh-lr", "1.25e-4"],
+             ["--sh-lr", "5e-4"],
              ["--sh-degree-interval", "500"],
              ["--sh-update-interval", "4", "--sh-lr", "5e-4"],
-             ["--scaling-lr", "1e-2"],
-             ["--revised-opacity"],
+             ["--scaling-lr", "5e-3"],
+             ["--no-revised-opacity"],
              ["--prune-share", "0.2"],
              ["--num-downscales", "1", "--resolution-schedule", str(iterations // 5)]]
     return {**{f"`{' '.join(own)}`": [*length, *own] for own in alone},

@@ -668,9 +668,9 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
     const json expected{{"position_lr_init", 1.6e-4},
                         {"position_lr_final", 1.6e-6},
                         {"feature_lr", 2.5e-3},
-                        {"sh_lr", 1.25e-4},
+                        {"sh_lr", 2.5e-4},
                         {"opacity_lr", 2.5e-2},
-                        {"scaling_lr", 5e-3},
+                        {"scaling_lr", 1e-2},
                         {"rotation_lr", 1e-3},
                         {"opacity_reset_interval", 3000},
                         {"densification_interval", 100},
@@ -681,7 +681,7 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
                         {"sh_update_interval", 1},
                         {"prune_share", 0},
                         {"budget", 0},
-                        {"revised_opacity", false}};
+                        {"revised_opacity", true}};
     for (const auto& [name, value] : expected.items()) {
         CAPTURE(name);
         CHECK(usual.at(name) == value);
@@ -704,7 +704,7 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
                 {"budget", 1000},
                 {"max_cap", 1001},
                 {"prune_share", 0.5}};
-    words options{"-q", "--revised-opacity"};
+    words options{"-q", "--no-revised-opacity"};
     for (const auto& [name, value] : others.items()) options = options + words{"--" + name, value.dump()};
     check_success(small_training(folder / "other") + options);
     const json chosen = read_json(folder / "other/settings.json");
@@ -712,7 +712,7 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
         CAPTURE(name);
         CHECK(chosen.at(name) == value);
     }
-    CHECK(chosen.at("revised_opacity") == true);
+    CHECK(chosen.at("revised_opacity") == false);
     // They are not only noted: it densifies before iteration 20.
     CHECK(read_json(folder / "other/metrics.json").at("gaussians") !=
           read_json(folder / "default/metrics.json").at("gaussians"));
@@ -726,9 +726,8 @@ TEST_CASE("--quality fast sets what pays, and nothing that was said") {
         check_success(fast + words{"-o", (folder / name).string()} + options);
         return read_json(folder / name / "settings.json");
     };
-    const json expected{{"quality", "fast"},       {"iterations", 20},          {"scaling_lr", 1e-2},
-                        {"sh_lr", 5e-4},           {"sh_degree_interval", 500}, {"num_downscales", 1},
-                        {"resolution_schedule", 4}};
+    const json expected{{"quality", "fast"},         {"iterations", 20},    {"sh_lr", 5e-4},
+                        {"sh_degree_interval", 500}, {"num_downscales", 1}, {"resolution_schedule", 4}};
     const json chosen = settings_of("chosen", {"-i", "20"});
     for (const auto& [name, value] : expected.items()) {
         CAPTURE(name);

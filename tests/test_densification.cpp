@@ -46,6 +46,7 @@ TEST_CASE("the most urgent grow first, and none past the cap") {
         rule.least_opacity = 0;
         rule.dense_scale = 1e9f;  // copied, not split
         rule.cap = 1100;
+        rule.revised_opacity = false;
         e->densify(rule);
         CHECK(e->count() == 1100);
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "train/schedule.hpp"
 
 using gs::train::schedule;
@@ -13,7 +15,7 @@ TEST_CASE("rates of the positions fall a hundredfold, by the scene's extent") {
     CHECK(s.rates_at(0)[0] == doctest::Approx(3.2e-4));
     CHECK(s.rates_at(15000)[0] == doctest::Approx(3.2e-5));
     CHECK(s.rates_at(30000)[0] == doctest::Approx(3.2e-6));
-    CHECK(s.rates_at(1)[5] == doctest::Approx(s.rates_at(1)[4] / 20));
+    CHECK(s.rates_at(1)[5] == doctest::Approx(s.rates_at(1)[4] / 10));
 }
 
 TEST_CASE("a degree of spherical harmonics every interval") {
@@ -48,7 +50,7 @@ TEST_CASE("colours that depend on direction can learn more rarely") {
     CHECK_FALSE(s.updates_sh(4));
 }
 
-TEST_CASE("densification ends half-way, and opacities are reset only while it lasts") {
+TEST_CASE("densification ends half-way, and opacities are reset only when an interval of it is left") {
     schedule s;
     s.iterations = 7000;
     CHECK_FALSE(s.densifies(500));
@@ -56,13 +58,33 @@ TEST_CASE("densification ends half-way, and opacities are reset only while it la
     CHECK_FALSE(s.densifies(650));
     CHECK(s.densifies(3400));
     CHECK_FALSE(s.densifies(3500));
-    CHECK(s.resets_opacity(3000));
-    CHECK_FALSE(s.resets_opacity(6000));
+    CHECK_FALSE(s.resets_opacity(3000));
+    CHECK_FALSE(s.drops_large(3001));
     CHECK_FALSE(s.resets_opacity(500));
     s.white = true;
     CHECK(s.resets_opacity(500));
     s.iterations = 100000;
     CHECK(s.densify_until() == 15000);
+    CHECK(s.resets_opacity(3000));
+    CHECK(s.drops_large(3001));
+    CHECK(s.resets_opacity(12000));
+    CHECK_FALSE(s.resets_opacity(15000));
+}
+
+TEST_CASE("the shorter densification is, the larger are the gradients that grow, unless one is said") {
+    schedule s;
+    s.iterations = 30000;
+    CHECK(s.growth_threshold() == doctest::Approx(1e-4));
+    s.iterations = 100000;
+    CHECK(s.growth_threshold() == doctest::Approx(1e-4));
+    s.densify_until_iter = 30000;
+    CHECK(s.growth_threshold() == doctest::Approx(1e-4));
+    s.densify_until_iter = 15000 / 256;
+    CHECK(s.growth_threshold() == doctest::Approx(2e-4).epsilon(0.01));
+    s.densify_until_iter = 0;
+    CHECK(std::isfinite(s.growth_threshold()));
+    s.densify_grad_threshold = 3e-4;
+    CHECK(s.growth_threshold() == 3e-4);
 }
 
 TEST_CASE("pruning follows densification, half-way to the end at the latest") {
@@ -97,7 +119,7 @@ TEST_CASE("rates and intervals are the reference implementation's, and can be ot
     s.iterations = 30000;
     CHECK(s.rates_at(0)[0] == 1.6e-4f);
     CHECK(s.rates_at(30000)[0] == doctest::Approx(1.6e-6));
-    CHECK(s.rates_at(0)[1] == 5e-3f);    // log scale
+    CHECK(s.rates_at(0)[1] == 1e-2f);    // log scale
     CHECK(s.rates_at(0)[2] == 1e-3f);    // quaternion
     CHECK(s.rates_at(0)[3] == 2.5e-2f);  // opacity
     CHECK(s.rates_at(0)[4] == 2.5e-3f);  // colour
@@ -111,7 +133,7 @@ TEST_CASE("rates and intervals are the reference implementation's, and can be ot
     s.feature_lr = 40;
     CHECK(s.rates_at(15000)[0] == doctest::Approx(1e-3));
     CHECK(s.rates_at(30001)[0] == doctest::Approx(1e-4));
-    CHECK(s.rates_at(7) == std::array<float, 8>{s.rates_at(7)[0], 1, 2, 3, 40, 2, 2, 2});
+    CHECK(s.rates_at(7) == std::array<float, 8>{s.rates_at(7)[0], 1, 2, 3, 40, 4, 4, 4});
     s.sh_lr = 5;
     CHECK(s.rates_at(7) == std::array<float, 8>{s.rates_at(7)[0], 1, 2, 3, 40, 5, 5, 5});
 }
@@ -134,6 +156,9 @@ TEST_CASE("densification and resets keep to their intervals") {
     CHECK_FALSE(s.resets_opacity(40));
     CHECK(s.resets_opacity(870));
     CHECK_FALSE(s.resets_opacity(900));
+    s.densify_until_iter = 899;
+    CHECK_FALSE(s.resets_opacity(870));
+    s.densify_until_iter = 900;
     CHECK_FALSE(s.drops_large(30));
     CHECK(s.drops_large(31));
     s.white = true;

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "train/trainer.hpp"
@@ -102,7 +103,8 @@ TEST_CASE("by default every step learns all from whole photos, and growth is fre
     for (const densify_rule& rule : made.rules) {
         CHECK(rule.cap == 100);
         CHECK(rule.most_births == densify_rule{}.most_births);
-        CHECK_FALSE(rule.revised_opacity);
+        CHECK(rule.revised_opacity);
+        CHECK(rule.gradient == doctest::Approx(1e-4 * std::pow(1000, 0.125)));
     }
 }
 
@@ -124,12 +126,12 @@ TEST_CASE("colours that depend on direction learn every so many steps") {
 TEST_CASE("a budget is grown to evenly from where training stands, whatever is dropped, and below the cap") {
     gs::train::train_options o;
     o.budget = 60;
-    o.revised_opacity = true;
+    o.revised_opacity = false;
     const recorder made = trained(o, 30);
     CHECK(made.counts == std::vector<std::size_t>{35, 40, 45, 50, 55, 60});
     for (const densify_rule& rule : made.rules) {
         CHECK(rule.gradient == 0);
-        CHECK(rule.revised_opacity);
+        CHECK_FALSE(rule.revised_opacity);
     }
     CHECK(trained(o, 30, 5).counts == std::vector<std::size_t>{30, 31, 34, 38, 44, 55});
     CHECK(trained(o, 70).counts == std::vector<std::size_t>(6, 70));

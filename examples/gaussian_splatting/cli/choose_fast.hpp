@@ -20,7 +20,6 @@ inline void choose_fast(CLI::App& train, const train::schedule& schedule) {
         option->run_callback();
     };
     choose("--iterations", "5000");
-    choose("--scaling-lr", "1e-2");
     choose("--sh-lr", "5e-4");
     choose("--sh-degree-interval", "500");
     if (schedule.iterations > 1) choose("--num-downscales", "1");

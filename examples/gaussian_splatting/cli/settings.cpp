@@ -142,12 +142,13 @@ void add_schedule(CLI::App& app, train::schedule& s) {
     rate("--position-lr-final", s.position_lr_final, "The same at the end");
     rate("--feature-lr", s.feature_lr, "Of colours");
     app.add_option("--sh-lr", s.sh_lr,
-                   "Of colours that depend on direction; by default a twentieth of --feature-lr")
+                   "Of colours that depend on direction; by default a tenth of --feature-lr")
         ->check(positive_number());
     rate("--opacity-lr", s.opacity_lr, "Of opacities");
     rate("--scaling-lr", s.scaling_lr, "Of log scales");
     rate("--rotation-lr", s.rotation_lr, "Of quaternions");
-    count("--opacity-reset-interval", s.opacity_reset_interval, 1, "Iterations between two resets");
+    count("--opacity-reset-interval", s.opacity_reset_interval, 1,
+          "Iterations between two resets, of which none is in densification's last interval");
     count("--densification-interval", s.densification_interval, 1, "Iterations between two densifications");
     count("--densify-from-iter", s.densify_from_iter, 0, "Densify after this iteration");
     app.add_option("--densify-until-iter", s.densify_until_iter,
@@ -185,10 +186,11 @@ CLI::App* add_train(CLI::App& app, settings& s) {
         ->check(whole_number(1, 10000000))
         ->capture_default_str();
     train
-        ->add_option("--densify-grad-threshold", s.densify_grad_threshold,
-                     "Mean gradient of a centre, in halves of the picture, from which a Gaussian grows")
-        ->check(positive_number())
-        ->capture_default_str();
+        ->add_option(
+            "--densify-grad-threshold", s.schedule.densify_grad_threshold,
+            "Mean gradient of a centre, in halves of the picture, from which a Gaussian grows; by default "
+            "1e-4 for 30000 iterations, and more for fewer")
+        ->check(positive_number());
     add_schedule(*train, s.schedule);
     train->add_option("--max-cap", s.max_cap, "Most Gaussians; by default one for 32 pixels of the photos")
         ->check(whole_number(1, 100000000));
@@ -197,7 +199,7 @@ CLI::App* add_train(CLI::App& app, settings& s) {
                      "Gaussians to grow to, evenly and the most urgent first, whatever their gradients")
         ->check(whole_number(1, 100000000))
         ->excludes(train->get_option("--densify-grad-threshold"));
-    train->add_flag("--revised-opacity", s.revised_opacity,
+    train->add_flag("--revised-opacity,!--no-revised-opacity", s.revised_opacity,
                     "A copied Gaussian and its copy are together as opaque as it was alone");
     std::set<std::string> policies(gradient_policy_names.begin(), gradient_policy_names.end());
     train->add_option("--gradient", s.gradient, "How gradients are added up")

@@ -25,10 +25,9 @@ struct settings {
 
     std::string quality = "full";
     train::schedule schedule;
-    float densify_grad_threshold = train::densify_rule{}.gradient;
     std::size_t max_cap = 0;  ///< 0: by the photos
     std::size_t budget = 0;   ///< 0: none
-    bool revised_opacity = false;
+    bool revised_opacity = true;
     std::string gradient = "split";
     std::set<int> save_iterations;
     std::set<int> test_iterations;

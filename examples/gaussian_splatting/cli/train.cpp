@@ -26,7 +26,6 @@ train::train_options options_of(const settings& s, const scene& scene,
                                 const train::background_choice& background) {
     train::train_options o;
     o.schedule = s.schedule;
-    o.densify_gradient = s.densify_grad_threshold;
     o.max_cap = s.max_cap > 0 ? s.max_cap : std::max(train::default_cap(scene), s.budget);
     o.budget = s.budget;
     o.revised_opacity = s.revised_opacity;
@@ -84,7 +83,7 @@ ordered_json settings_json(const settings& s, const train::train_options& o) {
             {"resolution_schedule", plan.resolution_schedule},
             {"sh_update_interval", plan.sh_update_interval},
             {"prune_share", plan.prune_share},
-            {"densify_grad_threshold", o.densify_gradient},
+            {"densify_grad_threshold", plan.growth_threshold()},
             {"max_cap", o.max_cap},
             {"budget", o.budget},
             {"revised_opacity", o.revised_opacity},

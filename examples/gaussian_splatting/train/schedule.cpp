@@ -28,6 +28,11 @@ std::array<float, 8> schedule::rates_at(int iteration) const {
 
 int schedule::densify_until() const { return densify_until_iter.value_or(std::min(15000, iterations / 2)); }
 
+double schedule::growth_threshold() const {
+    const double shorter = 15000.0 / std::clamp(densify_until(), 1, 15000);
+    return densify_grad_threshold.value_or(1e-4 * std::pow(shorter, 0.125));
+}
+
 bool schedule::densifies(int iteration) const {
     return iteration > densify_from_iter && iteration < densify_until() &&
            iteration % densification_interval == 0;
@@ -44,8 +49,8 @@ int schedule::densifications_from(int iteration) const {
 }
 
 bool schedule::resets_opacity(int iteration) const {
-    if (iteration >= densify_until()) return false;
-    return iteration % opacity_reset_interval == 0 || (white && iteration == densify_from_iter);
+    if (white && iteration == densify_from_iter) return iteration < densify_until();
+    return iteration % opacity_reset_interval == 0 && iteration + opacity_reset_interval <= densify_until();
 }
 
 }  // namespace gs::train

@@ -9,7 +9,8 @@
 namespace gs::train {
 
 /// What happens when, and at which rates: the reference implementation's (Kerbl et al. 2023), its 30,000
-/// iterations scaled to any number of them. Rates and intervals are positive.
+/// iterations scaled to any number of them, but for what docs/gaussian_splatting.md says. Rates and intervals
+/// are positive.
 struct schedule {
     int iterations = 7000;
     int sh_degree = 3;
@@ -20,13 +21,14 @@ struct schedule {
     /// Of Adam. Those of positions are by extent and fall from `init` to `final`, geometrically.
     double position_lr_init = 1.6e-4, position_lr_final = 1.6e-6;
     double feature_lr = 2.5e-3;   ///< of the constant colour
-    std::optional<double> sh_lr;  ///< of colours that depend on direction: a twentieth, where it is not said
-    double opacity_lr = 2.5e-2, scaling_lr = 5e-3, rotation_lr = 1e-3;
+    std::optional<double> sh_lr;  ///< of colours that depend on direction: a tenth, where it is not said
+    double opacity_lr = 2.5e-2, scaling_lr = 1e-2, rotation_lr = 1e-3;
 
     int opacity_reset_interval = 3000;
     int densification_interval = 100;
     int densify_from_iter = 500;
     std::optional<int> densify_until_iter;  ///< half of the iterations, at most 15,000, where it is not said
+    std::optional<double> densify_grad_threshold;  ///< see `growth_threshold`
 
     /// Coarse to fine: photos are shrunk by two `num_downscales` times at first, and once less after every
     /// `resolution_schedule` iterations.
@@ -44,10 +46,14 @@ struct schedule {
     int sh_degree_at(int iteration) const;
     bool updates_sh(int iteration) const { return iteration % sh_update_interval == 0; }
     int downscales_at(int iteration) const;
-    double sh_rate() const { return sh_lr.value_or(feature_lr / 20); }
+    double sh_rate() const { return sh_lr.value_or(feature_lr / 10); }
     /// Adam's rates by `parameter`.
     std::array<float, 8> rates_at(int iteration) const;
     int densify_until() const;
+    /// A Gaussian grows from this mean gradient of its centre, in halves of the picture. Where it is not
+    /// said, it is 1e-4 if densification lasts 15,000 iterations, and more, by the eighth root, if it is
+    /// shorter: a short training has no time for many Gaussians (docs/gaussian_splatting.md).
+    double growth_threshold() const;
     /// The iteration after which `prune_share` is dropped, when each of the training views has been seen
     /// about once since the last densification; 0 for none.
     int prune_after(int views) const;
@@ -58,10 +64,13 @@ struct schedule {
     /// How many densifications there are in this iteration and after it. Precondition: it is not past the
     /// last.
     int densifications_from(int iteration) const;
+    /// Not in densification's last interval: what a reset took back has to grow again.
     bool resets_opacity(int iteration) const;
     /// Gaussians that are large in the world are dropped once opacities have been reset. Those that are large
     /// on the screen are not: that costs lego 1.7 dB.
-    bool drops_large(int iteration) const { return iteration > opacity_reset_interval; }
+    bool drops_large(int iteration) const {
+        return iteration > opacity_reset_interval && resets_opacity(opacity_reset_interval);
+    }
 };
 
 }  // namespace gs::train

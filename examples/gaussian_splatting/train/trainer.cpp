@@ -51,7 +51,7 @@ densify_rule rule_at(int iteration, const schedule& schedule, const train_option
     densify_rule rule;
     rule.dense_scale = static_cast<float>(0.01 * schedule.extent);
     if (schedule.drops_large(iteration)) rule.most_scale = static_cast<float>(0.1 * schedule.extent);
-    rule.gradient = options.densify_gradient;
+    rule.gradient = static_cast<float>(schedule.growth_threshold());
     rule.cap = options.max_cap;
     if (options.budget > 0) {
         const auto left = static_cast<std::size_t>(schedule.densifications_from(iteration));

@@ -22,11 +22,10 @@ struct background_choice {
 
 struct train_options {
     train::schedule schedule;  ///< but for what the scene says: extent and white
-    float densify_gradient = densify_rule{}.gradient;
-    std::size_t max_cap = 0;  ///< most Gaussians
+    std::size_t max_cap = 0;   ///< most Gaussians
     /// Gaussians to grow to, evenly and whatever their gradients; 0: as many as have the gradient.
     std::size_t budget = 0;
-    bool revised_opacity = false;  ///< see `densify_rule`
+    bool revised_opacity = true;  ///< see `densify_rule`
     std::uint64_t seed = 0;
     gradient_policy gradient = gradient_policy::split;
     background_choice background;
