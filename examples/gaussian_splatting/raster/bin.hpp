@@ -3,8 +3,8 @@
 #pragma once
 
 #include "../device/distribute.hpp"
-#include "project.hpp"
 #include "tile_lists.hpp"
+#include "tile_reach.hpp"
 
 namespace gs::raster {
 

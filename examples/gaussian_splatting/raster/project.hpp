@@ -10,32 +10,14 @@
 #include "gaussian_row.hpp"
 #include "geometry.hpp"
 #include "splat.hpp"
+#include "tile_reach.hpp"
 
 namespace gs::raster {
-
-/// The tiles that a splat's bounding box meets: [x0, x1) × [y0, y1).
-struct alignas(4) tile_box {
-    std::uint16_t x0, y0, x1, y1;
-
-    WARPAGG_HD std::uint32_t size() const { return std::uint32_t(x1 - x0) * std::uint32_t(y1 - y0); }
-};
-
-/// Whether the splat's ellipse reaches pixels of the tile in this column and row.
-template <class Real, class Index>
-WARPAGG_HD flag_of<Real> reaches_tile(const splat<Real>& s, const Index& column, const Index& row) {
-    using scalar = typename warpagg::detail::scalar_of<Real>::type;
-    const auto centre = [](const Index& tile) {  // of its first pixel
-        return warpagg::math::convert<scalar>(tile * Index(tile_size)) + constant<Real>(0.5);
-    };
-    const Real x0 = centre(column) - s.x, y0 = centre(row) - s.y, side = constant<Real>(tile_size - 1);
-    return least_exponent<Real>(s.p, s.q, s.r, s.slope_x, s.slope_y, x0, x0 + side, y0, y0 + side) <= s.reach;
-}
 
 /// Gaussians to splats, a Gaussian a lane.
 template <class W, class Real>
 struct project {
     using real = value_t<W, Real>;
-    using whole = value_t<W, int>;
     using number = value_t<W, std::uint32_t>;
 
     parameter_arrays<const Real> gaussians;
@@ -108,7 +90,7 @@ struct project {
         s.slope_y = f.shape.slope_y;
         const real far = warpagg::math::sqrt(s.reach);
         bound(far * f.shape.width, far * f.shape.height, d);
-        row.active = reaches_any(w, d, row.active);
+        row.active = reaches_any_tile(w, s, d.x0, d.x1, d.y0, d.y1, row.active);
         if (!w.any(row.active)) return;
 
         const vec3<real> rgb = colour(w, row, mean);
@@ -131,23 +113,6 @@ struct project {
         d.y0 = tile(y - half_y, tiles_down);
         d.x1 = tile(x + half_x + side, tiles_across);
         d.y1 = tile(y + half_y + side, tiles_down);
-    }
-
-    /// Whether it reaches any tile of its box, of those that are `asked`.
-    static WARPAGG_HD mask_t<W> reaches_any(const W& w, const drawing& d, const mask_t<W>& asked) {
-        const auto index = [](const number& n) { return warpagg::math::convert<int>(n); };
-        const whole x0 = index(d.x0), x1 = index(d.x1), y1 = index(d.y1);
-        whole column = x0, row = index(d.y0);
-        mask_t<W> open = asked && column < x1 && row < y1, found = false;
-        while (w.any(open)) {
-            found = found || (open && reaches_tile(d.shape, column, row));
-            column += whole(1);
-            const mask_t<W> wraps = column >= x1;
-            row = select(wraps, row + whole(1), row);
-            column = select(wraps, x0, column);
-            open = open && !found && row < y1;
-        }
-        return found;
     }
 
     static WARPAGG_HD real held(const real& channel) {

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <warpagg/simt/serial.hpp>
+
+#include "raster/tile_reach.hpp"
+
+using gs::raster::reaches_any_tile;
+using gs::raster::splat;
+using gs::raster::tile_size;
+
+namespace {
+
+/// Of any size, thinness and direction, in a picture of 40 x 30 tiles and around it.
+splat<float> random_splat(std::mt19937& random) {
+    std::uniform_real_distribution<float> unit(0, 1);
+    splat<float> s{};
+    s.x = tile_size * (80 * unit(random) - 20);
+    s.y = tile_size * (60 * unit(random) - 15);
+    s.p = std::exp2(-10 * unit(random));
+    s.q = std::exp2(-10 * unit(random));
+    s.r = (unit(random) < 0.2f ? 0 : 4 * unit(random) - 2) * s.p;
+    s.slope_x = -s.r * s.q / (s.p * s.p + s.r * s.r);
+    s.slope_y = -s.r / s.q;
+    s.reach = 8 * unit(random);
+    return s;
+}
+
+/// The least exponent over the pixels of any tile in the box, by looking at each.
+double least_of_all(const splat<float>& f, unsigned x0, unsigned x1, unsigned y0, unsigned y1) {
+    double least = 1e30;
+    const auto offset = [](unsigned tile, float at) {
+        return tile_size * double{1} * tile + 0.5 - static_cast<double>(at);
+    };
+    for (unsigned row = y0; row < y1; ++row)
+        for (unsigned column = x0; column < x1; ++column) {
+            const double x = offset(column, f.x), y = offset(row, f.y), side = tile_size - 1;
+            least = std::min(least, gs::raster::least_exponent<double>(f.p, f.q, f.r, f.slope_x, f.slope_y, x,
+                                                                       x + side, y, y + side));
+        }
+    return least;
+}
+
+}  // namespace
+
+TEST_CASE("a splat reaches some tile of its box where looking at each finds one") {
+    std::mt19937 random(5);
+    int reaching = 0, missing = 0, undecided = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const splat<float> s = random_splat(random);
+        const auto below = [&](unsigned end) { return static_cast<unsigned>(random() % end); };
+        const unsigned x0 = below(40), x1 = x0 + below(41 - x0), y0 = below(30), y1 = y0 + below(31 - y0);
+        const double least = least_of_all(s, x0, x1, y0, y1), reach = static_cast<double>(s.reach);
+        const warpagg::emulator::serial one{};
+        const bool found = reaches_any_tile(one, s, x0, x1, y0, y1, true);
+        CHECK_FALSE(reaches_any_tile(one, s, x0, x1, y0, y1, false));
+        if (std::abs(least - reach) <= 1e-5 * reach) {
+            ++undecided;
+            continue;
+        }
+        CAPTURE(i);
+        CHECK(found == (least < reach));
+        ++(found ? reaching : missing);
+    }
+    CHECK(reaching > 2000);
+    CHECK(missing > 2000);
+    CHECK(undecided < 20);
+}
+
+TEST_CASE("a splat between two rows of tiles reaches none, though it reaches their box") {
+    splat<float> s{};
+    s.x = 40;
+    s.y = 16;  // pixel centres are at 15.5 and 16.5
+    s.p = 0.01f;
+    s.q = 10;
+    s.reach = 8;
+    const warpagg::emulator::serial one{};
+    CHECK_FALSE(reaches_any_tile(one, s, 0u, 5u, 0u, 2u, true));
+    s.q = 5;
+    CHECK(reaches_any_tile(one, s, 0u, 5u, 0u, 2u, true));
+    CHECK(reaches_any_tile(one, s, 2u, 3u, 0u, 1u, true));
+}
