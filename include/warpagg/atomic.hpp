@@ -90,6 +90,69 @@ WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const
     }
 }
 
+/// The numbers of the cells of a destination, as an accessor by number.
+/// @{
+template <class Cells, int Numbers>
+struct numbers_of_cells {
+    Cells cells;
+    WARPAGG_HD auto operator()(unsigned i) const { return cells(i / Numbers)->number + i % Numbers; }
+};
+template <class Accumulate, class Dst>
+WARPAGG_HD auto record_of_numbers(Dst dst) {
+    static_assert(commit::is_destination<Dst>,
+                  "the destination is a pointer, a span or an accessor: of a container, pass its data()");
+    auto cells = commit::destination(dst);
+    static_assert(
+        std::is_same_v<decltype(cells(0u)), cell<Accumulate>*>,
+        "a sum that is not native is kept in cells: the destination's are cell<...> of the policy's tag");
+    if constexpr (std::is_same_v<decltype(cells), commit::contiguous_record<cell<Accumulate>>>) {
+        return cells.first->number;
+    } else {
+        return numbers_of_cells<decltype(cells), Accumulate::numbers>{cells};
+    }
+}
+/// @}
+
+/// Takes the lanes' values apart, number k of values[i] to numbers[i * Accumulate::numbers + k], and says of
+/// those of active lanes that could not be that there are such.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Accumulate, warp W, class V, int N, class Number, int M>
+WARPAGG_HD void take_apart(const W& w, const Accumulate& how, const V (&values)[N], const mask_t<W>& active,
+                           Number (&numbers)[M]) {
+    constexpr int each = Accumulate::numbers;
+    constexpr bool can_fail = requires(const Accumulate& a) { a.fault; };
+    using number = typename Accumulate::number;
+    mask_t<W> fits(true);
+    WARPAGG_UNROLL
+    for (int i = 0; i < N; ++i) {
+        const auto split = [&](float x, auto&& put) {
+            number part[each];
+            bool taken = true;
+            if constexpr (can_fail) {
+                taken = how.split(x, part);
+            } else {
+                how.split(x, part);
+            }
+            WARPAGG_UNROLL
+            for (int k = 0; k < each; ++k) put(numbers[i * each + k], part[k]);
+            return taken;
+        };
+        if constexpr (requires { typename V::scalar; }) {
+            for (int lane = 0; lane < static_cast<int>(W::size); ++lane)
+                if (!split(values[i][lane], [&](Number& of_lanes, number part) { of_lanes.set(lane, part); }))
+                    fits.set(lane, false);
+        } else {
+            if (!split(values[i], [](Number& to, number part) { to = part; })) fits = false;
+        }
+    }
+    if constexpr (can_fail) {
+        const mask_t<W> faulty = active && !fits;
+        if (w.any(faulty) && how.fault != nullptr)
+            w.atomic(operation::bit_or{}, commit::contiguous_record<std::uint32_t>{how.fault},
+                     value_t<W, unsigned>(0u), value_t<W, std::uint32_t>(1u), faulty);
+    }
+}
+
 }  // namespace detail
 
 /// Adds the values of the warp's active lanes to one record in memory: for each i in [0, N),
@@ -104,6 +167,10 @@ WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const
 /// @snippet warp_reduce_atomic.cpp structure of arrays
 /// @snippet warp_reduce_atomic.cpp accessor
 ///
+/// With sums that are kept otherwise than in T, here ones that are rounded once and the same in any order:
+///
+/// @snippet accumulate.cpp exact
+///
 /// @param w       a model of `warp`; all of its lanes call this together
 /// @param dst     `T*`, a span, an accessor `dst(i) -> T*`, or with `policy{staged}` a record of a `stage`;
 /// the
@@ -111,7 +178,9 @@ WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const
 /// @param values  N values per lane; those of inactive lanes are ignored, NaN or not
 /// @param active  whether this lane has something to add
 /// @param at      where the call stands, by its default
-/// @tparam Policy see policy.hpp; it may name another operation than the sum
+/// @param how     see policy.hpp; it may name another operation than the sum, or in what sums of float are
+/// kept:
+///                see accumulate/accumulate.hpp
 ///
 /// @pre All lanes of the warp call this, with the same `dst`, which holds N values of T, aligned as T.
 ///
@@ -123,17 +192,31 @@ WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const
 WARPAGG_EXEC_CHECK_DISABLE
 template <class T, int N, warp W, class Dst, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&values)[N],
-                                   const mask_t<W>& active, Policy = {},
+                                   const mask_t<W>& active, Policy how = {},
                                    call_site at = call_site::here("warp_reduce_atomic")) {
     static_assert(detail::is_policy<Policy>,
                   "warp_reduce_atomic takes one policy: put the tags into policy{...}");
-    using choice = detail::choice<T, N, Policy>;
-    const detail::library_call<W> call(w, at);
-    if constexpr (std::is_same_v<typename choice::idle, idle::assume_busy>) {
-        if constexpr (requires { w.require_busy(active); }) w.require_busy(active);
+    using accumulation = typename Policy::accumulate;
+    if constexpr (detail::is_accumulated<accumulation>) {
+        static_assert(std::is_same_v<T, float>, "only sums of float are kept otherwise than as they are");
+        using number = typename accumulation::number;
+        value_t<W, number> numbers[N * accumulation::numbers];
+        {
+            const detail::library_call<W> call(w, at);
+            detail::take_apart(w, how.accumulating(), values, active, numbers);
+        }
+        warp_reduce_atomic<number, N * accumulation::numbers>(
+            w, detail::record_of_numbers<accumulation>(dst), numbers, active,
+            typename detail::policy_of_numbers<Policy>::type{}, at);
+    } else {
+        using choice = detail::choice<T, N, Policy>;
+        const detail::library_call<W> call(w, at);
+        if constexpr (std::is_same_v<typename choice::idle, idle::assume_busy>) {
+            if constexpr (requires { w.require_busy(active); }) w.require_busy(active);
+        }
+        detail::aggregate<choice>(w, commit::record_of<typename choice::commit>(dst), values,
+                                  detail::opaque(w, active));
     }
-    detail::aggregate<choice>(w, commit::record_of<typename choice::commit>(dst), values,
-                              detail::opaque(w, active));
 }
 
 /// The same with T and N deduced from `values`.

@@ -104,6 +104,83 @@ WARPAGG_HD auto record_of_key(Base base, unsigned key) {
     return component_of_key<Base>{base, key};
 }
 
+/// The numbers of the cells of a base, as a base.
+/// @{
+template <class Base, int Numbers>
+struct numbers_by_key {
+    Base base;
+    WARPAGG_HD auto operator()(unsigned key, unsigned i) const {
+        return base(key, i / Numbers)->number + i % Numbers;
+    }
+};
+template <class Accumulate>
+WARPAGG_HD auto base_of_numbers(cell<Accumulate>* base) {
+    return base->number;
+}
+template <class Accumulate, class Base>
+WARPAGG_HD auto base_of_numbers(Base base) {
+    static_assert(
+        requires { base(0u, 0u)->number; },
+        "a sum that is not native is kept in cells: the base's are cell<...> of the policy's tag");
+    return numbers_by_key<Base, Accumulate::numbers>{base};
+}
+/// @}
+
+/// `warp_match_reduce_atomic` of values as they are.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Policy, warp W, class Base, class V, int N>
+WARPAGG_HD void match_and_commit(const W& w, Base base, const value_t<W, unsigned>& key, const V (&values)[N],
+                                 const mask_t<W>& active, call_site at) {
+    using math::countr_zero;
+    using math::popcount;
+    using math::select;
+    using math::uniform;
+    using chosen = choice<typename scalar_of<V>::type, N, Policy>;
+    using operation = typename chosen::operation;
+    using bits = value_t<W, std::uint32_t>;
+    static_assert(
+        requires { *(base + 0); } || requires { *base(0u, 0u); },
+        "the base is a pointer to the record of key 0, or an accessor base(key, i) -> T*");
+    static_assert(!std::is_same_v<typename chosen::commit, commit::staged>,
+                  "warp_match_reduce_atomic takes the stage's copy as its base: staged says nothing here");
+    static_assert(
+        !std::is_same_v<typename chosen::idle, idle::add_zeros>,
+        "an idle warp has no keys, so warp_match_reduce_atomic has nowhere to add zeros: take skip");
+
+    const library_call<W> call(w, at);
+    if constexpr (requires { w.observe(active); }) w.observe(active);
+    if constexpr (requires { w.require_uniform(base); }) w.require_uniform(base);
+    if constexpr (std::is_same_v<typename chosen::idle, idle::assume_busy>) {
+        if constexpr (requires { w.require_busy(active); }) w.require_busy(active);
+    }
+    const mask_t<W> adds = opaque(w, active);
+    mask_t<W> commits = adds;
+    V results[N];
+    WARPAGG_UNROLL
+    for (int i = 0; i < N; ++i) results[i] = values[i];
+
+    if constexpr (!std::is_same_v<typename chosen::reduce, reduce::per_lane>) {
+        const std::uint32_t everyone = w.ballot(adds);
+        if (everyone == 0) return;
+        bool dense = true;
+        if constexpr (is_gated<typename chosen::gate>) dense = popcount(everyone) >= chosen::gate::lanes;
+        if (dense) {
+            if (!keys_rise(w, key, adds, everyone)) {
+                const bits peers = select(adds, w.match(key) & everyone, bits(0u));
+                if (!w.any(adds && peers != everyone)) {
+                    const unsigned only = uniform(w.shfl(key, countr_zero(everyone)));
+                    reduce_and_commit<chosen>(w, record_of_key<N>(base, only), values, adds);
+                    return;
+                }
+                combine_peers<operation>(w, results, peers);
+                commits = adds && countr_zero(peers) == w.lane();
+            }
+        }
+    }
+    using commit_rule = commit_of_keys<chosen, Policy, N>;
+    commit_by_key<operation, commit_rule>(w, base, key, results, commits);
+}
+
 }  // namespace detail
 
 /// Adds the values of each active lane to the record that its key names, equal keys first among themselves:
@@ -117,7 +194,7 @@ WARPAGG_HD auto record_of_key(Base base, unsigned key) {
 /// @param values  N values per lane; those of inactive lanes are ignored, NaN or not
 /// @param active  whether this lane has something to add
 /// @param at      where the call stands, by its default
-/// @tparam Policy see policy.hpp. `reduce` and `commit` say what happens where all active lanes have one key,
+/// @param how     see policy.hpp. `reduce` and `commit` say what happens where all active lanes have one key,
 ///                `commit` how else each key's record is committed, `per_lane` that nothing is combined, the
 ///                gate from how many active lanes on keys are compared
 ///
@@ -131,61 +208,25 @@ WARPAGG_HD auto record_of_key(Base base, unsigned key) {
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Base, class V, int N, class Policy = policy<>>
 WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W, unsigned>& key,
-                                         const V (&values)[N], const mask_t<W>& active, Policy = {},
+                                         const V (&values)[N], const mask_t<W>& active, Policy how = {},
                                          call_site at = call_site::here("warp_match_reduce_atomic")) {
-    using math::countr_zero;
-    using math::popcount;
-    using math::select;
-    using math::uniform;
     static_assert(detail::is_policy<Policy>,
                   "warp_match_reduce_atomic takes one policy: put the tags into policy{...}");
-    using choice = detail::choice<typename detail::scalar_of<V>::type, N, Policy>;
-    using operation = typename choice::operation;
-    using bits = value_t<W, std::uint32_t>;
-    static_assert(
-        requires { *(base + 0); } || requires { *base(0u, 0u); },
-        "the base is a pointer to the record of key 0, or an accessor base(key, i) -> T*");
-    static_assert(!std::is_same_v<typename choice::commit, commit::staged>,
-                  "warp_match_reduce_atomic takes the stage's copy as its base: staged says nothing here");
-    static_assert(
-        !std::is_same_v<typename choice::idle, idle::add_zeros>,
-        "an idle warp has no keys, so warp_match_reduce_atomic has nowhere to add zeros: take skip");
-
-    const detail::library_call<W> call(w, at);
-    if constexpr (requires { w.observe(active); }) w.observe(active);
-    if constexpr (requires { w.require_uniform(base); }) w.require_uniform(base);
-    if constexpr (std::is_same_v<typename choice::idle, idle::assume_busy>) {
-        if constexpr (requires { w.require_busy(active); }) w.require_busy(active);
-    }
-    const mask_t<W> adds = detail::opaque(w, active);
-    mask_t<W> commits = adds;
-    V results[N];
-    WARPAGG_UNROLL
-    for (int i = 0; i < N; ++i) results[i] = values[i];
-
-    if constexpr (!std::is_same_v<typename choice::reduce, reduce::per_lane>) {
-        const std::uint32_t everyone = w.ballot(adds);
-        if (everyone == 0) return;
-        bool dense = true;
-        if constexpr (detail::is_gated<typename choice::gate>)
-            dense = popcount(everyone) >= choice::gate::lanes;
-        if (dense) {
-            if (!detail::keys_rise(w, key, adds, everyone)) {
-                const bits peers = select(adds, w.match(key) & everyone, bits(0u));
-                if (!w.any(adds && peers != everyone)) {
-                    const unsigned only = uniform(w.shfl(key, countr_zero(everyone)));
-                    detail::reduce_and_commit<choice>(w, detail::record_of_key<N>(base, only), values, adds);
-                    return;
-                }
-                detail::combine_peers<operation>(w, results, peers);
-                commits = adds && countr_zero(peers) == w.lane();
-            }
+    using accumulation = typename Policy::accumulate;
+    if constexpr (detail::is_accumulated<accumulation>) {
+        static_assert(std::is_same_v<typename detail::scalar_of<V>::type, float>,
+                      "only sums of float are kept otherwise than as they are");
+        value_t<W, typename accumulation::number> numbers[N * accumulation::numbers];
+        {
+            const detail::library_call<W> call(w, at);
+            detail::take_apart(w, how.accumulating(), values, active, numbers);
         }
+        warp_match_reduce_atomic(w, detail::base_of_numbers<accumulation>(base), key, numbers, active,
+                                 typename detail::policy_of_numbers<Policy>::type{}, at);
+    } else {
+        detail::match_and_commit<Policy>(w, base, key, values, active, at);
     }
-    using commit_rule = detail::commit_of_keys<choice, Policy, N>;
-    detail::commit_by_key<operation, commit_rule>(w, base, key, results, commits);
 }
-
 /// The same for a type of yours that consists of numbers, at `base[key]`: see components.hpp. On models whose
 /// lane values are scalars, not on `emulator::lanes`.
 WARPAGG_EXEC_CHECK_DISABLE

@@ -91,6 +91,32 @@ struct bit_or : for_integers {
     }
 };
 
+/// A base for operations of your own, on words of 64 bits: `Op` derives from it and has
+/// `combine_words(a, b)`, associative, commutative, and with zero as its neutral element. Memory combines by
+/// compare-and-swap.
+template <class Op>
+struct on_words {
+    static constexpr auto of = axis::operation;
+    static constexpr bool by_exchange = true;  ///< no atomic instruction has it
+    template <class T>
+    static constexpr bool suits = std::is_integral_v<T> && !std::is_signed_v<T> && sizeof(T) == 8;
+    template <class V>
+    WARPAGG_HD static V combine(const V& a, const V& b) {
+        if constexpr (requires { typename V::scalar; }) {
+            V r;
+            for (int lane = 0; lane < V::chunks * V::width; ++lane)
+                r.set(lane, Op::combine_words(a[lane], b[lane]));
+            return r;
+        } else {
+            return Op::combine_words(a, b);
+        }
+    }
+    template <class T>
+    WARPAGG_HD static T identity() {
+        return T{};
+    }
+};
+
 /// The bits that an odd number of values have.
 struct bit_xor : for_integers {
     template <class V>

@@ -6,6 +6,7 @@
 /// How `warp_reduce_atomic` works: one tag per axis, in any order, e.g. `policy{shfl_down, skip}`. What no
 /// tag names is chosen for the values' type and number: see default_policy.hpp.
 
+#include "accumulate/accumulate.hpp"
 #include "operation.hpp"
 #include "simt/warp.hpp"
 #include "tag.hpp"
@@ -161,6 +162,39 @@ struct named<A, Tag, Tags...> {
 template <axis A, class... Tags>
 using named_t = typename named<A, Tags...>::type;
 
+/// The object among tags that is of axis A.
+template <axis A>
+WARPAGG_HD constexpr unnamed object_of() {
+    return {};
+}
+template <axis A, class Tag, class... Tags>
+WARPAGG_HD constexpr auto object_of(Tag tag, Tags... tags) {
+    if constexpr (Tag::of == A) {
+        return tag;
+    } else {
+        return object_of<A>(tags...);
+    }
+}
+
+/// A tag's object; nothing where it holds nothing.
+template <class Tag, bool = __is_empty(Tag)>
+class carried {
+  public:
+    carried() = default;
+    constexpr WARPAGG_HD explicit carried(Tag) {}
+    constexpr WARPAGG_HD Tag accumulating() const { return {}; }
+};
+template <class Tag>
+class carried<Tag, false> {
+  public:
+    carried() = default;
+    constexpr WARPAGG_HD explicit carried(Tag tag) : tag_(tag) {}
+    constexpr WARPAGG_HD Tag accumulating() const { return tag_; }
+
+  private:
+    Tag tag_;
+};
+
 template <class Tag, class Default>
 using or_default = std::conditional_t<std::is_same_v<Tag, unnamed>, Default, Tag>;
 
@@ -186,6 +220,12 @@ inline constexpr bool is_gated = Gate::lanes > 0;
 template <>
 inline constexpr bool is_gated<unnamed> = false;
 
+/// Whether sums are kept otherwise than in the values' own type.
+template <class Accumulate>
+inline constexpr bool is_accumulated = requires {
+    typename Accumulate::number;
+};
+
 template <class P>
 concept is_policy = requires {
     typename P::reduce;
@@ -198,7 +238,7 @@ concept is_policy = requires {
 ///
 /// @snippet warp_reduce_atomic.cpp policy
 template <class... Tags>
-struct policy {
+struct policy : detail::carried<detail::named_t<axis::accumulate, Tags...>> {
     /// How many of the tags are of axis A.
     template <axis A>
     static constexpr int count = (0 + ... + (Tags::of == A ? 1 : 0));
@@ -206,6 +246,9 @@ struct policy {
                   "a policy takes one operation: minimum, maximum, bit_and, bit_or or bit_xor");
     static_assert(count<axis::reduce> <= 1,
                   "a policy takes one reduce tag: per_lane, shfl_down, butterfly, scatter or redux");
+    static_assert(
+        count<axis::accumulate> <= 1,
+        "a policy takes one accumulate tag: native, f64, compensated, fixed<Q>, binned<K> or exact");
     static_assert(count<axis::commit> <= 1,
                   "a policy takes one commit tag: scalar, contiguous, packed<K> or staged");
     static_assert(count<axis::idle> <= 1, "a policy takes one idle tag: skip, assume_busy or add_zeros");
@@ -215,6 +258,7 @@ struct policy {
     /// @{
     using operation = detail::named_t<axis::operation, Tags...>;
     using reduce = detail::named_t<axis::reduce, Tags...>;
+    using accumulate = detail::named_t<axis::accumulate, Tags...>;
     using commit = detail::named_t<axis::commit, Tags...>;
     using idle = detail::named_t<axis::idle, Tags...>;
     using gate = detail::named_t<axis::gate, Tags...>;
@@ -238,13 +282,44 @@ struct policy {
     static_assert(!(std::is_same_v<idle, warpagg::idle::add_zeros> && detail::is_gated<gate>),
                   "at_least<K> sends an idle warp to per-lane atomics, so it never adds zeros: take skip");
 
+    static_assert(
+        !detail::is_accumulated<accumulate> || count<axis::operation> == 0,
+        "f64, compensated, fixed<Q>, binned<K> and exact are ways of keeping a sum: name no operation");
+    static_assert(!detail::is_accumulated<accumulate> || !std::is_same_v<commit, warpagg::commit::staged>,
+                  "a stage is added to memory as it is: staged goes with native");
+
     /// From types: `policy<reduce::scatter>`.
     policy() = default;
     /// From objects: `policy{scatter}`.
-    constexpr WARPAGG_HD explicit policy(Tags...) requires(sizeof...(Tags) > 0) {}
+    constexpr WARPAGG_HD explicit policy(Tags... tags) requires(sizeof...(Tags) > 0)
+        : detail::carried<accumulate>(detail::object_of<axis::accumulate>(tags...)) {}
 };
 /// `policy{scatter, skip}` is a `policy<reduce::scatter, idle::skip>`.
 template <class... Tags>
 policy(Tags...) -> policy<Tags...>;
+
+namespace detail {
+
+/// The policy by which numbers that values were taken apart into are added.
+template <class Chosen, class... Tags>
+struct of_numbers {
+    using type = policy<Tags...>;
+};
+template <class... Chosen, class Next, class... Tags>
+struct of_numbers<policy<Chosen...>, Next, Tags...>
+    : of_numbers<std::conditional_t<Next::of == axis::accumulate, policy<Chosen...>, policy<Chosen..., Next>>,
+                 Tags...> {};
+template <class... Chosen>
+struct of_numbers<policy<Chosen...>> {
+    using type = policy<Chosen...>;
+};
+template <class Policy>
+struct policy_of_numbers;
+template <class... Tags>
+struct policy_of_numbers<policy<Tags...>> {
+    using type = typename of_numbers<policy<typename policy<Tags...>::accumulate::operation>, Tags...>::type;
+};
+
+}  // namespace detail
 
 }  // namespace warpagg

@@ -16,11 +16,12 @@ namespace warpagg {
 
 /// What a policy chooses: one tag at most on each axis.
 enum class axis {
-    operation,  ///< what values are combined by
-    reduce,     ///< how the lanes' values become one
-    commit,     ///< how the results reach memory
-    idle,       ///< what happens when no lane is active
-    gate,       ///< from how many active lanes on the reduction is worth it
+    operation,   ///< what values are combined by
+    reduce,      ///< how the lanes' values become one
+    accumulate,  ///< in what a sum is kept
+    commit,      ///< how the results reach memory
+    idle,        ///< what happens when no lane is active
+    gate,        ///< from how many active lanes on the reduction is worth it
 };
 
 }  // namespace warpagg

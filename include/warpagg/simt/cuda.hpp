@@ -48,6 +48,18 @@ __device__ __forceinline__ void atomic(operation::bit_xor, T* to, T v) {
     atomicXor(reinterpret_cast<bits<T>*>(to), static_cast<bits<T>>(v));
 }
 
+template <class Op, class T>
+requires Op::by_exchange __device__ __forceinline__ void atomic(Op, T* to, T v) {
+    auto* word = reinterpret_cast<unsigned long long*>(to);
+    for (unsigned long long before = *static_cast<volatile unsigned long long*>(word);;) {
+        const unsigned long long after = Op::combine(static_cast<T>(before), v);
+        if (after == before) return;
+        const unsigned long long seen = atomicCAS(word, before, after);
+        if (seen == before) return;
+        before = seen;
+    }
+}
+
 }  // namespace detail
 
 /// The warp that the calling thread belongs to. Empty; every operation is one instruction or a few.

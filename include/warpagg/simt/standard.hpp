@@ -22,6 +22,7 @@ namespace warpagg::std {
 
 using size_t = decltype(sizeof 0);
 using ptrdiff_t = decltype(static_cast<char*>(nullptr) - static_cast<char*>(nullptr));
+using int64_t = long long;
 using uint32_t = unsigned;
 using uint64_t = unsigned long long;
 using uintptr_t = size_t;
