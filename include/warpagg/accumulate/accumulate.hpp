@@ -130,9 +130,10 @@ struct fixed {
     }
 };
 
-/// K words, each the integer sum of what values have in one window of 24 bits, of the highest windows in use
-/// (indexed summation: Demmel and Nguyen 2015). Error: n 2^(24 (1-K)) max|x| + u |S|. The same bits in any
-/// order, for up to 2^31 values; infinities and NaN add up as in IEEE 754. Memory adds by compare-and-swap.
+/// K words, each the integer sum of what values have in one window of 24 bits: word i has the highest window
+/// in use of those whose number is i modulo K (indexed summation: Demmel and Nguyen 2015). Error: n 2^(24
+/// (1-K)) max|x| + u |S|. The same bits in any order, for up to 2^31 values; infinities and NaN add up as in
+/// IEEE 754. Memory adds by compare-and-swap.
 template <unsigned K>
 struct binned {
     static_assert(K >= 2 && K <= 8, "binned<K> takes 2 <= K <= 8 windows");
@@ -168,14 +169,12 @@ struct binned {
     }
 
     WARPAGG_HD static float value(const number (&sum)[numbers]) {
-        std::uint64_t top = 0;
-        for (const auto word : sum) top = word >> 56 > top ? word >> 56 : top;
-        if (top == infinite)
+        if (sum[0] >> 56 == infinite)
             return sum_of_infinities((sum[0] & 0xfffffffu) != 0, (sum[0] >> 28 & 0xfffffffu) != 0);
         limbs exact;
         for (const auto word : sum) {
             const std::uint64_t number = word >> 56;
-            if (number == 0 || number + K <= top) continue;  // left over from before a higher window
+            if (number == 0) continue;
             const std::int64_t signed_sum = static_cast<std::int64_t>(word << 8) >> 8;
             exact.add(signed_sum, static_cast<unsigned>(number - 1) * window);
         }
