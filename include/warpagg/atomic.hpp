@@ -138,6 +138,7 @@ WARPAGG_HD void take_apart(const W& w, const Accumulate& how, const V (&values)[
             return taken;
         };
         if constexpr (requires { typename V::scalar; }) {
+            for (int k = 0; k < each; ++k) numbers[i * each + k] = number{};
             for (int lane = 0; lane < static_cast<int>(W::size); ++lane)
                 if (!split(values[i][lane], [&](Number& of_lanes, number part) { of_lanes.set(lane, part); }))
                     fits.set(lane, false);

@@ -103,9 +103,11 @@ struct on_words {
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {
         if constexpr (requires { typename V::scalar; }) {
+            constexpr int size = V::chunks * V::width;
+            typename V::scalar words[size];  // GCC takes a vector that is set lane by lane for uninitialized
+            for (int lane = 0; lane < size; ++lane) words[lane] = Op::combine_words(a[lane], b[lane]);
             V r;
-            for (int lane = 0; lane < V::chunks * V::width; ++lane)
-                r.set(lane, Op::combine_words(a[lane], b[lane]));
+            std::memcpy(r.part, words, sizeof words);
             return r;
         } else {
             return Op::combine_words(a, b);
