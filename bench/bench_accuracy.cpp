@@ -175,14 +175,15 @@ ordered_json measure(problem p, const std::vector<sizes>& of, const char* name, 
                      const bound& most, int orders, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::vector<double> errors;
-    double largest = 0, over_bound = 0, seconds = 1e300;
+    double largest = 0, over_bound = 0;
+    std::vector<double> nanoseconds;
     std::set<std::vector<std::uint32_t>> patterns;
     for (int order = 0; order < orders; ++order) {
         p.shuffle(random);
         const auto start = std::chrono::steady_clock::now();
         const auto cells = add_up(p, how);
-        seconds = std::min(seconds,
-                           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
+        nanoseconds.push_back(taken.count() / static_cast<double>(p.values.size()));
         std::vector<std::uint32_t> bits;
         for (std::uint32_t i = 0; i < p.sums; ++i) {
             float found = cells[i].value();
@@ -195,13 +196,17 @@ ordered_json measure(problem p, const std::vector<sizes>& of, const char* name, 
         }
         patterns.insert(bits);
     }
-    std::ranges::nth_element(errors, errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2));
+    std::ranges::sort(errors);
+    std::ranges::sort(nanoseconds);
     return {{"tag", name},
             {"median_error", errors[errors.size() / 2]},
             {"largest_error", largest},
             {"error_over_bound", over_bound},
             {"bit_patterns", patterns.size()},
-            {"nanoseconds_per_value", seconds * 1e9 / static_cast<double>(p.values.size())}};
+            {"nanoseconds_a_value",
+             {{"median", nanoseconds[nanoseconds.size() / 2]},
+              {"least", nanoseconds.front()},
+              {"most", nanoseconds.back()}}}};
 }
 
 ordered_json measure_all(const problem& p, const std::vector<sizes>& of, int orders, std::uint64_t seed) {
@@ -225,6 +230,14 @@ ordered_json measure_all(const problem& p, const std::vector<sizes>& of, int ord
         [](const sizes& s) { return s.n * 0x1p-48 * s.largest + u * s.sum; });
     add("exact", accumulate::exact{}, [](const sizes& s) { return u * s.sum; });
     return tags;
+}
+
+/// The processor's name, by Linux; empty if it does not say.
+std::string processor() {
+    std::ifstream about("/proc/cpuinfo");
+    for (std::string line; std::getline(about, line);)
+        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+    return "";
 }
 
 }  // namespace
@@ -264,15 +277,12 @@ int main(int argc, char** argv) {
                     "  %-22s error %.1e to %.1e, of its bound %.2g, %d bit patterns, %.1f ns a value\n",
                     tag["tag"].get<std::string>().c_str(), tag["median_error"].get<double>(),
                     tag["largest_error"].get<double>(), tag["error_over_bound"].get<double>(),
-                    tag["bit_patterns"].get<int>(), tag["nanoseconds_per_value"].get<double>());
+                    tag["bit_patterns"].get<int>(), tag["nanoseconds_a_value"]["median"].get<double>());
         }
-    const ordered_json result{{"bench", "accuracy"},
-                              {"device", "emulator, 8 lanes"},
-                              {"compiler", WARPAGG_COMPILER},
-                              {"commit", WARPAGG_COMMIT},
-                              {"seed", seed},
-                              {"orders", orders},
-                              {"rows", rows}};
+    const ordered_json result{{"bench", "accuracy"},      {"device", "emulator, 8 lanes"},
+                              {"processor", processor()}, {"compiler", WARPAGG_COMPILER},
+                              {"commit", WARPAGG_COMMIT}, {"seed", seed},
+                              {"orders", orders},         {"rows", rows}};
     std::ofstream(output) << result.dump(1) << '\n';
     return 0;
 }

@@ -263,6 +263,31 @@ def schedules():
     return markdown(head, rows) + f"\n`{options}`, {machine_and_seeds}; medians, in brackets how they stand to the default's.\n"
 
 
+def accuracy():
+    """Each way of keeping a sum: errors by condition, of its bound, bit patterns, and cost beside native's."""
+    f = results("accuracy_emulator")
+    of = lambda row: {t["tag"]: t for t in row["tags"]}
+    one = {row["values"]: of(row) for row in f["rows"] if row["sums"] == 1}
+    conditions = {"condition 1e00": "k = 1", "condition 1e06": "1e6", "condition 1e12": "1e12"}
+    cost = lambda tags, tag: tags[tag]["nanoseconds_a_value"]["median"]
+    rows, spread = [], 0
+    for tag in next(iter(one.values())):
+        same = [of(row)[tag] for row in f["rows"]]
+        spread = max([spread] + [(t["nanoseconds_a_value"]["most"] - t["nanoseconds_a_value"]["least"]) / t["nanoseconds_a_value"]["median"]
+                                 for t in same])
+        times = [statistics.median(cost(of(row), tag) / cost(of(row), "native") for row in f["rows"] if row["sums"] == sums)
+                 for sums in sorted({row["sums"] for row in f["rows"]})]
+        patterns = [t["bit_patterns"] for t in same]
+        rows.append([f"`{tag}`"] + [f"{one[c][tag]['largest_error']:.0e}" for c in conditions]
+                    + [f"{max(t['error_over_bound'] for t in same):.2g}",
+                       f"{min(patterns)} to {max(patterns)}" if min(patterns) < max(patterns) else f"{max(patterns)}"]
+                    + [f"{t:.1f}×" for t in times])
+    head = ["tag"] + [f"largest relative error, {c}" for c in conditions.values()] + ["of its bound, at most", "bit patterns"]
+    head += [f"time, {sums:,} sum{'s' * (sums > 1)}" for sums in sorted({row["sums"] for row in f["rows"]})]
+    return markdown(head, rows) + (f"\n{f['rows'][0]['n']:,} values in {f['orders']} orders; median of times, beside `native`'s; spread (largest - least) / "
+                                   f"median up to {100 * spread:.0f} %. {f['device']}, {f['processor']}, {f['compiler']}, commit {f['commit']}, seed {f['seed']}.\n")
+
+
 def machine(figures):
     return f"{figures['gpu_and_driver']}, {figures['nvcc']}, commit {figures['commit']}."
 
@@ -277,7 +302,7 @@ EXAMPLES = {
 }
 
 TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability, hard_cases,
-                                 against_double, backward_ladder, backward_contenders, roofline, schedules)}
+                                 against_double, backward_ladder, backward_contenders, roofline, schedules, accuracy)}
 TABLES.update({f"{name}_{m}": example(m, title) for name, title in EXAMPLES.items() for m in ("emulator", "gpu")})
 
 
