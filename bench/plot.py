@@ -29,7 +29,7 @@ def errors_by_condition(axis, rows):
                                 ("bound of f64", "--", lambda k: u + n * 2.0 ** -53 * k)):
         axis.loglog(conditions, [bound(k) for k in conditions], color="0.5", linestyle=style, linewidth=1, label=label)
     axis.set(xlabel="condition number of the sum", ylabel="largest relative error", ylim=(1e-9, 1e3), title=f"{n:,} values, one sum")
-    axis.legend(fontsize=7, ncol=2)
+    axis.legend(fontsize=7, ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.13))
     axis.grid(alpha=0.2)
 
 
