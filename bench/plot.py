@@ -25,7 +25,7 @@ def errors_by_condition(axis, rows):
         axis.loglog(conditions, errors, "k-", marker=marker, markerfacecolor="white", linewidth=0.8, label=tag)
     n, u = rows[0]["n"], 2.0 ** -24
     for label, style, bound in (("bound of native", ":", lambda k: n * u * k),
-                                ("bound of compensated", "-.", lambda k: u + n * n * u * u * k),
+                                ("bound of compensated", "-.", lambda k: u + 5 * n * u * u * k),
                                 ("bound of f64", "--", lambda k: u + n * 2.0 ** -53 * k)):
         axis.loglog(conditions, [bound(k) for k in conditions], color="0.5", linestyle=style, linewidth=1, label=label)
     axis.set(xlabel="condition number of the sum", ylabel="largest relative error", ylim=(1e-9, 1e3), title=f"{n:,} values, one sum")

@@ -220,7 +220,7 @@ TEST_CASE("sums err by no more than their bound, whatever cancels") {
                 [](auto s) { return (s.n * 0x1p-53 * s.k() + u) * std::abs(s.sum); }, "f64");
             check_bound(
                 values, accumulate::compensated{},
-                [](auto s) { return (u + s.n * s.n * u * u * s.k()) * std::abs(s.sum); }, "compensated");
+                [](auto s) { return (u + 5 * s.n * u * u * s.k()) * std::abs(s.sum); }, "compensated");
             check_bound(
                 values, accumulate::fixed<15>{}, [](auto s) { return s.n * 0x1p-16 + u * std::abs(s.sum); },
                 "fixed<15>");
@@ -242,9 +242,23 @@ TEST_CASE("sums err by no more than their bound, whatever cancels") {
         }
 }
 
+TEST_CASE("sums of hard values err by no more than their bound") {
+    for (const auto& set : hard_sets()) {
+        check_bound(
+            set, accumulate::binned<2>{},
+            [](auto s) { return s.n * 0x1p-24 * s.largest + u * std::abs(s.sum); }, "binned<2>");
+        check_bound(
+            set, accumulate::binned<4>{},
+            [](auto s) { return s.n * 0x1p-72 * s.largest + u * std::abs(s.sum) + 0x1p-150; }, "binned<4>");
+    }
+}
+
 TEST_CASE("the order of additions does not show") {
     for (const auto& set : hard_sets()) {
-        check_any_order(set, accumulate::fixed<40>{}, "fixed<40>");
+        float largest = 0;
+        for (const float x : set) largest = std::max(largest, 2 * std::abs(x));
+        check_any_order(set, accumulate::fixed<40>{nullptr, accumulate::fixed<40>::scale_to_fit(largest)},
+                        "fixed<40>, scaled to fit");
         check_any_order(set, accumulate::binned<2>{}, "binned<2>");
         check_any_order(set, accumulate::binned<3>{}, "binned<3>");
         check_any_order(set, accumulate::exact{}, "exact");
@@ -301,13 +315,15 @@ TEST_CASE("fixed says what does not fit, and leaves it out") {
     CHECK(faults({1.5f, infinity, -1}, 1) == found{1, 0.5f});
     CHECK(faults({1.5f, nan_value, -1}, 1) == found{1, 0.5f});
     CHECK(faults({1.5f, 262144, -1}, 0.125f) == found{0, 262144.5f});
-    for (const float largest : {1e-40f, 1e-20f, 0.3f, 1.0f, 1e5f, 1e30f, std::numeric_limits<float>::max()}) {
+    // The largest there is that fits: each lane has twice as much in another component.
+    for (const float largest :
+         {1e-30f, 1e-20f, 0.3f, 1.0f, 1.5f, 3.0f, 1e5f, 1e30f, std::numeric_limits<float>::max()}) {
         const float scale = accumulate::fixed<20>::scale_to_fit(largest);
         CAPTURE(largest);
         CHECK(faults({0.5f * largest, -0.25f * largest}, scale).first == 0);
-        if (largest > 1e-20f)
-            CHECK(faults({8 * largest > largest * 4 ? 4 * largest : infinity}, scale).first == 1);
+        CHECK(faults({0.5f * largest, -0.25f * largest}, 2 * scale).first == 1);
     }
+    CHECK(accumulate::fixed<20>::scale_to_fit(1e-40f) == 0x1p126f);
     CHECK(accumulate::fixed<20>::scale_to_fit(0) == 1);
 }
 
@@ -382,14 +398,37 @@ TEST_CASE("cells behind accessors and keys") {
     check_accessors<accumulate::exact>("exact");
 }
 
-TEST_CASE("whatever else a policy says, the sums are the same") {
+namespace {
+
+template <class Accumulate>
+void check_policies(const std::string& name) {
     const std::vector<float> values = hard_sets()[3];
-    const std::vector<float> as_default = sums(values, accumulate::exact{});
-    CHECK(sums(values, accumulate::exact{}, per_lane) == as_default);
-    CHECK(sums(values, accumulate::exact{}, shfl_down) == as_default);
-    CHECK(sums(values, accumulate::exact{}, butterfly, contiguous) == as_default);
-    CHECK(sums(values, accumulate::exact{}, at_least<20>) == as_default);
-    CHECK(sums(values, accumulate::exact{}, scatter, add_zeros) == as_default);
+    const Accumulate how{};
+    const std::vector<float> as_default = sums(values, how);
+    INFO(name);
+    CHECK(sums(values, how, per_lane) == as_default);
+    CHECK(sums(values, how, shfl_down) == as_default);
+    CHECK(sums(values, how, butterfly, contiguous) == as_default);
+    CHECK(sums(values, how, at_least<20>) == as_default);
+    CHECK(sums(values, how, scatter, add_zeros) == as_default);
+}
+
+}  // namespace
+
+TEST_CASE("whatever else a policy says, the sums are the same") {
+    check_policies<accumulate::binned<3>>("binned<3>");
+    check_policies<accumulate::exact>("exact");
+}
+
+TEST_CASE("infinities of binned do not count, they are there or not") {
+    for (const float x : {infinity, -infinity, nan_value}) {
+        using binned = accumulate::binned<3>;
+        std::uint64_t sum[binned::numbers];
+        binned::split(x, sum);
+        for (int doubled = 0; doubled < 40; ++doubled)
+            for (auto& word : sum) word = binned::operation::combine_words(word, word);
+        CHECK(bits_of(binned::value(sum)) == bits_of(x));
+    }
 }
 
 TEST_SUITE_END();

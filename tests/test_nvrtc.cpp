@@ -57,6 +57,26 @@ extern "C" __global__ void the_rest(float* floats, long long* wide, unsigned* wo
     warp_reduce_atomic(w, words, bits, active, policy{redux, bit_xor});
     warp_reduce_atomic(w, particles, particle{1, {2, 3}}, active);
 }
+
+template <class Accumulate>
+__device__ void keep(void* cells, float* result, bool active, Accumulate how) {
+    using namespace warpagg;
+    const cuda::warp w;
+    const float two[2] = {1, -1};
+    auto* const to = static_cast<cell<Accumulate>*>(cells);
+    warp_reduce_atomic(w, to, two, active, policy{how});
+    warp_match_reduce_atomic(w, to, w.lane() % 2, two, active, policy{how});
+    *result = to->value();
+}
+
+extern "C" __global__ void kept_otherwise(void* cells, float* result, unsigned* fault, bool active) {
+    namespace accumulate = warpagg::accumulate;
+    keep(cells, result, active, accumulate::f64{});
+    keep(cells, result, active, accumulate::compensated{});
+    keep(cells, result, active, accumulate::fixed<9>{fault, accumulate::fixed<9>::scale_to_fit(3)});
+    keep(cells, result, active, accumulate::binned<3>{});
+    keep(cells, result, active, accumulate::exact{});
+}
 )";
 
 /// The PTX of `source`, or an empty string and the compiler's log.

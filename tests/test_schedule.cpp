@@ -81,6 +81,11 @@ TEST_CASE("the shorter densification is, the larger are the gradients that grow,
     CHECK(s.growth_threshold() == doctest::Approx(1e-4));
     s.densify_until_iter = 15000 / 256;
     CHECK(s.growth_threshold() == doctest::Approx(2e-4).epsilon(0.01));
+    s.iterations = 7000;
+    s.densify_until_iter = 30000;
+    CHECK(s.densify_until() == 7000);
+    CHECK(s.growth_threshold() == doctest::Approx(1e-4 * std::pow(15.0 / 7, 0.125)));
+    CHECK_FALSE(s.resets_opacity(6000));
     s.densify_until_iter = 0;
     CHECK(std::isfinite(s.growth_threshold()));
     s.densify_grad_threshold = 3e-4;

@@ -92,3 +92,33 @@ TEST_CASE("each thread launches a unit-test machine of its own") {
 }
 
 TEST_SUITE_END();
+
+namespace {
+
+template <class Accumulate>
+void check_cells(const char* name) {
+    constexpr unsigned rounds = 2000;
+    warpagg::cell<Accumulate> sums[2];
+    on_each_thread([&](unsigned thread) {
+        const warpagg::emulator::narrow_lanes<8> w;
+        for (unsigned i = 0; i < rounds; ++i) {
+            const float x = thread % 2 == 0 ? 1024.0f : 0.125f;
+            const warpagg::lanes<float, 8> values[2] = {x, -x};
+            warpagg::warp_reduce_atomic(w, sums, values, w.lane() < 4u, warpagg::policy{Accumulate{}});
+        }
+    });
+    INFO(name);
+    const float sum = 4 * rounds * threads / 2 * (1024.0f + 0.125f);
+    CHECK(sums[0].value() == sum);
+    CHECK(sums[1].value() == -sum);
+}
+
+}  // namespace
+
+TEST_CASE("threads add to cells of every kind") {
+    check_cells<warpagg::accumulate::f64>("f64");
+    check_cells<warpagg::accumulate::compensated>("compensated");
+    check_cells<warpagg::accumulate::fixed<10>>("fixed<10>");
+    check_cells<warpagg::accumulate::binned<2>>("binned<2>");
+    check_cells<warpagg::accumulate::exact>("exact");
+}

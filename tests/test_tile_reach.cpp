@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <warpagg/simt/lanes.hpp>
 #include <warpagg/simt/serial.hpp>
 
 #include "raster/tile_reach.hpp"
@@ -69,6 +70,43 @@ TEST_CASE("a splat reaches some tile of its box where looking at each finds one"
     CHECK(reaching > 2000);
     CHECK(missing > 2000);
     CHECK(undecided < 20);
+}
+
+TEST_CASE("lanes look for tiles each for itself") {
+    using lanes_of_8 = warpagg::emulator::narrow_lanes<8>;
+    using real = warpagg::lanes<float, 8>;
+    using number = warpagg::lanes<std::uint32_t, 8>;
+    std::mt19937 random(6);
+    const warpagg::emulator::serial one{};
+    const lanes_of_8 w;
+    int reaching = 0;
+    for (int i = 0; i < 2000; ++i) {
+        real values[8];
+        number x0(0u), x1(0u), y0(0u), y1(0u);
+        warpagg::lanes<bool, 8> asked(false);
+        for (auto& v : values) v = real(0.0f);
+        bool expected[8];
+        for (int lane = 0; lane < 8; ++lane) {
+            const splat<float> s = random_splat(random);
+            const float of_splat[8] = {s.x, s.y, s.p, s.q, s.r, s.slope_x, s.slope_y, s.reach};
+            for (int k = 0; k < 8; ++k) values[k].set(lane, of_splat[k]);
+            const auto below = [&](unsigned end) { return static_cast<unsigned>(random() % end); };
+            x0.set(lane, below(40));
+            x1.set(lane, x0[lane] + below(41 - x0[lane]));
+            y0.set(lane, below(30));
+            y1.set(lane, y0[lane] + below(31 - y0[lane]));
+            asked.set(lane, below(4) != 0);
+            expected[lane] = reaches_any_tile(one, s, x0[lane], x1[lane], y0[lane], y1[lane], asked[lane]);
+            reaching += expected[lane] ? 1 : 0;
+        }
+        splat<real> s{};
+        s.x = values[0], s.y = values[1], s.p = values[2], s.q = values[3], s.r = values[4];
+        s.slope_x = values[5], s.slope_y = values[6], s.reach = values[7];
+        const auto found = reaches_any_tile(w, s, x0, x1, y0, y1, asked);
+        CAPTURE(i);
+        for (int lane = 0; lane < 8; ++lane) CHECK(found[lane] == expected[lane]);
+    }
+    CHECK(reaching > 1000);
 }
 
 TEST_CASE("a splat between two rows of tiles reaches none, though it reaches their box") {

@@ -113,6 +113,23 @@ WARPAGG_HD auto record_of_numbers(Dst dst) {
 }
 /// @}
 
+template <class Accumulate>
+inline constexpr bool can_fault = requires(const Accumulate& a) {
+    a.fault;
+};
+
+/// Takes x apart; whether it could be.
+template <class Accumulate>
+WARPAGG_HD bool split_one(const Accumulate& how, float x,
+                          typename Accumulate::number (&to)[Accumulate::numbers]) {
+    if constexpr (can_fault<Accumulate>) {
+        return how.split(x, to);
+    } else {
+        how.split(x, to);
+        return true;
+    }
+}
+
 /// Takes the lanes' values apart, number k of values[i] to numbers[i * Accumulate::numbers + k], and says of
 /// those of active lanes that could not be that there are such.
 WARPAGG_EXEC_CHECK_DISABLE
@@ -120,35 +137,27 @@ template <class Accumulate, warp W, class V, int N, class Number, int M>
 WARPAGG_HD void take_apart(const W& w, const Accumulate& how, const V (&values)[N], const mask_t<W>& active,
                            Number (&numbers)[M]) {
     constexpr int each = Accumulate::numbers;
-    constexpr bool can_fail = requires(const Accumulate& a) { a.fault; };
-    using number = typename Accumulate::number;
+    typename Accumulate::number part[each];
     mask_t<W> fits(true);
     WARPAGG_UNROLL
     for (int i = 0; i < N; ++i) {
-        const auto split = [&](float x, auto&& put) {
-            number part[each];
-            bool taken = true;
-            if constexpr (can_fail) {
-                taken = how.split(x, part);
-            } else {
-                how.split(x, part);
-            }
-            WARPAGG_UNROLL
-            for (int k = 0; k < each; ++k) put(numbers[i * each + k], part[k]);
-            return taken;
-        };
         if constexpr (requires { typename V::scalar; }) {
-            for (int k = 0; k < each; ++k) numbers[i * each + k] = number{};
-            for (int lane = 0; lane < static_cast<int>(W::size); ++lane)
-                if (!split(values[i][lane], [&](Number& of_lanes, number part) { of_lanes.set(lane, part); }))
-                    fits.set(lane, false);
+            typename Accumulate::number words[each][W::size];  // not set in vectors: see on_words
+            for (int lane = 0; lane < static_cast<int>(W::size); ++lane) {
+                if (!split_one(how, values[i][lane], part)) fits.set(lane, false);
+                for (int k = 0; k < each; ++k) words[k][lane] = part[k];
+            }
+            for (int k = 0; k < each; ++k) std::memcpy(numbers[i * each + k].part, words[k], sizeof words[k]);
         } else {
-            if (!split(values[i], [](Number& to, number part) { to = part; })) fits = false;
+            fits = split_one(how, values[i], part) && fits;
+            WARPAGG_UNROLL
+            for (int k = 0; k < each; ++k) numbers[i * each + k] = part[k];
         }
     }
-    if constexpr (can_fail) {
+    if constexpr (can_fault<Accumulate>) {
+        if (how.fault == nullptr) return;
         const mask_t<W> faulty = active && !fits;
-        if (w.any(faulty) && how.fault != nullptr)
+        if (w.any(faulty))
             w.atomic(operation::bit_or{}, commit::contiguous_record<std::uint32_t>{how.fault},
                      value_t<W, unsigned>(0u), value_t<W, std::uint32_t>(1u), faulty);
     }
@@ -184,6 +193,9 @@ WARPAGG_HD void take_apart(const W& w, const Accumulate& how, const V (&values)[
 ///                see accumulate/accumulate.hpp
 ///
 /// @pre All lanes of the warp call this, with the same `dst`, which holds N values of T, aligned as T.
+///
+/// Sums that are not native: what a value is taken apart into is computed in idle warps, too (ask
+/// `skip_if_warp_idle` first where many are); a `fixed` that is to tell of faults takes a vote more.
 ///
 /// The order in which warps add is not fixed. Inside a warp the tree is, the same for every reduction but
 /// `per_lane`; lanes that the gate leaves to themselves add in any order. Error of a float sum with all lanes

@@ -119,9 +119,11 @@ WARPAGG_HD auto base_of_numbers(cell<Accumulate>* base) {
 }
 template <class Accumulate, class Base>
 WARPAGG_HD auto base_of_numbers(Base base) {
-    static_assert(
-        requires { base(0u, 0u)->number; },
-        "a sum that is not native is kept in cells: the base's are cell<...> of the policy's tag");
+    constexpr bool are_cells = requires {
+        { base(0u, 0u) } -> std::same_as<cell<Accumulate>*>;
+    };
+    static_assert(are_cells,
+                  "a sum that is not native is kept in cells: the base's are cell<...> of the policy's tag");
     return numbers_by_key<Base, Accumulate::numbers>{base};
 }
 /// @}
@@ -227,6 +229,7 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
         detail::match_and_commit<Policy>(w, base, key, values, active, at);
     }
 }
+
 /// The same for a type of yours that consists of numbers, at `base[key]`: see components.hpp. On models whose
 /// lane values are scalars, not on `emulator::lanes`.
 WARPAGG_EXEC_CHECK_DISABLE

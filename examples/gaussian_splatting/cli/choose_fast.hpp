@@ -10,7 +10,7 @@
 
 namespace gs::cli {
 
-/// Says for `--quality fast` what the command line does not: the switches that pay, by docs/speed.md.
+/// Says for `--quality fast` what the command line does not: switches that save time, by docs/speed.md.
 /// Precondition: `train` has been parsed, into `schedule`.
 inline void choose_fast(CLI::App& train, const train::schedule& schedule) {
     const auto choose = [&](const char* name, const std::string& value) {

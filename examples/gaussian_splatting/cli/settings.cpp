@@ -148,7 +148,7 @@ void add_schedule(CLI::App& app, train::schedule& s) {
     rate("--scaling-lr", s.scaling_lr, "Of log scales");
     rate("--rotation-lr", s.rotation_lr, "Of quaternions");
     count("--opacity-reset-interval", s.opacity_reset_interval, 1,
-          "Iterations between two resets, of which none is in densification's last interval");
+          "Iterations between two resets; none in densification's last interval, but for the first on white");
     count("--densification-interval", s.densification_interval, 1, "Iterations between two densifications");
     count("--densify-from-iter", s.densify_from_iter, 0, "Densify after this iteration");
     app.add_option("--densify-until-iter", s.densify_until_iter,
@@ -173,7 +173,7 @@ CLI::App* add_train(CLI::App& app, settings& s) {
     train->add_option("-o,--output,-m,--model-path", s.output, "Folder for the results")->required();
     train
         ->add_option("--quality", s.quality,
-                     "fast: 5000 iterations and the options of the schedule that pay; what is said wins")
+                     "fast: 5000 iterations, and options of the schedule that save time; what is said wins")
         ->check(CLI::IsMember({"full", "fast"}))
         ->capture_default_str();
     train->add_option("-i,--iterations", s.schedule.iterations)

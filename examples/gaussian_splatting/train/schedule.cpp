@@ -26,7 +26,9 @@ std::array<float, 8> schedule::rates_at(int iteration) const {
     return rates;
 }
 
-int schedule::densify_until() const { return densify_until_iter.value_or(std::min(15000, iterations / 2)); }
+int schedule::densify_until() const {
+    return std::min(densify_until_iter.value_or(std::min(15000, iterations / 2)), iterations);
+}
 
 double schedule::growth_threshold() const {
     const double shorter = 15000.0 / std::clamp(densify_until(), 1, 15000);

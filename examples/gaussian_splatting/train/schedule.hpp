@@ -64,7 +64,8 @@ struct schedule {
     /// How many densifications there are in this iteration and after it. Precondition: it is not past the
     /// last.
     int densifications_from(int iteration) const;
-    /// Not in densification's last interval: what a reset took back has to grow again.
+    /// Every interval, but not in densification's last one: what a reset took back has to grow again. On
+    /// white once more, when densification begins.
     bool resets_opacity(int iteration) const;
     /// Gaussians that are large in the world are dropped once opacities have been reset. Those that are large
     /// on the screen are not: that costs lego 1.7 dB.

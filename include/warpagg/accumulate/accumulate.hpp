@@ -35,9 +35,10 @@ struct f64 {
     /// @}
 };
 
-/// Two floats, of which the second has what rounding took from the first (Knuth's two-sum; Joldes et al.
-/// 2017, algorithm 6). Error: u + n^2 u^2 k. The order shows. Memory adds by compare-and-swap. Precondition:
-/// not compiled with -ffast-math, which takes the second for zero.
+/// Two floats, of which the second has what rounding took from the first (Joldes et al. 2017, algorithm 5).
+/// Error: u + 5 n u^2 k. The order shows. Memory adds by compare-and-swap.
+/// Precondition: not compiled with -ffast-math, which takes the second for zero. With nvcc's -ftz=true
+/// denormals are zero here as elsewhere.
 struct compensated {
     static constexpr auto of = axis::accumulate;
     using number = std::uint64_t;  ///< the bits of both, the first in the lower half
@@ -85,7 +86,7 @@ struct compensated {
 /// @snippet accumulate.cpp fixed
 template <int Q>
 struct fixed {
-    static_assert(Q >= -100 && Q <= 200, "fixed<Q> takes -100 <= Q <= 200");
+    static_assert(Q >= -100 && Q <= 149, "fixed<Q> takes -100 <= Q <= 149");
     static constexpr auto of = axis::accumulate;
     /// See the namespace.
     /// @{
@@ -112,12 +113,12 @@ struct fixed {
     /// The largest scale by which values up to this in magnitude fit, as far as a float can be.
     /// Precondition: it is finite.
     static WARPAGG_HD float scale_to_fit(float largest) {
-        const double room = power_of_two(37 - Q);
-        float scale = 1;
+        const double room = power_of_two(38 - Q);
         const double magnitude = static_cast<double>(largest < 0 ? -largest : largest);
+        float scale = 1;
         if (magnitude == 0) return scale;
-        while (magnitude * static_cast<double>(scale) > room && scale > 0x1p-126f) scale *= 0.5f;
-        while (magnitude * static_cast<double>(scale) * 2 <= room && scale < 0x1p126f) scale *= 2;
+        while (magnitude * static_cast<double>(scale) >= room && scale > 0x1p-126f) scale *= 0.5f;
+        while (magnitude * static_cast<double>(scale) * 2 < room && scale < 0x1p126f) scale *= 2;
         return scale;
     }
 
@@ -149,28 +150,28 @@ struct binned {
         /// See `on_words`.
         WARPAGG_HD static std::uint64_t combine_words(std::uint64_t a, std::uint64_t b) {
             const std::uint64_t of_a = a >> 56, of_b = b >> 56;
-            return of_a > of_b ? a : of_b > of_a ? b : word(of_a, a + b);
+            if (of_a != of_b) return of_a > of_b ? a : b;
+            return of_a == infinite ? a | b : word(of_a, a + b);
         }
     };
 
     WARPAGG_HD static void split(float x, number (&to)[numbers]) {
-        for (auto& word : to) word = 0;
         const parts_of_float p(x);
-        if (!p.finite) {
-            const std::uint64_t positive = p.nan || !p.negative, negative = p.nan || p.negative;
-            to[0] = word(infinite, positive | negative << 28);
-            return;
-        }
         const std::uint64_t wide = std::uint64_t{p.significand} << p.bit % window;
         const std::uint64_t low = wide & ((1u << window) - 1), high = wide >> window;
         const unsigned number = p.bit / window + 1;
-        if (low != 0) to[number % K] = word(number, p.negative ? 0 - low : low);
-        if (high != 0) to[(number + 1) % K] = word(number + 1, p.negative ? 0 - high : high);
+        const std::uint64_t words[2] = {low == 0 ? 0 : word(number, p.negative ? 0 - low : low),
+                                        high == 0 ? 0 : word(number + 1, p.negative ? 0 - high : high)};
+        const std::uint64_t signs = (p.nan || !p.negative ? 1u : 0u) | (p.nan || p.negative ? 2u : 0u);
+        WARPAGG_UNROLL
+        for (unsigned k = 0; k < K; ++k) {  // without an index known at run time: in registers
+            to[k] = number % K == k ? words[0] : (number + 1) % K == k ? words[1] : 0;
+            if (!p.finite) to[k] = k == 0 ? word(infinite, signs) : 0;
+        }
     }
 
     WARPAGG_HD static float value(const number (&sum)[numbers]) {
-        if (sum[0] >> 56 == infinite)
-            return sum_of_infinities((sum[0] & 0xfffffffu) != 0, (sum[0] >> 28 & 0xfffffffu) != 0);
+        if (sum[0] >> 56 == infinite) return sum_of_infinities((sum[0] & 1u) != 0, (sum[0] & 2u) != 0);
         limbs exact;
         for (const auto word : sum) {
             const std::uint64_t number = word >> 56;
