@@ -81,7 +81,7 @@ struct compensated {
 /// order.
 ///
 /// A value that is not finite, or of 2^(38-Q) / scale or more, is left out, and `*fault` becomes 1, where it
-/// stays: as long as it is 0 no sum of up to 2^25 values has overflown.
+/// stays: as long as it is 0 no sum of fewer than 2^25 values has overflowed.
 ///
 /// @snippet accumulate.cpp fixed
 template <int Q>
