@@ -283,6 +283,7 @@ int main(int argc, char** argv) {
                               {"processor", processor()}, {"compiler", WARPAGG_COMPILER},
                               {"commit", WARPAGG_COMMIT}, {"seed", seed},
                               {"orders", orders},         {"rows", rows}};
-    std::ofstream(output) << result.dump(1) << '\n';
-    return 0;
+    if ((std::ofstream(output) << result.dump(1) << '\n').flush()) return 0;
+    std::fprintf(stderr, "error: %s cannot be written\n", output.c_str());
+    return 1;
 }
