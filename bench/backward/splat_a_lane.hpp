@@ -41,7 +41,7 @@ struct splat_a_lane {
         const float dx = static_cast<float>(x0) + 0.5f - s.x, dy = static_cast<float>(y0) + 0.5f - s.y;
         const staged_splat<float> staged{s.p,    s.p * dx,   s.r,   warpagg::math::fma(s.q, dy, s.r * dx),
                                          s.q,    s.strength, s.red, s.green,
-                                         s.blue, {}};
+                                         s.blue, 0,          0,     0};
         float sum[sum_count] = {};
         float T = 0, rest = 0;  // of the pixel that is at this lane: rest is g (C - colour so far)
         for (unsigned step = 0; step < pixels + 31; ++step) {

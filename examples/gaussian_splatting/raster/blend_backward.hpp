@@ -96,10 +96,8 @@ struct blend_backward {
             const unsigned staged = reader.stage(w, base, base - W::size, base - 2 * W::size);
             if constexpr (!std::is_same_v<mask_t<W>, bool>)  // one thread, which would wait for each
                 for (unsigned i = 0; i < staged; ++i)
-                    __builtin_prefetch(sums + stage.gaussians[i] * record_stride, 1);
-            for (unsigned i = staged; i-- > 0;)
-                add_splat(w, p, stage.splats[i], stage.ranks[i], end, pixels,
-                          stage.gaussians[i] * record_stride);
+                    __builtin_prefetch(sums + stage.splats[i].gaussian * record_stride, 1);
+            for (unsigned i = staged; i-- > 0;) add_splat(w, p, stage.splats[i], end, pixels);
             if (base <= from) break;
         }
     }
@@ -131,10 +129,11 @@ struct blend_backward {
     }
 
     template <class W, class Patch, class real, class ends>
-    WARPAGG_HD void add_splat(const W& w, const Patch& p, const staged_splat<Real>& s, unsigned rank,
-                              const ends& end, pixel_state<real> (&pixels)[Cut::rows],
-                              unsigned record) const {
+    WARPAGG_HD void add_splat(const W& w, const Patch& p, const staged_splat<Real>& s, const ends& end,
+                              pixel_state<real> (&pixels)[Cut::rows]) const {
         constexpr unsigned rows = Cut::rows;
+        const auto rank = static_cast<unsigned>(s.rank);
+        const auto record = static_cast<unsigned>(s.gaussian) * record_stride;
         const column_view<W, Real> seen(s, p.x);
         real v[rows], strength[rows];
         mask_t<W> counts[rows];

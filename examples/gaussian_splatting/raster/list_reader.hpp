@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "bits.hpp"
 #include "patch.hpp"
 
 namespace gs::raster {
@@ -12,7 +13,9 @@ template <class Real>
 struct alignas(16) staged_splat {
     Real p, u0, r, v0;
     Real q, strength, red, green;
-    Real blue, unused[3];
+    Real blue;
+    bits_as<Real> rank;  ///< in the tile's list, from one
+    bits_as<Real> gaussian, unused;
 };
 
 /// What the pixels of a lane's column see of a splat.
@@ -40,8 +43,6 @@ struct column_view {
 template <class W, class Real>
 struct splat_stage {
     staged_splat<Real> splats[W::size];
-    std::uint32_t ranks[W::size];  ///< in the tile's list, from one
-    std::uint32_t gaussians[W::size];
 };
 
 /// Reads a list W::size places at a time and puts on the stage what may reach a patch. The splats of the next
@@ -74,14 +75,16 @@ class list_reader {
         if (hits != 0) {
             const real dx = patch_.tile_left - field_[0], dy = patch_.tile_top - field_[1];
             const auto &p = field_[2], &q = field_[3], &r = field_[4];
-            const real staged[12] = {p,          p * dx,    r,         fma(q, dy, r * dx),
-                                     q,          field_[8], field_[9], field_[10],
-                                     field_[11], real(0),   real(0),   real(0)};
+            const auto bits = [](const index& i) {
+                return bits_of<real>(warpagg::math::convert<bits_as<Real>>(i));
+            };
+            const index rank = w.lane() + (base + 1 - begin_);
+            const real staged[12] = {
+                p,          p * dx,     r,          fma(q, dy, r * dx), q,      field_[8], field_[9],
+                field_[10], field_[11], bits(rank), bits(gaussian_),    real(0)};
             const index slot = warpagg::math::popcount(lanes_below(w) & index(hits));
             w.sync();  // the last ones have been read
             w.store_packed(reinterpret_cast<Real*>(stage_.splats), slot * 12u, staged, reaches);
-            w.store(stage_.ranks, slot, w.lane() + (base + 1 - begin_), reaches);
-            w.store(stage_.gaussians, slot, gaussian_, reaches);
             w.sync();
         }
         fetch(w, next, after);
