@@ -108,12 +108,23 @@ struct add_in_order {
     }
 };
 
+/// What cells are of, of sums that are kept as `Accumulate` says.
+template <class Accumulate>
+struct kept_by {
+    using type = Accumulate;
+};
+template <class Accumulate>
+struct kept_by<accumulate::between_warps<Accumulate>> {
+    using type = Accumulate;
+};
+
 template <class Accumulate, class... Tags>
 std::vector<float> sums(const std::vector<float>& values, Accumulate how, Tags... tags) {
+    using cell = warpagg::cell<typename kept_by<Accumulate>::type>;
     typename backend::template memory<float> in(values);
-    typename backend::template memory<cell<Accumulate>> cells(std::vector<cell<Accumulate>>(3));
+    typename backend::template memory<cell> cells(std::vector<cell>(3));
     const policy all{how, tags...};
-    backend::launch(add_in_order<std::remove_const_t<decltype(all)>, cell<Accumulate>*>{
+    backend::launch(add_in_order<std::remove_const_t<decltype(all)>, cell*>{
         in.data(), static_cast<unsigned>(values.size()), cells.data(), all});
     std::vector<float> result;
     for (const auto& c : cells.download()) {
@@ -418,6 +429,75 @@ void check_policies(const std::string& name) {
 TEST_CASE("whatever else a policy says, the sums are the same") {
     check_policies<accumulate::binned<3>>("binned<3>");
     check_policies<accumulate::exact>("exact");
+}
+
+namespace {
+
+/// Of policies that leave it to different lanes to commit: values that warps hand on without an error, so
+/// that memory's sums are exact ones.
+template <class Kept>
+void check_between_warps(const Kept& how, const std::string& name) {
+    std::mt19937 random(5);
+    std::vector<float> values;
+    for (int i = 0; i < 300; ++i)  // multiples of 2^-10 below 2^8: a warp's sum has 24 bits
+        values.push_back(static_cast<float>(static_cast<int>(random() % 0x40000u)) * 0x1p-10f - 128.0f);
+    const auto sums_between = [&](auto... tags) { return sums(values, between_warps(how), tags...); };
+    const std::vector<float> expected = sums(values, how);
+    INFO(name);
+    CHECK(sums_between() == expected);
+    CHECK(sums_between(per_lane) == expected);
+    CHECK(sums_between(shfl_down) == expected);
+    CHECK(sums_between(butterfly, contiguous) == expected);
+    CHECK(sums_between(scatter, assume_busy) == expected);
+    CHECK(sums_between(at_least<20>) == expected);
+}
+
+/// Warps' values, each warp's in its order, but the warps in any.
+template <class Kept>
+void check_any_order_of_warps(std::vector<float> values, const Kept& how, const std::string& name) {
+    std::mt19937 random(7);
+    constexpr std::size_t warp = backend::warp::size;
+    values.resize(values.size() / warp * warp);
+    const std::vector<float> first = sums(values, between_warps(how));
+    int differing = 0;
+    for (int order = 0; order < 20; ++order) {
+        for (std::size_t i = values.size() / warp; i > 1; --i)
+            std::swap_ranges(values.begin() + static_cast<std::ptrdiff_t>((i - 1) * warp),
+                             values.begin() + static_cast<std::ptrdiff_t>(i * warp),
+                             values.begin() + static_cast<std::ptrdiff_t>(random() % i * warp));
+        const std::vector<float> again = sums(values, between_warps(how));
+        for (std::size_t k = 0; k < 3; ++k) differing += bits_of(again[k]) != bits_of(first[k]) ? 1 : 0;
+    }
+    INFO(name);
+    CHECK(differing == 0);
+}
+
+}  // namespace
+
+TEST_CASE("between warps sums are kept as they say") {
+    check_between_warps(accumulate::f64{}, "f64");
+    check_between_warps(accumulate::compensated{}, "compensated");
+    check_between_warps(accumulate::fixed<12>{}, "fixed<12>");
+    check_between_warps(accumulate::binned<2>{}, "binned<2>");
+    check_between_warps(accumulate::exact{}, "exact");
+    for (const auto& set : hard_sets()) {
+        float largest = 0;
+        for (const float x : set) largest = std::max(largest, 64 * std::abs(x));
+        check_any_order_of_warps(
+            set, accumulate::fixed<40>{nullptr, accumulate::fixed<40>::scale_to_fit(largest)}, "fixed<40>");
+        check_any_order_of_warps(set, accumulate::binned<3>{}, "binned<3>");
+        check_any_order_of_warps(set, accumulate::exact{}, "exact");
+    }
+}
+
+TEST_CASE("between warps fixed says what does not fit") {
+    typename backend::template memory<std::uint32_t> fault(std::vector<std::uint32_t>{0});
+    using kept = accumulate::fixed<20>;
+    const std::vector<float> fits{1.5f, 65536.0f}, does_not{1.5f, 262144.0f};
+    CHECK(sums(fits, between_warps(kept{fault.data()}))[0] == 65537.5f);
+    CHECK(fault.download()[0] == 0);
+    CHECK(sums(does_not, between_warps(kept{fault.data()}))[0] == (backend::warp::size == 1 ? 1.5f : 0.0f));
+    CHECK(fault.download()[0] == 1);
 }
 
 TEST_CASE("infinities of binned do not count, they are there or not") {

@@ -7,6 +7,7 @@
 /// even that when no lane has anything to add. This is the one header to include: under nvcc it brings
 /// `cuda::warp`, and `simt/lanes.hpp`, `simt/checked.hpp` and `simt/serial.hpp` bring the emulators.
 
+#include "accumulate/take_apart.hpp"
 #include "commit/commit.hpp"
 #include "commit/stage.hpp"
 #include "components.hpp"
@@ -90,79 +91,6 @@ WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const
     }
 }
 
-/// The numbers of the cells of a destination, as an accessor by number.
-/// @{
-template <class Cells, int Numbers>
-struct numbers_of_cells {
-    Cells cells;
-    WARPAGG_HD auto operator()(unsigned i) const { return cells(i / Numbers)->number + i % Numbers; }
-};
-template <class Accumulate, class Dst>
-WARPAGG_HD auto record_of_numbers(Dst dst) {
-    static_assert(commit::is_destination<Dst>,
-                  "the destination is a pointer, a span or an accessor: of a container, pass its data()");
-    auto cells = commit::destination(dst);
-    static_assert(
-        std::is_same_v<decltype(cells(0u)), cell<Accumulate>*>,
-        "a sum that is not native is kept in cells: the destination's are cell<...> of the policy's tag");
-    if constexpr (std::is_same_v<decltype(cells), commit::contiguous_record<cell<Accumulate>>>) {
-        return cells.first->number;
-    } else {
-        return numbers_of_cells<decltype(cells), Accumulate::numbers>{cells};
-    }
-}
-/// @}
-
-template <class Accumulate>
-inline constexpr bool can_fault = requires(const Accumulate& a) {
-    a.fault;
-};
-
-/// Takes x apart; whether it could be.
-template <class Accumulate>
-WARPAGG_HD bool split_one(const Accumulate& how, float x,
-                          typename Accumulate::number (&to)[Accumulate::numbers]) {
-    if constexpr (can_fault<Accumulate>) {
-        return how.split(x, to);
-    } else {
-        how.split(x, to);
-        return true;
-    }
-}
-
-/// Takes the lanes' values apart, number k of values[i] to numbers[i * Accumulate::numbers + k], and says of
-/// those of active lanes that could not be that there are such.
-WARPAGG_EXEC_CHECK_DISABLE
-template <class Accumulate, warp W, class V, int N, class Number, int M>
-WARPAGG_HD void take_apart(const W& w, const Accumulate& how, const V (&values)[N], const mask_t<W>& active,
-                           Number (&numbers)[M]) {
-    constexpr int each = Accumulate::numbers;
-    typename Accumulate::number part[each];
-    mask_t<W> fits(true);
-    WARPAGG_UNROLL
-    for (int i = 0; i < N; ++i) {
-        if constexpr (requires { typename V::scalar; }) {
-            typename Accumulate::number words[each][W::size];  // not set in vectors: see on_words
-            for (int lane = 0; lane < static_cast<int>(W::size); ++lane) {
-                if (!split_one(how, values[i][lane], part)) fits.set(lane, false);
-                for (int k = 0; k < each; ++k) words[k][lane] = part[k];
-            }
-            for (int k = 0; k < each; ++k) std::memcpy(numbers[i * each + k].part, words[k], sizeof words[k]);
-        } else {
-            fits = split_one(how, values[i], part) && fits;
-            WARPAGG_UNROLL
-            for (int k = 0; k < each; ++k) numbers[i * each + k] = part[k];
-        }
-    }
-    if constexpr (can_fault<Accumulate>) {
-        if (how.fault == nullptr) return;
-        const mask_t<W> faulty = active && !fits;
-        if (w.any(faulty))
-            w.atomic(operation::bit_or{}, commit::contiguous_record<std::uint32_t>{how.fault},
-                     value_t<W, unsigned>(0u), value_t<W, std::uint32_t>(1u), faulty);
-    }
-}
-
 }  // namespace detail
 
 /// Adds the values of the warp's active lanes to one record in memory: for each i in [0, N),
@@ -210,8 +138,10 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
     static_assert(detail::is_policy<Policy>,
                   "warp_reduce_atomic takes one policy: put the tags into policy{...}");
     using accumulation = typename Policy::accumulate;
-    if constexpr (detail::is_accumulated<accumulation>) {
-        static_assert(std::is_same_v<T, float>, "only sums of float are kept otherwise than as they are");
+    using choice = detail::choice<T, N, Policy>;
+    static_assert(!detail::is_accumulated<accumulation> || std::is_same_v<T, float>,
+                  "only sums of float are kept otherwise than as they are");
+    if constexpr (detail::is_accumulated<accumulation> && !detail::is_between_warps<accumulation>) {
         using number = typename accumulation::number;
         value_t<W, number> numbers[N * accumulation::numbers];
         {
@@ -222,13 +152,18 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
             w, detail::record_of_numbers<accumulation>(dst), numbers, active,
             typename detail::policy_of_numbers<Policy>::type{}, at);
     } else {
-        using choice = detail::choice<T, N, Policy>;
         const detail::library_call<W> call(w, at);
         if constexpr (std::is_same_v<typename choice::idle, idle::assume_busy>) {
             if constexpr (requires { w.require_busy(active); }) w.require_busy(active);
         }
-        detail::aggregate<choice>(w, commit::record_of<typename choice::commit>(dst), values,
-                                  detail::opaque(w, active));
+        const auto record = [&] {
+            if constexpr (detail::is_between_warps<accumulation>) {
+                return detail::results_to_cells<typename accumulation::kept>(how.accumulating(), dst);
+            } else {
+                return commit::record_of<typename choice::commit>(dst);
+            }
+        }();
+        detail::aggregate<choice>(w, record, values, detail::opaque(w, active));
     }
 }
 

@@ -215,6 +215,8 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
     static_assert(detail::is_policy<Policy>,
                   "warp_match_reduce_atomic takes one policy: put the tags into policy{...}");
     using accumulation = typename Policy::accumulate;
+    static_assert(!detail::is_between_warps<accumulation>,
+                  "between_warps goes with warp_reduce_atomic: here take what it is of");
     if constexpr (detail::is_accumulated<accumulation>) {
         static_assert(std::is_same_v<typename detail::scalar_of<V>::type, float>,
                       "only sums of float are kept otherwise than as they are");

@@ -226,6 +226,12 @@ inline constexpr bool is_accumulated = requires {
     typename Accumulate::number;
 };
 
+/// Whether a warp's own sum is native all the same.
+template <class Accumulate>
+inline constexpr bool is_between_warps = requires {
+    typename Accumulate::kept;
+};
+
 template <class P>
 concept is_policy = requires {
     typename P::reduce;

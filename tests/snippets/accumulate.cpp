@@ -44,3 +44,16 @@ TEST_CASE("fixed") {
     CHECK(total.value() / how.scale == 96e6f);
     CHECK(fault == 0);
 }
+
+TEST_CASE("between warps") {
+    //! [between_warps]
+    cell<accumulate::exact> total;  // of what warps come to: in whatever order, the same bits
+    for (const float large : {1e30f, 1.0f, -1e30f}) {
+        const lanes<float, 32> values[1] = {large};
+        warpagg::warp_reduce_atomic(w, &total, values, active,
+                                    warpagg::policy{warpagg::between_warps(warpagg::exact)});
+    }
+    // total.value(): 32
+    //! [between_warps]
+    CHECK(total.value() == 32);
+}

@@ -226,6 +226,18 @@ struct exact {
     /// @}
 };
 
+/// Float while a warp adds up what its lanes have, as `native`; in memory what A is, which takes each warp's
+/// sum apart. Error: 5 u k and A's, of as many values as there are warps (n u k and A's if few lanes are
+/// active). The order of warps shows where A's does; which values a warp has shows. Cost: of one taking apart
+/// a warp and component instead of one a lane and component, and native's shuffles.
+/// `warp_reduce_atomic` only.
+///
+/// @snippet accumulate.cpp between_warps
+template <class A>
+struct between_warps : A {
+    using kept = A;  ///< what memory's cells are of
+};
+
 }  // namespace accumulate
 
 /// A sum in memory that is kept as `Accumulate` says. Bytes of zero are a sum of nothing.
@@ -244,6 +256,10 @@ WARPAGG_TAG accumulate::compensated compensated{};
 template <unsigned K>
 WARPAGG_TAG accumulate::binned<K> binned{};
 WARPAGG_TAG accumulate::exact exact{};
+template <class A>
+constexpr WARPAGG_HD accumulate::between_warps<A> between_warps(const A& how) {
+    return {how};
+}
 /// @}
 
 }  // namespace warpagg

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "../accumulate/take_apart.hpp"
 #include "../reduce/scatter.hpp"
 #include "destination.hpp"
 
@@ -57,7 +58,8 @@ WARPAGG_HD void each_lane(const W& w, Dst dst, const V (&v)[N], const mask_t<W>&
     }
     WARPAGG_UNROLL
     for (int i = 0; i < N; ++i)
-        w.atomic(Op{}, dst, value_t<W, unsigned>(static_cast<unsigned>(i)), v[i], active);
+        warpagg::detail::commit_value<Op>(w, dst, value_t<W, unsigned>(static_cast<unsigned>(i)), v[i],
+                                          active);
 }
 
 /// Lane i commits v[i], which is the same in all lanes: one atomic instruction for W values.
@@ -71,7 +73,7 @@ WARPAGG_HD void own_value(const W& w, Dst dst, const V (&v)[N]) {
         V own = v[base];
         for (int i = base + 1; i < N && i < base + static_cast<int>(W::size); ++i)
             own = select(index == static_cast<unsigned>(i), v[i], own);
-        w.atomic(Op{}, dst, index, own, index < static_cast<unsigned>(N));
+        warpagg::detail::commit_value<Op>(w, dst, index, own, index < static_cast<unsigned>(N));
     }
 }
 
@@ -83,7 +85,7 @@ WARPAGG_HD void scattered(const W& w, Dst dst, const V (&v)[N]) {
     WARPAGG_UNROLL
     for (int k = 0; k < held; ++k) {
         const auto index = reduce::scattered_index(w, k);
-        w.atomic(Op{}, dst, index, v[k], index < static_cast<unsigned>(N));
+        warpagg::detail::commit_value<Op>(w, dst, index, v[k], index < static_cast<unsigned>(N));
     }
 }
 

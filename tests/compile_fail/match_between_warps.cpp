@@ -1,0 +1,10 @@
+// expect: between_warps goes with warp_reduce_atomic
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <warpagg/atomic.hpp>
+#include <warpagg/simt/serial.hpp>
+
+void wrong(warpagg::cell<warpagg::accumulate::exact>* to, const float (&v)[3]) {
+    warpagg::warp_match_reduce_atomic(warpagg::emulator::serial{}, to, 7u, v, true,
+                                      warpagg::policy{warpagg::between_warps(warpagg::exact)});
+}
