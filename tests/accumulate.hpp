@@ -334,6 +334,14 @@ TEST_CASE("fixed says what does not fit, and leaves it out") {
         CHECK(faults({0.5f * largest, -0.25f * largest}, scale).first == 0);
         CHECK(faults({0.5f * largest, -0.25f * largest}, 2 * scale).first == 1);
     }
+    // The fewer values, the larger they may be.
+    const auto fault_of_few = [](float x) {
+        typename backend::template memory<std::uint32_t> fault(std::vector<std::uint32_t>{0});
+        sums({0.5f * x}, accumulate::fixed<20, 10>{fault.data(), 1});  // and twice that
+        return fault.download()[0];
+    };
+    CHECK(fault_of_few(0x1.fffffep32f) == 0);
+    CHECK(fault_of_few(0x1p33f) == 1);
     CHECK(accumulate::fixed<20>::scale_to_fit(1e-40f) == 0x1p126f);
     CHECK(accumulate::fixed<20>::scale_to_fit(0) == 1);
 }

@@ -114,6 +114,28 @@ TEST_CASE("a loss that is not finite is found where it appears, and moves nothin
     }
 }
 
+TEST_CASE("a sum that fixed point cannot hold is left out, and found where it appears") {
+    const gs::scene scene = small_scene();
+    const gs::gaussians sound = few(scene);
+    gs::gaussians bright = sound;
+    bright.sh_constant[3 * 11] = 1e7f;
+    for (const auto make : engines())
+        for (const bool is_bright : {true, false}) {
+            const auto e = ready(make, scene, is_bright ? bright : sound);
+            auto plan = plan_for(0);
+            plan.gradient = gs::gradient_policy::fixed;
+            plan.iteration = 5;
+            e->step(plan);
+            plan.iteration = 6;
+            e->step(plan);
+            const auto found = e->take_findings();
+            CHECK(of(found, fault::sum).count == (is_bright ? 2 : 0));
+            if (is_bright) CHECK(of(found, fault::sum).iteration == 5);
+            CHECK(of(found, fault::loss).count == 0);
+            CHECK(is_finite(e->get_model()));
+        }
+}
+
 TEST_CASE("a rate that would drive a parameter out of range moves nothing") {
     const gs::scene scene = small_scene();
     const gs::gaussians model = few(scene);

@@ -27,6 +27,7 @@ class contest_on {
         std::vector<float> gradient(3 * static_cast<std::size_t>(first.width) *
                                     static_cast<std::size_t>(first.height));
         for (float& g : gradient) g = normal(random);
+        for (const float g : gradient) largest_ = std::max(largest_, std::abs(g));
         gradient_.resize(gradient.size());
         device_.upload(gradient_.data(), gradient.data(), gradient.size());
         device_.wait();
@@ -51,7 +52,7 @@ class contest_on {
         frames_.push_back([this, renderer, kernel](const gs::camera& view) -> const buffer<float>& {
             renderer->forward(model_.read(), contest_.model.count(), view, contest_.model.sh_degree,
                               contest_.background);
-            const auto& sums = renderer->blend_backward_by(kernel, gradient_.data());
+            const auto& sums = renderer->blend_backward_by(kernel, gradient_.data(), largest_);
             device_.end_iteration();
             return sums;
         });
@@ -123,6 +124,7 @@ class contest_on {
     Device device_;
     gs::parameter_memory<Device> model_;
     buffer<float> gradient_;
+    float largest_ = 0;  ///< of it
     std::vector<standing> standings_;
     std::vector<std::function<const buffer<float>&(const gs::camera&)>> frames_;
     std::vector<std::function<double()>> pairs_;

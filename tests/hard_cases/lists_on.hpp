@@ -11,23 +11,25 @@
 #include "raster/bin.hpp"
 #include "raster/blend_backward.hpp"
 #include "raster/blend_forward.hpp"
-#include "raster/with_policy.hpp"
+#include "raster/gradient_sums.hpp"
 
 namespace hard_cases {
 
 /// Sums 32 values, or one, into one address.
 template <class Real, class Policy>
 struct sum_values {
+    using policy = Policy;
     const Real* values;
     unsigned count;
-    Real* to;
+    gs::raster::sum_in_memory<Real, Policy>* sums;
+    Policy how;
 
     template <class W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
         const auto place = w.lane() + index * W::size;
         const warpagg::mask_t<W> active = place < count;
         const warpagg::value_t<W, Real> one[1] = {w.load(values, place, active)};
-        warpagg::warp_reduce_atomic(w, to, one, active, Policy{});
+        warpagg::warp_reduce_atomic(w, sums, one, active, how);
     }
 };
 
@@ -79,7 +81,7 @@ class lists_on {
         buffer<splat<Real>> splats;
         buffer<std::uint32_t> gaussian_of, last, tile_of_segment, class_counts, ordered_tiles;
         buffer<tile_range> ranges;
-        buffer<Real> picture, transmittance, checkpoints, gradient, sums;
+        buffer<Real> picture, transmittance, checkpoints, gradient;
         buffer<unsigned long long> pairs;
         on.put_as_they_are(splats, made);
         on.put_as_they_are(gaussian_of, order);
@@ -118,17 +120,19 @@ class lists_on {
         if (q.gradient.empty()) return a;
 
         on.put(gradient, q.gradient);
-        sums.resize(made.size() * record_stride);
-        device.zero(sums.data(), sums.size());
+        gradient_sums<Device, Real> sums(device);
+        std::vector<double> records;
         with_policy<Real, shape>(q.policy, [&](auto backward) {
             backward.lists = lists;
             backward.view = {background,  picture.data(),     transmittance.data(),
                              last.data(), checkpoints.data(), gradient.data()};
             backward.tile_of_segment = tile_of_segment.data();
-            backward.sums = sums.data();
-            device.for_each_warp(backward.template warps<warp>(tiles.size(), segments), backward);
+            const std::size_t warps = backward.template warps<warp>(tiles.size(), segments);
+            sums.begin(backward, made.size(), largest_of(q.gradient), warps);
+            device.for_each_warp(warps, backward);
+            const auto& rounded = sums.end(backward);
+            records = on.get(rounded.data(), rounded.size());
         });
-        const std::vector<double> records = on.get(sums.data(), sums.size());
         static_assert(sum_count == 9);
         a.sums.resize(made.size());
         for (std::size_t i = 0; i < made.size(); ++i)
@@ -191,16 +195,20 @@ class lists_on {
     static double sum(const std::vector<double>& values, gradient_policy policy) {
         Device device;
         memory on(device);
-        buffer<Real> in, to;
+        buffer<Real> in;
         on.put(in, values);
-        on.put(to, {0.0});
+        gs::raster::gradient_sums<Device, Real> sums(device);
+        double sum = 0;
         constexpr std::size_t lanes = Device::warp::size;
         gs::raster::with_policy<Real, gs::raster::cut_for<typename Device::warp>>(policy, [&](auto kernel) {
-            device.for_each_warp((values.size() + lanes - 1) / lanes,
-                                 sum_values<Real, typename decltype(kernel)::policy>{
-                                     in.data(), static_cast<unsigned>(values.size()), to.data()});
+            sum_values<Real, typename decltype(kernel)::policy> adds{
+                in.data(), static_cast<unsigned>(values.size()), nullptr, {}};
+            const std::size_t warps = (values.size() + lanes - 1) / lanes;
+            sums.begin(adds, 1, largest_of(values), warps);
+            device.for_each_warp(warps, adds);
+            sum = on.get(sums.end(adds).data(), 1)[0];
         });
-        return on.get(to.data(), 1)[0];
+        return sum;
     }
 
   private:

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -20,6 +21,14 @@ Real to_real(double x) {
         }
     }
     return static_cast<Real>(x);
+}
+
+/// In magnitude, of those that are finite.
+inline float largest_of(const std::vector<double>& values) {
+    double largest = 0;
+    for (const double x : values)
+        if (std::isfinite(x)) largest = std::max(largest, std::abs(x));
+    return static_cast<float>(largest);
 }
 
 /// Carries arrays to a device and back.

@@ -65,8 +65,10 @@ class pictures_on {
         if (!q.gradient_at.empty()) s.on.put(given, q.gradient_at);
         const Real* by_picture = s.photometric.gradient(
             q.gradient_at.empty() ? s.renderer.picture() : given.data(), gs::train::schedule::ssim_weight);
+        float largest = s.photometric.largest_gradient();
         buffer<Real> weights, weighed;
         if (!q.weights.empty()) {
+            largest *= largest_of(q.weights);
             s.on.put(weights, q.weights);
             weighed.resize(values);
             s.device.for_each_index(
@@ -76,7 +78,7 @@ class pictures_on {
         buffer<gs::raster::visibility> seen;
         seen.resize(q.count());
         s.device.zero(seen.data(), q.count());
-        s.renderer.backward(by_picture, q.policy, q.sh_degree,
+        s.renderer.backward(by_picture, largest, q.policy, q.sh_degree,
                             gs::raster::store_gradients<Real>{write(s.gradients)}, seen.data());
 
         answer a;

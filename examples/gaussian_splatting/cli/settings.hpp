@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "../raster/gradient_policy.hpp"
 #include "../scene/scene.hpp"
 #include "../train/densify_rule.hpp"
 #include "../train/schedule.hpp"
@@ -29,6 +30,10 @@ struct settings {
     std::size_t budget = 0;   ///< 0: none
     bool revised_opacity = true;
     std::string gradient = "split";
+    std::string accumulate;  ///< empty: by `deterministic`
+    bool deterministic = false;
+    /// What `gradient`, `accumulate` and `deterministic` come to.
+    gradient_policy policy = gradient_policy::split;
     std::set<int> save_iterations;
     std::set<int> test_iterations;
 

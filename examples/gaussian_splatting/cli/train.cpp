@@ -17,9 +17,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-gradient_policy policy_of(const std::string& name) {
-    const auto at = std::ranges::find(gradient_policy_names, name) - gradient_policy_names.begin();
-    return static_cast<gradient_policy>(at);
+/// In what gradients are added up.
+std::string_view accumulation_of(gradient_policy p) {
+    return p <= gradient_policy::split ? "native" : gradient_policy_names[static_cast<std::size_t>(p)];
 }
 
 train::train_options options_of(const settings& s, const scene& scene,
@@ -30,7 +30,7 @@ train::train_options options_of(const settings& s, const scene& scene,
     o.budget = s.budget;
     o.revised_opacity = s.revised_opacity;
     o.seed = s.seed;
-    o.gradient = policy_of(s.gradient);
+    o.gradient = s.policy;
     o.background = background;
     o.save_iterations = s.save_iterations;
     o.save_iterations.insert(s.schedule.iterations);
@@ -88,6 +88,8 @@ ordered_json settings_json(const settings& s, const train::train_options& o) {
             {"budget", o.budget},
             {"revised_opacity", o.revised_opacity},
             {"gradient", s.gradient},
+            {"accumulate", accumulation_of(s.policy)},
+            {"deterministic", s.deterministic},
             {"save_iterations", o.save_iterations},
             {"test_iterations", o.test_iterations},
             {"background", s.background},
@@ -203,7 +205,8 @@ void train(const settings& s) {
     metrics["peak_device_bytes"] = engine->peak_device_bytes();
     metrics["device"] = engine->device_name();
     metrics["gradient"] = s.gradient;
-    metrics["accumulate"] = "native";
+    metrics["accumulate"] = accumulation_of(s.policy);
+    metrics["deterministic"] = s.deterministic;
     metrics["effects"] = effects_json(s, scene, background);
     metrics["seed"] = s.seed;
     write_json(output.path() / "settings.json", settings_json(s, options));

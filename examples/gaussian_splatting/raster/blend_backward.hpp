@@ -10,6 +10,21 @@
 
 namespace gs::raster {
 
+/// What a sum of the backward blending is in memory.
+/// @{
+template <class Real, class Policy>
+struct sum_of {
+    using type = Real;
+};
+template <class Real, class Policy>
+requires requires { typename Policy::accumulate::kept; }
+struct sum_of<Real, Policy> {
+    using type = warpagg::cell<typename Policy::accumulate::kept>;
+};
+template <class Real, class Policy>
+using sum_in_memory = typename sum_of<Real, Policy>::type;
+/// @}
+
 /// What the backward blending reads beside the lists: what the forward one came to, and what comes back.
 template <class Real>
 struct blended {
@@ -36,7 +51,8 @@ struct blend_backward {
     blended<Real> view;
     const std::uint32_t* tile_of_segment;  ///< see `number_segments`
 
-    Real* sums;  ///< `record_stride` a Gaussian, added to
+    sum_in_memory<Real, Policy>* sums;  ///< `record_stride` a Gaussian, added to
+    Policy how;
 
     template <class W>
     static std::size_t warps(std::size_t tiles, std::size_t segments) {
@@ -149,8 +165,8 @@ struct blend_backward {
         }
 
         // red, green, blue, s, s v, s v^2
-        real sum[6];
-        for (real& x : sum) x = real(0);
+        real part[6];
+        for (real& x : part) x = real(0);
         for_each_row<Cut>(reached, [&](unsigned k) {
             auto& [g, T, behind] = pixels[k];
             const capped_alpha<W, Real> capped(strength[k]);
@@ -163,22 +179,22 @@ struct blend_backward {
             const real dsv = ds * v[k];
             const real terms[] = {weight * g[0], weight * g[1], weight * g[2], ds, dsv, dsv * v[k]};
             WARPAGG_UNROLL
-            for (unsigned i = 0; i < 6; ++i) sum[i] = !Cut::sparse && k == 0 ? terms[i] : sum[i] + terms[i];
+            for (unsigned i = 0; i < 6; ++i) part[i] = !Cut::sparse && k == 0 ? terms[i] : part[i] + terms[i];
         });
         real values[sum_count];
-        values[sum_red] = sum[0];
-        values[sum_green] = sum[1];
-        values[sum_blue] = sum[2];
-        values[sum_s] = sum[3];
-        values[sum_su] = seen.u * sum[3];
-        values[sum_sv] = sum[4];
+        values[sum_red] = part[0];
+        values[sum_green] = part[1];
+        values[sum_blue] = part[2];
+        values[sum_s] = part[3];
+        values[sum_su] = seen.u * part[3];
+        values[sum_sv] = part[4];
         values[sum_suu] = seen.u * values[sum_su];
-        values[sum_suv] = seen.u * sum[4];
-        values[sum_svv] = sum[5];
+        values[sum_suv] = seen.u * part[4];
+        values[sum_svv] = part[5];
         // Lanes that see nothing of it add zeros: several pixels a lane are masked already, by their alpha.
         const mask_t<W> who = rows > 1 ? mask_t<W>(true) : counts[0];
         const auto to = [this, record](unsigned i) { return sums + (record + i); };
-        warpagg::warp_reduce_atomic(w, to, values, who, Policy{});
+        warpagg::warp_reduce_atomic(w, to, values, who, how);
     }
 };
 

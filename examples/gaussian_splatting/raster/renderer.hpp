@@ -12,9 +12,9 @@
 #include "bin.hpp"
 #include "blend_backward.hpp"
 #include "blend_forward.hpp"
+#include "gradient_sums.hpp"
 #include "project.hpp"
 #include "project_backward.hpp"
-#include "with_policy.hpp"
 
 namespace gs::raster {
 
@@ -28,7 +28,7 @@ class renderer {
     using warp = typename Device::warp;
     using model = parameter_arrays<const Real>;
 
-    explicit renderer(Device& device) : device_(device) {
+    explicit renderer(Device& device) : device_(device), sums_(device) {
         device_.zero(reserve(pairs_, 1).data(), 1);
         device_.zero(reserve(needed_, 1).data(), 1);
     }
@@ -81,36 +81,40 @@ class renderer {
     }
 
     /// From the gradient of the last `forward`'s picture to those of its parameters, colours up to a degree,
-    /// which `sink` is given: see `project_backward`. `seen` may be null.
+    /// which `sink` is given: see `project_backward`. `largest` is the magnitude of a pixel's gradient,
+    /// about: see `gradient_sums`. `seen` may be null.
     template <class Sink>
-    void backward(const Real* picture_gradient, gradient_policy policy, int learned_sh_degree,
+    void backward(const Real* picture_gradient, float largest, gradient_policy policy, int learned_sh_degree,
                   const Sink& sink, visibility* seen) {
         using device::stage;
-        with_policy<Real, Cut>(policy, [&](auto kernel) { blend_backward_by(kernel, picture_gradient); });
+        const Real* sums = nullptr;
+        with_policy<Real, Cut>(
+            policy, [&](auto kernel) { sums = blend_backward_by(kernel, picture_gradient, largest).data(); });
         device_.begin(stage::project_backward);
         using narrow = typename Device::narrow_warp;
         device_.template for_each_warp<narrow>(
             (count_ + narrow::size - 1) / narrow::size,
             project_backward<narrow, Real, Sink>{
                 gaussians_, count_, for_device<value_t<narrow, Real>>(camera_), sh_degree_, learned_sh_degree,
-                splats_.data(), tiles_.data(), sums_.data(), sink, seen, room()});
+                splats_.data(), tiles_.data(), sums, sink, seen, room()});
     }
 
     /// The blending's part of `backward` by this kernel, which is filled in. Returns its sums: see
     /// `project_backward`.
     template <class Kernel>
-    const buffer<Real>& blend_backward_by(Kernel kernel, const Real* picture_gradient) {
-        reserve(sums_, count_ * record_stride);
-        device_.zero(sums_.data(), sums_.size());
+    const buffer<Real>& blend_backward_by(Kernel kernel, const Real* picture_gradient, float largest) {
+        const std::size_t warps = kernel.template warps<warp>(tiles(), segments());
+        sums_.begin(kernel, count_, largest, warps);
         device_.begin(device::stage::blend_backward);
         kernel.lists = lists();
         kernel.view = {colour(background_), picture_.data(),     transmittance_.data(),
                        last_.data(),        checkpoints_.data(), picture_gradient};
         kernel.tile_of_segment = tile_of_segment_.data();
-        kernel.sums = sums_.data();
-        device_.for_each_warp(kernel.template warps<warp>(tiles(), segments()), kernel);
-        return sums_;
+        device_.for_each_warp(warps, kernel);
+        return sums_.end(kernel);
     }
+    /// See `gradient_sums`.
+    std::uint32_t* fault() const { return sums_.fault(); }
 
     const Real* picture() const { return picture_.data(); }
     /// Whether the last view's instances fit.
@@ -198,7 +202,8 @@ class renderer {
     buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_;
     buffer<std::uint64_t> needed_;
     buffer<tile_range> ranges_;
-    buffer<Real> picture_, transmittance_, checkpoints_, sums_;
+    buffer<Real> picture_, transmittance_, checkpoints_;
+    gradient_sums<Device, Real> sums_;
     buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
     buffer<unsigned long long> pairs_;
     std::uint64_t capacity_ = 0;

@@ -9,8 +9,11 @@
 
 namespace gs::raster {
 
-/// Calls f with what the policy means, after a `blend_forward` that was cut up by `Cut`: a type whose member
-/// `kernel` is the `blend_backward`, and `splits` whether it takes a warp for each segment.
+/// In units of 2^-45 of the largest sum there may be; of as many warps as a picture of 16 million pixels has.
+using fixed_sums = warpagg::accumulate::fixed<45, 18>;
+
+/// Calls f with the `blend_backward` that the policy means, after a `blend_forward` that was cut up by `Cut`.
+/// In double sums are never kept otherwise than in double.
 template <class Real, class Cut, class F>
 void with_policy(gradient_policy policy, const F& f) {
     using namespace warpagg;
@@ -19,6 +22,12 @@ void with_policy(gradient_policy policy, const F& f) {
     using zeros = warpagg::policy<reduce::shfl_down, idle::add_zeros>;
     using skip = warpagg::policy<reduce::shfl_down, idle::assume_busy>;
     using scatter = warpagg::policy<reduce::scatter, idle::assume_busy>;
+    const auto split_as = [&]<class Kept>(Kept) {
+        using kept = std::conditional_t<std::is_same_v<Real, float>, accumulate::between_warps<Kept>,
+                                        accumulate::native>;
+        using split = warpagg::policy<reduce::scatter, idle::assume_busy, kept>;
+        return f(blend_backward<Real, Cut, true, split, true>{});
+    };
     switch (policy) {
         case gradient_policy::per_lane:
             return f(blend_backward<Real, single, false, per_lane, false>{});
@@ -30,6 +39,16 @@ void with_policy(gradient_policy policy, const F& f) {
             return f(blend_backward<Real, single, false, scatter, true>{});
         case gradient_policy::split:
             return f(blend_backward<Real, Cut, true, scatter, true>{});
+        case gradient_policy::f64:
+            return split_as(accumulate::f64{});
+        case gradient_policy::compensated:
+            return split_as(accumulate::compensated{});
+        case gradient_policy::fixed:
+            return split_as(fixed_sums{});
+        case gradient_policy::binned:
+            return split_as(accumulate::binned<2>{});
+        case gradient_policy::exact:
+            return split_as(accumulate::exact{});
     }
 }
 

@@ -34,12 +34,14 @@ struct note_length {
     WARPAGG_HD void operator()(std::size_t) const { *length = *room.needed; }
 };
 
-/// Counts the steps that were left out, notes how long the lists were, and looks at the loss: one index.
+/// Counts the steps that were left out, notes how long the lists were, and looks at the loss and at whether
+/// all sums fitted: one index.
 struct close_step {
     raster::list_room room;
     std::uint64_t* skipped;
     std::uint64_t* length;  ///< of the view's lists
     const double* totals;   ///< of the loss
+    std::uint32_t* unfit;   ///< see `gradient_sums::fault`
     train::watch watch;
 
     WARPAGG_HD void operator()(std::size_t) const {
@@ -48,6 +50,8 @@ struct close_step {
         double sum = 0;
         for (int k = 0; k < loss_sum_count; ++k) sum += totals[k];
         if (!raster::is_finite(sum)) watch.note(fault::loss, 0, 0);
+        if (*unfit != 0) watch.note(fault::sum, 0, 0);
+        *unfit = 0;
     }
 };
 
@@ -258,10 +262,11 @@ class device_engine final : public engine {
         const float* by_picture =
             photometric_.gradient(renderer_.picture(), plan.ssim_weight, renderer_.room());
         const train::watch watch{found_.data(), static_cast<std::uint32_t>(plan.iteration)};
-        renderer_.backward(by_picture, plan.gradient, plan.updates_sh ? plan.sh_degree : 0,
-                           descent(plan, watch), plan.watch ? seen_.data() : nullptr);
+        renderer_.backward(by_picture, photometric_.largest_gradient(), plan.gradient,
+                           plan.updates_sh ? plan.sh_degree : 0, descent(plan, watch),
+                           plan.watch ? seen_.data() : nullptr);
         device_.for_each_index(1, close_step{renderer_.room(), skipped_.data(), lengths_.data() + plan.view,
-                                             photometric_.totals(), watch});
+                                             photometric_.totals(), renderer_.fault(), watch});
     }
 
     adam<float> descent(const step_plan& plan, const train::watch& watch) {

@@ -10,8 +10,8 @@
 namespace gs::train {
 
 /// What may turn out not to be finite: the loss of a step, an element of a gradient, or what Adam would have
-/// made of a parameter.
-enum class fault { loss, gradient, parameter, count };
+/// made of a parameter; or, where sums are in fixed point, not to fit: some warp's sum in a step.
+enum class fault { loss, gradient, parameter, sum, count };
 inline constexpr std::size_t fault_count = static_cast<std::size_t>(fault::count);
 
 /// The earliest of its kind, and how many there were; the rest means nothing if there were none. Of several

@@ -54,6 +54,11 @@ class photometric {
         return gradient_.data();
     }
 
+    /// The magnitude that `gradient` has at a pixel, about: the mean of a loss near one.
+    float largest_gradient() const {
+        return 1.0f / (static_cast<float>(maps_.planes.width) * static_cast<float>(maps_.planes.height));
+    }
+
     /// On the device: what `take` takes, `loss_sum_count` sums.
     const double* totals() const { return totals_.data(); }
     /// The means over all pictures compared since the last call. Waits for the device.

@@ -77,6 +77,7 @@ class finite_watch {
         const auto& loss = found[static_cast<std::size_t>(fault::loss)];
         const auto& value = found[static_cast<std::size_t>(fault::parameter)];
         const auto& gradient = found[static_cast<std::size_t>(fault::gradient)];
+        const auto& sum = found[static_cast<std::size_t>(fault::sum)];
         const auto where = [&](const finding& f) {
             const std::size_t back = static_cast<std::size_t>(iteration - f.iteration) + 1;
             return "iteration " + std::to_string(f.iteration) + ", view " +
@@ -89,7 +90,10 @@ class finite_watch {
         if (gradient.count > 0 && result.left_out_gradients == 0)
             events.warn(where(gradient) + ": the gradient of " + of(gradient) +
                         " is not finite or too large to square; such gradients are left out");
-        result.left_out_gradients += gradient.count;
+        if (sum.count > 0 && result.left_out_gradients == 0)
+            events.warn(where(sum) +
+                        ": a sum of gradients does not fit in fixed point; such sums are left out");
+        result.left_out_gradients += gradient.count + sum.count;
         if (value.count > 0)
             throw error(where(value) + ": " + of(value) + " would not be finite; training ends here");
         if (loss.count > 0) throw error(where(loss) + ": the loss is not finite; training ends here");

@@ -80,13 +80,14 @@ struct compensated {
 /// An integer of 64 bits in units of 2^-Q / scale. Error: n 2^-(Q+1) / scale + u |S|. The same bits in any
 /// order.
 ///
-/// A value that is not finite, or of 2^(38-Q) / scale or more, is left out, and `*fault` becomes 1, where it
-/// stays: as long as it is 0 no sum of fewer than 2^25 values has overflowed.
+/// A value that is not finite, or of 2^(63-LogValues-Q) / scale or more, is left out, and `*fault` becomes 1,
+/// where it stays: as long as it is 0 no sum of fewer than 2^LogValues values has overflowed.
 ///
 /// @snippet accumulate.cpp fixed
-template <int Q>
+template <int Q, int LogValues = 25>
 struct fixed {
     static_assert(Q >= -100 && Q <= 149, "fixed<Q> takes -100 <= Q <= 149");
+    static_assert(LogValues >= 1 && LogValues <= 39, "fixed<Q, LogValues> takes 1 <= LogValues <= 39");
     static constexpr auto of = axis::accumulate;
     /// See the namespace.
     /// @{
@@ -101,7 +102,8 @@ struct fixed {
     /// Whether x could be taken.
     WARPAGG_HD bool split(float x, number (&to)[numbers]) const {
         const double units = static_cast<double>(x) * static_cast<double>(scale) * power_of_two(Q);
-        const bool fits = parts_of_float(x).finite && units < 0x1p38 && units > -0x1p38;
+        const double room = power_of_two(63 - LogValues);
+        const bool fits = parts_of_float(x).finite && units < room && units > -room;
         to[0] = fits ? static_cast<std::int64_t>(::llrint(units)) : 0;
         return fits;
     }
@@ -113,7 +115,7 @@ struct fixed {
     /// The largest scale by which values up to this in magnitude fit, as far as a float can be.
     /// Precondition: it is finite.
     static WARPAGG_HD float scale_to_fit(float largest) {
-        const double room = power_of_two(38 - Q);
+        const double room = power_of_two(63 - LogValues - Q);
         const double magnitude = static_cast<double>(largest < 0 ? -largest : largest);
         float scale = 1;
         if (magnitude == 0) return scale;
