@@ -26,8 +26,8 @@ using nlohmann::ordered_json;
 
 constexpr double u = 0x1p-24;
 
-/// See warpagg/accumulate/accumulate.hpp.
-double bound(way how, const sizes& s, float scale) {
+/// See warpagg/accumulate/accumulate.hpp and warpagg/ordered.hpp.
+double bound(way how, const sizes& s, float scale, unsigned lanes) {
     switch (how) {
         case way::native:
             return s.n * u * s.magnitude;
@@ -43,6 +43,8 @@ double bound(way how, const sizes& s, float scale) {
             return s.n * 0x1p-48 * s.largest + u * s.sum;
         case way::exact:
             return u * s.sum;
+        case way::ordered:
+            return (s.n / 1024 + 1024.0 / lanes + 10) * u * s.magnitude;
     }
     return 0;
 }
@@ -91,7 +93,7 @@ ordered_json measure(adder& on, problem p, int orders, std::mt19937_64& random) 
                 const double error = std::abs(of[s].minus(found[s]));
                 r.errors.push_back(error / of[s].sum);
                 r.largest = std::max(r.largest, r.errors.back());
-                r.over_bound = std::max(r.over_bound, error / bound(how, of[s], scale));
+                r.over_bound = std::max(r.over_bound, error / bound(how, of[s], scale, on.lanes()));
             }
             r.patterns.insert(bits);
         }

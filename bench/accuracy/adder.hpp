@@ -11,9 +11,9 @@
 #include "problem.hpp"
 
 /// The ways of keeping sums that are measured, and their names.
-enum class way { native, f64, compensated, fixed, binned2, binned3, exact };
-inline constexpr std::array<std::string_view, 7> way_names{
-    "native", "f64", "compensated", "fixed, scaled to fit", "binned<2>", "binned<3>", "exact"};
+enum class way { native, f64, compensated, fixed, binned2, binned3, exact, ordered };
+inline constexpr std::array<std::string_view, 8> way_names{
+    "native", "f64", "compensated", "fixed, scaled to fit", "binned<2>", "binned<3>", "exact", "ordered"};
 
 /// What `way::fixed` is, for values up to `largest`.
 using fixed_way = warpagg::accumulate::fixed<20>;
@@ -23,6 +23,8 @@ class adder {
   public:
     virtual ~adder() = default;
     virtual std::string device() const = 0;
+    /// Of a warp.
+    virtual unsigned lanes() const = 0;
     /// The sums of the last `put`'s values.
     virtual std::vector<float> add_up(way how) = 0;
     /// Nanoseconds of the last `add_up`, without zeroing and reading the sums.

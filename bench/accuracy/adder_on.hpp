@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <warpagg/match.hpp>
+#include <warpagg/ordered.hpp>
 
 #include "adder.hpp"
 #include "device/stages.hpp"
@@ -36,6 +37,20 @@ struct add_values {
     }
 };
 
+/// One index a value.
+/// @{
+struct number_values {
+    std::uint32_t* numbers;
+    WARPAGG_HD void operator()(std::size_t i) const { numbers[i] = static_cast<std::uint32_t>(i); }
+};
+struct gather_values {
+    const float* from;
+    const std::uint32_t* numbers;
+    float* to;
+    WARPAGG_HD void operator()(std::size_t i) const { to[i] = from[numbers[i]]; }
+};
+/// @}
+
 template <class Device>
 class adder_on final : public adder {
     template <class T>
@@ -44,6 +59,7 @@ class adder_on final : public adder {
 
   public:
     std::string device() const override { return device_.name(); }
+    unsigned lanes() const override { return warp::size; }
 
     void put(const problem& p) override {
         n_ = p.values.size();
@@ -53,6 +69,8 @@ class adder_on final : public adder {
         device_.upload(values_.data(), p.values.data(), n_);
         device_.upload(keys_.data(), p.keys.data(), n_);
         device_.wait();
+        active_ = static_cast<std::size_t>(
+            std::ranges::count_if(p.keys, [](std::uint32_t k) { return k != problem::nowhere; }));
         largest_ = 0;
         for (const float x : p.values) largest_ = std::max(largest_, std::abs(x));
     }
@@ -78,6 +96,8 @@ class adder_on final : public adder {
                 return add_up_to_cells(accumulate::binned<3>{});
             case way::exact:
                 return add_up_to_cells(accumulate::exact{});
+            case way::ordered:
+                return add_up_in_order();
         }
         return {};
     }
@@ -89,6 +109,45 @@ class adder_on final : public adder {
         return add_up<warpagg::cell<Accumulate>>(how);
     }
 
+    /// Runs f, and notes how long that took.
+    template <class F>
+    void time(const F& f) {
+        device_.sample_times(1);
+        device_.begin(gs::device::stage::blend_backward);  // of the clock's stages any would do
+        f();
+        device_.end_iteration();
+        const auto times = device_.times();
+        nanoseconds_ = 1e6 * times.milliseconds[static_cast<std::size_t>(gs::device::stage::blend_backward)];
+    }
+
+    /// The time includes sorting.
+    std::vector<float> add_up_in_order() {
+        using pieces = warpagg::ordered_pieces<float>;
+        const auto n = static_cast<unsigned>(active_);
+        const std::size_t edges = 2 * pieces::pieces(n);
+        for (auto* b : {&sorted_keys_, &numbers_}) b->resize(n_);
+        sorted_values_.resize(active_);
+        ordered_sums_.resize(sums_);
+        edge_keys_.resize(edges);
+        edge_sums_.resize(edges);
+        device_.copy(sorted_keys_.data(), keys_.data(), n_);
+        device_.for_each_index(n_, number_values{numbers_.data()});
+        device_.zero(ordered_sums_.data(), sums_);
+        time([&] {
+            device_.sort_pairs(sorted_keys_, numbers_, n_);
+            device_.for_each_index(active_,
+                                   gather_values{values_.data(), numbers_.data(), sorted_values_.data()});
+            device_.for_each_warp(pieces::pieces(n),
+                                  pieces{sorted_keys_.data(), sorted_values_.data(), n, ordered_sums_.data(),
+                                         edge_keys_.data(), edge_sums_.data()});
+            device_.for_each_index(edges, warpagg::ordered_join<float>{edge_keys_.data(), edge_sums_.data(),
+                                                                       edges, ordered_sums_.data()});
+        });
+        std::vector<float> sums(sums_);
+        device_.download(sums.data(), ordered_sums_.data(), sums_);
+        return sums;
+    }
+
     template <class Cell, class Accumulate>
     std::vector<float> add_up(const Accumulate& how) {
         static_assert(sizeof(Cell) % sizeof(std::uint32_t) == 0);
@@ -96,15 +155,12 @@ class adder_on final : public adder {
         memory_.resize((words + 1) / 2);
         device_.zero(memory_.data(), memory_.size());
         auto* const cells = reinterpret_cast<Cell*>(memory_.data());
-        device_.sample_times(1);
-        device_.begin(gs::device::stage::blend_backward);  // of the clock's stages any would do
-        device_.for_each_warp(
-            (n_ + warp::size - 1) / warp::size,
-            add_values<Accumulate, Cell>{values_.data(), keys_.data(), static_cast<unsigned>(n_), sums_ == 1,
-                                         cells, how});
-        device_.end_iteration();
-        const auto times = device_.times();
-        nanoseconds_ = 1e6 * times.milliseconds[static_cast<std::size_t>(gs::device::stage::blend_backward)];
+        time([&] {
+            device_.for_each_warp(
+                (n_ + warp::size - 1) / warp::size,
+                add_values<Accumulate, Cell>{values_.data(), keys_.data(), static_cast<unsigned>(n_),
+                                             sums_ == 1, cells, how});
+        });
         std::vector<Cell> found(sums_);
         device_.download(found.data(), cells, sums_);
         std::vector<float> sums;
@@ -119,10 +175,10 @@ class adder_on final : public adder {
     }
 
     Device device_;
-    buffer<float> values_;
-    buffer<std::uint32_t> keys_;
+    buffer<float> values_, sorted_values_, ordered_sums_, edge_sums_;
+    buffer<std::uint32_t> keys_, sorted_keys_, numbers_, edge_keys_;
     buffer<std::uint64_t> memory_;
-    std::size_t n_ = 0, sums_ = 0;
+    std::size_t n_ = 0, active_ = 0, sums_ = 0;
     float largest_ = 0;
     double nanoseconds_ = 0;
 };
