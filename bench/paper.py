@@ -15,12 +15,14 @@ in the loop are without loading and testing.
 """
 import argparse
 import json
+import math
 import pathlib
+import statistics
 import subprocess
 import tempfile
 
 from environment import environment, own_and_passed_on
-from scenes import train, train_into
+from scenes import by, train, train_into
 
 RUNGS = ["per-lane", "reduce", "reduce-skip", "split"]
 TIMED = ["per-lane", "reduce-skip", "split"]  # baseline and ours of the paper, and what is default here
@@ -36,13 +38,17 @@ PAPER_PSNR = {"lego": (35.793, 35.682, 33.708, 34.264), "drums": (29.990, 30.124
               "truck": (24.779, 25.851, 23.723, 24.170), "train": (23.591, 23.638, 19.393, 21.371)}
 
 
-def filling(seconds, run, run_of):
-    """The run of nearest to so many seconds in the loop, found from one of other length; run_of(iterations) makes it."""
-    tried = []
-    while len(tried) < MOST_ATTEMPTS and not (tried and off(run, seconds) <= WITHIN):
-        run = run_of(max(1, round(run["iterations"] * seconds / run["seconds"]["train"])))
-        tried.append(run)
-    return {**min(tried, key=lambda r: off(r, seconds)), "attempts": len(tried)}
+def filling(seconds, first, run_of):
+    """The run of nearest to so many seconds in the loop, found from one of other length; run_of(iterations) makes it.
+    Seconds grow by some power of the iterations, since Gaussians grow in number: the last two runs tell which."""
+    runs, power = [first], 1
+    while len(runs) <= MOST_ATTEMPTS and (len(runs) == 1 or off(runs[-1], seconds) > WITHIN):
+        run = runs[-1]
+        runs.append(run_of(max(1, round(run["iterations"] * (seconds / run["seconds"]["train"]) ** (1 / power)))))
+        (n, m), (t, u) = [(r["iterations"] for r in runs[-2:]), (r["seconds"]["train"] for r in runs[-2:])]
+        if abs(math.log(m / n)) > 0.1:  # else noise
+            power = min(max(math.log(u / t) / math.log(m / n), 0.8), 1.6)
+    return {**min(runs[1:], key=lambda r: off(r, seconds)), "attempts": len(runs) - 1}
 
 
 def off(run, seconds):
@@ -62,15 +68,17 @@ def measure(arguments, scene, bench_options):
 
     same_length = []
     with tempfile.TemporaryDirectory() as folder:
-        for rung in RUNGS:
-            same_length.append(told(train_into(folder, program, *options(rung, arguments.iterations)), "of one length:"))
+        for _ in range(arguments.turns):
+            for rung in RUNGS:
+                same_length.append(told(train_into(folder, program, *options(rung, arguments.iterations)), "of one length:"))
         ply = next(pathlib.Path(folder).glob("point_cloud/*/point_cloud.ply"))
         figures = pathlib.Path(folder) / "paper.json"
         subprocess.run([str(build / "bench" / "bench_paper"), str(ply), "-d", str(pathlib.Path(arguments.data) / scene),
                         "--seed", str(arguments.seed), "-o", str(figures), *bench_options], check=True)
         kernel = json.loads(figures.read_text())
-    same_time = [filling(arguments.seconds, run, lambda n: told(train(program, *options(run["gradient"], n)), "of one time:"))
-                 for run in same_length if run["gradient"] in TIMED]
+    last = by("gradient", same_length)
+    same_time = [filling(arguments.seconds, last[rung][-1], lambda n: told(train(program, *options(rung, n)), "of one time:"))
+                 for rung in TIMED]
     return {"scene": scene, "same_length": same_length, "same_time": same_time, "kernel": kernel}
 
 
@@ -93,14 +101,16 @@ def largest_off(result):
     return max(off(r, result["seconds"]) for s in result["scenes"] for r in s["same_time"])
 
 
-def share_of_backward(run):
-    stages = {name: stage["milliseconds"] for name, stage in run["stages"].items()}
-    return stages["blend_backward"] / sum(stages.values())
+def share_of_backward(scene, rung):
+    def share(run):
+        stages = {name: stage["milliseconds"] for name, stage in run["stages"].items()}
+        return stages["blend_backward"] / sum(stages.values())
+    return statistics.median(share(r) for r in by("gradient", scene["same_length"])[rung])
 
 
 def to_original(scene, rung):
     """How many times as fast as per-lane: the gradient kernel, and the loop of equal iterations."""
-    loop = {r["gradient"]: r["seconds"]["train"] for r in scene["same_length"]}
+    loop = {name: statistics.median(r["seconds"]["train"] for r in runs) for name, runs in by("gradient", scene["same_length"]).items()}
     return scene["kernel"]["kernels"][rung]["times_as_fast"], loop["per-lane"] / loop[rung]
 
 
@@ -122,9 +132,8 @@ def tables(result):
     scenes, rungs = result["scenes"], RUNGS[1:]
     rows = []
     for scene in scenes:
-        of = {r["gradient"]: r for r in scene["same_length"]}
         ratios = [to_original(scene, rung) for rung in rungs]
-        rows.append([scene["scene"], *(f"{100 * share_of_backward(of[r]):.1f} %" for r in ("per-lane", "split")),
+        rows.append([scene["scene"], *(f"{100 * share_of_backward(scene, rung):.1f} %" for rung in ("per-lane", "split")),
                      f"{scene['kernel']['kernels']['plain adds']['times_as_fast']:.2f}×",
                      *(f"{kernel:.2f}×" for kernel, _ in ratios), *(f"{loop:.2f}×" for _, loop in ratios)])
     for gpu, mean in PAPER_MEAN.items():
@@ -157,7 +166,8 @@ def tables(result):
     spread = max((k["ms_most"] - k["ms_least"]) / k["ms"] for s in scenes for k in s["kernel"]["kernels"].values())
     about = "; ".join(f"{s['scene']}: {s['kernel']['width']}×{s['kernel']['height']}, {s['kernel']['gaussians']:,} Gaussians, "
                       f"{s['kernel']['views']} views" for s in scenes)
-    text.append(f"Kernel and loop: times as fast as `per-lane`. Equal length: {scenes[0]['same_length'][0]['iterations']:,} iterations; equal "
+    text.append(f"Kernel and loop: times as fast as `per-lane`. Equal length: {scenes[0]['same_length'][0]['iterations']:,} iterations, "
+                f"median of {len(scenes[0]['same_length']) // len(RUNGS)}; equal "
                 f"time: {result['seconds']:g} s in the loop, within {100 * largest_off(result):.1f} %. Kernels on warps of {first['lanes']} lanes, active lanes of "
                 f"warps of 32; kernels: median of {first['rounds']} rounds, spread (largest - least) / median up to {100 * spread:.0f} %. {about}. "
                 f"Options `{' '.join(result['options'])}`, {machine}, commit {result['commit']}, seed {result['seed']}.\n")
@@ -184,8 +194,8 @@ def plot(arguments):
         axis.set_title(title, fontsize=9)
         axis.legend(fontsize=7)
 
-    of = lambda scene: {r["gradient"]: r for r in scene["same_length"]}
-    bars(share, {r: [100 * share_of_backward(of(s)[r]) for s in scenes] for r in RUNGS}, "backward blending, % of an iteration (Figure 2)")
+    bars(share, {rung: [100 * share_of_backward(s, rung) for s in scenes] for rung in RUNGS},
+         "backward blending, % of an iteration (Figure 2)")
     bars(plain, {"plain adds": [s["kernel"]["kernels"]["plain adds"]["times_as_fast"] for s in scenes]},
          "gradient kernel without atomics, times as fast (Figure 5)")
     for scene, style in zip(scenes, ["-", "--", ":", "-."] * len(scenes)):
@@ -193,7 +203,8 @@ def plot(arguments):
     lanes.set(xlabel="active lanes", yscale="log", ylabel="% of warps that add")
     lanes.set_title("active lanes when a warp adds (Figure 6)", fontsize=9)
     lanes.legend(fontsize=7)
-    groups = {f"{what}, {rung}": [to_original(s, rung)[i] for s in scenes] for i, what in enumerate(("kernel", "loop")) for rung in RUNGS[1:]}
+    groups = {f"{what}, {rung}": [to_original(s, rung)[i] for s in scenes]
+              for i, what in enumerate(("kernel", "loop")) for rung in RUNGS[1:]}
     bars(ratio, groups, "times as fast as per-lane (Figure 9)")
     ratio.axhline(1, color="0.5", linewidth=0.8)
     figure.suptitle(f"{scenes[0]['kernel']['device']}", fontsize=9)
@@ -209,6 +220,7 @@ def main():
     runner.add_argument("--data", required=True, help="the folder of the scenes")
     runner.add_argument("--scenes", nargs="+", required=True)
     runner.add_argument("--iterations", type=int, default=7000, help="where all rungs take equally many")
+    runner.add_argument("--turns", type=int, default=1, help="of these, by all rungs; the medians count")
     runner.add_argument("--seconds", type=float, default=60, help="in the loop, where they take equally long; the paper's are 300")
     runner.add_argument("--seed", type=int, default=0)
     runner.add_argument("--commit", help="where the sources are no git checkout")
