@@ -59,10 +59,6 @@ paper_subject subject(const options& o) {
     if (scene.has_alpha) s.background = {1, 1, 1};
     for (std::size_t v = 0; v < std::min(o.views, scene.train.size()); ++v)
         s.cameras.push_back(scene.train[v].camera);
-    const gs::camera& first = s.cameras.at(0);
-    for (const gs::camera& c : s.cameras)
-        if (c.width != first.width || c.height != first.height)
-            throw gs::error("the scene's photos are not all of one size");
     s.rounds = o.rounds;
     s.seed = o.seed;
     return s;

@@ -13,7 +13,7 @@
 /// What the kernels of the backward blending are measured on.
 struct paper_subject {
     gs::gaussians model;
-    std::vector<gs::camera> cameras;  ///< all of one size
+    std::vector<gs::camera> cameras;
     std::array<float, 3> background{};
     int rounds = 7;
     std::uint64_t seed = 0;  ///< of the picture's gradient

@@ -24,9 +24,11 @@ class paper_bench {
         model_.upload(device_, s.model);
         std::mt19937_64 random(s.seed);
         std::normal_distribution<float> normal;
-        const gs::camera& first = s.cameras.front();
-        std::vector<float> gradient(3 * static_cast<std::size_t>(first.width) *
-                                    static_cast<std::size_t>(first.height));
+        std::size_t pixels = 0;
+        for (const gs::camera& view : s.cameras)
+            pixels = std::max(pixels,
+                              static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
+        std::vector<float> gradient(3 * pixels);
         for (float& g : gradient) g = normal(random);
         for (const float g : gradient) largest_ = std::max(largest_, std::abs(g));
         gradient_.resize(gradient.size());
