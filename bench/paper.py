@@ -137,7 +137,7 @@ def tables(result):
                      f"{scene['kernel']['kernels']['plain adds']['times_as_fast']:.2f}×",
                      *(f"{kernel:.2f}×" for kernel, _ in ratios), *(f"{loop:.2f}×" for _, loop in ratios)])
     for gpu, mean in PAPER_MEAN.items():
-        rows.append([f"the paper, {gpu}", mean["share"], "", mean["plain"], "", mean["gradient"], "", "", mean["loop"], ""])
+        rows.append([f"the paper, {gpu}: mean (most)", mean["share"], "", mean["plain"], "", mean["gradient"], "", "", mean["loop"], ""])
     head = ["scene", "backward's share of an iteration, `per-lane` (Fig. 2)", "`split`", "plain adds (Fig. 5)"]
     head += [f"{what}, `{rung}`" + (" (Fig. 9)" if rung == "reduce-skip" else "") for what in ("kernel", "loop") for rung in rungs]
     text = [markdown(head, rows)]
@@ -148,7 +148,8 @@ def tables(result):
         eighths = [sum(shares[first:first + 4]) for first in range(0, 32, 4)]
         rows.append([scene["scene"], f"{mean:.1f}", *(f"{100 * s:.1f} %" for s in eighths), f"{100 * shares[31]:.1f} %",
                      f"{100 * idle:.1f} %", f"{100 * idle_of_listed:.1f} %"])
-    head = ["scene", "active lanes, mean (Fig. 6)", *(f"{n} to {n + 3}" for n in range(1, 33, 4)), "all 32", "idle, of staged", "idle, of listed"]
+    head = ["scene", "active lanes, mean (Fig. 6)", *(f"{n} to {n + 3}" for n in range(1, 33, 4)), "all 32",
+            "idle, of staged", "idle, of listed"]
     text.append(markdown(head, rows))
 
     rows = []
@@ -168,8 +169,8 @@ def tables(result):
                       f"{s['kernel']['views']} views" for s in scenes)
     text.append(f"Kernel and loop: times as fast as `per-lane`. Equal length: {scenes[0]['same_length'][0]['iterations']:,} iterations, "
                 f"median of {len(scenes[0]['same_length']) // len(RUNGS)}; equal "
-                f"time: {result['seconds']:g} s in the loop, within {100 * largest_off(result):.1f} %. Kernels on warps of {first['lanes']} lanes, active lanes of "
-                f"warps of 32; kernels: median of {first['rounds']} rounds, spread (largest - least) / median up to {100 * spread:.0f} %. {about}. "
+                f"time: {result['seconds']:g} s in the loop, within {100 * largest_off(result):.1f} %. Kernels on warps of {first['lanes']} "
+                f"lanes, active lanes of warps of 32; kernels: median of {first['rounds']} rounds, spread (largest - least) / median up to {100 * spread:.0f} %. {about}. "
                 f"Options `{' '.join(result['options'])}`, {machine}, commit {result['commit']}, seed {result['seed']}.\n")
     return "\n".join(text)
 
@@ -177,14 +178,14 @@ def tables(result):
 def plot(arguments):
     import matplotlib
     matplotlib.use("Agg")
-    matplotlib.rcParams["svg.hashsalt"] = "warpagg"  # the same file from the same figures
+    matplotlib.rcParams.update({"svg.hashsalt": "warpagg", "svg.fonttype": "none"})  # the same file from the same figures
     from matplotlib import pyplot
     scenes = json.loads(pathlib.Path(arguments.file).read_text())["scenes"]
     names = [s["scene"] for s in scenes]
     figure, ((share, plain), (lanes, ratio)) = pyplot.subplots(2, 2, figsize=(11, 8))
 
     def bars(axis, groups, title):
-        styles = [("white", ""), ("white", "///"), ("0.7", ""), ("0.3", ""), ("white", "..."), ("0.7", "xx")]
+        styles = [("white", ""), ("white", "///"), ("0.7", ""), ("0.3", ""), ("white", "---"), ("0.7", "xx")]
         width = 0.8 / len(groups)
         for i, ((label, values), (face, hatch)) in enumerate(zip(groups.items(), styles)):
             at = [k + (i - (len(groups) - 1) / 2) * width for k in range(len(names))]
@@ -192,7 +193,8 @@ def plot(arguments):
             axis.bar_label(drawn, fmt="%.2g", fontsize=7)
         axis.set_xticks(range(len(names)), names)
         axis.set_title(title, fontsize=9)
-        axis.legend(fontsize=7)
+        axis.legend(fontsize=7, ncols=2)
+        axis.margins(y=0.3)
 
     bars(share, {rung: [100 * share_of_backward(s, rung) for s in scenes] for rung in RUNGS},
          "backward blending, % of an iteration (Figure 2)")
@@ -207,7 +209,7 @@ def plot(arguments):
               for i, what in enumerate(("kernel", "loop")) for rung in RUNGS[1:]}
     bars(ratio, groups, "times as fast as per-lane (Figure 9)")
     ratio.axhline(1, color="0.5", linewidth=0.8)
-    figure.suptitle(f"{scenes[0]['kernel']['device']}", fontsize=9)
+    figure.suptitle(scenes[0]["kernel"]["device"], fontsize=9)
     figure.tight_layout()
     figure.savefig(arguments.picture, metadata={"Date": None})
 
