@@ -35,6 +35,7 @@ struct options {
     std::uint64_t seed = 0;
     int rounds = 7;
     std::size_t views = 50;
+    bool of_accumulations = false;
 };
 
 options parse(int argc, char** argv) {
@@ -50,6 +51,8 @@ options parse(int argc, char** argv) {
     app.add_option("--seed", o.seed);
     app.add_option("--rounds", o.rounds, "Turns of each variant")->check(CLI::Range(1, 1000));
     app.add_option("--views", o.views, "Training views in a turn")->check(CLI::Range(1, 100000));
+    app.add_flag("--accumulate", o.of_accumulations,
+                 "The ways of keeping the default's sums instead, and their distance from sums in double");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
@@ -119,6 +122,8 @@ void bench(const options& o) {
     contest c = o.ply.empty() ? random_crowd(o.seed) : trained(o);
     c.rounds = o.rounds;
     c.seed = o.seed;
+    c.of_accumulations = o.of_accumulations;
+    if (c.of_accumulations) c.in_double = sums_in_double(c);
     const contest_result result = cuda ? hold_on_cuda(c) : hold_on_cpu(c);
 
     const std::string scene =
@@ -137,28 +142,33 @@ void bench(const options& o) {
                       {"views", c.cameras.size()},
                       {"rounds", o.rounds},
                       {"cores", result.cores}};
-    std::printf("%s, %d x %d, %zu Gaussians, %zu views\n%-47s %9s %20s %6s %9s %9s %21s %8s\n", scene.c_str(),
-                c.cameras[0].width, c.cameras[0].height, c.model.count(), c.cameras.size(), "variant",
-                "backward", "(least to most), ms", "ratio", "forward", "M pairs", "ns a pair (forward)",
-                "apart");
+    std::printf("%s, %d x %d, %zu Gaussians, %zu views\n%-47s %9s %20s %6s %9s %9s %21s %8s %8s\n",
+                scene.c_str(), c.cameras[0].width, c.cameras[0].height, c.model.count(), c.cameras.size(),
+                "variant", "backward", "(least to most), ms", "ratio", "forward", "M pairs",
+                "ns a pair (forward)", "apart", "error");
     const double baseline = median(result.standings.front().backward);
     for (const standing& s : result.standings) {
         const double ms = median(s.backward), forward = median(s.forward);
         const auto [least, most] = std::ranges::minmax(s.backward);
         // Of one core, as if all had been at it all the time.
         const auto a_pair = [&](double milliseconds) { return milliseconds * 1e6 * result.cores / s.pairs; };
-        std::printf("%-47s %9.4f   %.4f to %.4f %6.2f %9.4f %9.2f %12.3f (%.3f) %8.1e\n", s.name.c_str(), ms,
-                    least, most, baseline / ms, forward, s.pairs / 1e6, a_pair(ms), a_pair(forward), s.apart);
-        json[s.rung ? "ladder" : "contenders"].push_back({{"name", s.name},
-                                                          {"backward_ms", ms},
-                                                          {"backward_ms_least", least},
-                                                          {"backward_ms_most", most},
-                                                          {"forward_ms", forward},
-                                                          {"pairs", s.pairs},
-                                                          {"backward_ns_a_pair_and_core", a_pair(ms)},
-                                                          {"forward_ns_a_pair_and_core", a_pair(forward)},
-                                                          {"apart", s.apart},
-                                                          {"times_as_fast", baseline / ms}});
+        std::printf("%-47s %9.4f   %.4f to %.4f %6.2f %9.4f %9.2f %12.3f (%.3f) %8.1e %8.1e\n",
+                    s.name.c_str(), ms, least, most, baseline / ms, forward, s.pairs / 1e6, a_pair(ms),
+                    a_pair(forward), s.apart, s.error);
+        json[o.of_accumulations ? "accumulations"
+             : s.rung           ? "ladder"
+                                : "contenders"]
+            .push_back({{"name", s.name},
+                        {"backward_ms", ms},
+                        {"backward_ms_least", least},
+                        {"backward_ms_most", most},
+                        {"forward_ms", forward},
+                        {"pairs", s.pairs},
+                        {"backward_ns_a_pair_and_core", a_pair(ms)},
+                        {"forward_ns_a_pair_and_core", a_pair(forward)},
+                        {"apart", s.apart},
+                        {"error", s.error},
+                        {"times_as_fast", baseline / ms}});
     }
     if (!o.output.empty()) std::ofstream(o.output) << json.dump(2) << '\n';
 }

@@ -17,7 +17,18 @@ struct contest {
     std::array<float, 3> background{};
     int rounds = 7;
     std::uint64_t seed = 0;  ///< of the picture's gradient
+    /// Not between kernels, but between the ways of keeping the default kernel's sums; `in_double` is filled.
+    bool of_accumulations = false;
+    /// Of the first views the sums of all Gaussians, by the same kernels in double.
+    std::vector<std::vector<double>> in_double;
 };
+
+/// dL/dpicture: three planes.
+std::vector<float> picture_gradient(const contest& c);
+/// What goes to `contest::in_double`, on the CPU.
+std::vector<std::vector<double>> sums_in_double(const contest& c);
+/// So many views are compared.
+std::size_t compared_views(const contest& c);
 
 /// How a variant did.
 struct standing {
@@ -26,6 +37,7 @@ struct standing {
     std::vector<double> forward, backward;  ///< ms a frame, one a round
     double pairs = 0;                       ///< pixel-Gaussian pairs evaluated forward, a frame
     double apart = 0;  ///< |sums - sums of the first| / |sums of the first|, the worst frame
+    double error = 0;  ///< the same against sums in double; 0 where there are none
 };
 
 struct contest_result {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <random>
 
 #include "contest.hpp"
 #include "model/parameter_memory.hpp"
@@ -21,12 +20,7 @@ class contest_on {
   public:
     explicit contest_on(const contest& c) : contest_(c) {
         model_.upload(device_, c.model);
-        std::mt19937_64 random(c.seed);
-        std::normal_distribution<float> normal;
-        const gs::camera& first = c.cameras.front();
-        std::vector<float> gradient(3 * static_cast<std::size_t>(first.width) *
-                                    static_cast<std::size_t>(first.height));
-        for (float& g : gradient) g = normal(random);
+        const std::vector<float> gradient = picture_gradient(c);
         for (const float g : gradient) largest_ = std::max(largest_, std::abs(g));
         gradient_.resize(gradient.size());
         device_.upload(gradient_.data(), gradient.data(), gradient.size());
@@ -48,7 +42,7 @@ class contest_on {
     /// A variant: `kernel` after the forward blending of `renderer`.
     template <class Renderer, class Kernel>
     void enter(const std::string& name, bool rung, const std::shared_ptr<Renderer>& renderer, Kernel kernel) {
-        standings_.push_back({name, rung, {}, {}, 0, 0});
+        standings_.push_back({name, rung, {}, {}, 0, 0, 0});
         frames_.push_back([this, renderer, kernel](const gs::camera& view) -> const buffer<float>& {
             renderer->forward(model_.read(), contest_.model.count(), view, contest_.model.sh_degree,
                               contest_.background);
@@ -62,10 +56,14 @@ class contest_on {
             return static_cast<double>(n);
         });
     }
+    /// The kernels that the product has, or the ways of keeping the last one's sums.
     template <class Cut>
     void enter_ladder() {
         const auto r = renderer<Cut>();
-        for (std::size_t p = 0; p < gs::gradient_policy_names.size(); ++p)
+        constexpr auto split = static_cast<std::size_t>(gs::gradient_policy::split);
+        const std::size_t first = contest_.of_accumulations ? split : 0;
+        const std::size_t end = contest_.of_accumulations ? gs::gradient_policy_names.size() : split + 1;
+        for (std::size_t p = first; p < end; ++p)
             gs::raster::with_policy<float, Cut>(static_cast<gs::gradient_policy>(p), [&](auto kernel) {
                 enter(std::string(gs::gradient_policy_names[p]), true, r, kernel);
             });
@@ -100,24 +98,30 @@ class contest_on {
     }
 
   private:
-    /// Every variant's sums beside the first one's, in a few views.
+    /// Every variant's sums beside the first one's, and beside those in double, in a few views.
     void compare() {
-        const std::size_t views = std::min<std::size_t>(contest_.cameras.size(), 3);
-        for (std::size_t v = 0; v < views; ++v) {
-            std::vector<float> first;
+        for (std::size_t v = 0; v < compared_views(contest_); ++v) {
+            std::vector<double> first;
             for (std::size_t i = 0; i < frames_.size(); ++i) {
                 const auto& sums = frames_[i](contest_.cameras[v]);
                 std::vector<float> mine(sums.size());
                 device_.download(mine.data(), sums.data(), mine.size());
-                if (i == 0) first = mine;
-                double apart = 0, norm = 0;
-                for (std::size_t k = 0; k < mine.size(); ++k) {
-                    apart += std::pow(double{mine[k]} - first[k], 2);
-                    norm += std::pow(double{first[k]}, 2);
-                }
-                standings_[i].apart = std::max(standings_[i].apart, std::sqrt(apart / norm));
+                if (i == 0) first.assign(mine.begin(), mine.end());
+                standing& s = standings_[i];
+                s.apart = std::max(s.apart, distance(mine, first));
+                if (!contest_.in_double.empty())
+                    s.error = std::max(s.error, distance(mine, contest_.in_double[v]));
             }
         }
+    }
+    static double distance(const std::vector<float>& sums, const std::vector<double>& from) {
+        double apart = 0, norm = 0;
+        for (std::size_t k = 0; k < sums.size(); ++k) {
+            if (k % gs::raster::record_stride >= gs::raster::sum_count) continue;  // of no meaning
+            apart += std::pow(double{sums[k]} - from[k], 2);
+            norm += std::pow(from[k], 2);
+        }
+        return std::sqrt(apart / norm);
     }
 
     const contest& contest_;

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// Sums in order, on the `backend` that the including file has chosen.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+#include <warpagg/ordered.hpp>
+
+namespace {
+
+using namespace warpagg;
+
+/// One warp takes all pieces.
+template <class T>
+struct sum_pieces {
+    ordered_pieces<T> pieces;
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W>
+    WARPAGG_HD void operator()(const W& w) const {
+        for (unsigned i = 0; i < pieces.pieces(pieces.n); ++i) pieces(w, i);
+    }
+};
+template <class T>
+struct join_edges {
+    ordered_join<T> join;
+
+    template <class W>
+    WARPAGG_HD void operator()(const W&) const {
+        for (std::size_t edge = 0; edge < join.edges; ++edge) join(edge);
+    }
+};
+
+/// Of sorted keys; -1 where there is no such key.
+template <class T>
+std::vector<T> ordered_sums(const std::vector<unsigned>& keys, const std::vector<T>& values, unsigned sums) {
+    const auto n = static_cast<unsigned>(keys.size());
+    const std::size_t edges = 2 * ordered_pieces<T>::pieces(n);
+    typename backend::template memory<unsigned> in(keys), edge_keys(std::vector<unsigned>(edges + 1));
+    typename backend::template memory<T> of(values), to(std::vector<T>(sums, T(-1))),
+        edge_sums(std::vector<T>(edges + 1));
+    backend::launch(sum_pieces<T>{{in.data(), of.data(), n, to.data(), edge_keys.data(), edge_sums.data()}});
+    backend::launch(join_edges<T>{{edge_keys.data(), edge_sums.data(), edges, to.data()}});
+    return to.download();
+}
+
+/// Keys of which each occurs as often as `often` says.
+std::vector<unsigned> keys_of(const std::vector<unsigned>& often) {
+    std::vector<unsigned> keys;
+    for (unsigned k = 0; k < often.size(); ++k) keys.insert(keys.end(), often[k], k);
+    return keys;
+}
+
+/// Whole numbers: their sums have no error.
+template <class T>
+void check_whole(const std::vector<unsigned>& often) {
+    const std::vector<unsigned> keys = keys_of(often);
+    std::vector<T> values, expected(often.size(), T(-1));
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        values.push_back(static_cast<T>(i % 19) - T(9));
+        T& sum = expected[keys[i]];
+        sum = (i == 0 || keys[i] != keys[i - 1] ? T(0) : sum) + values.back();
+    }
+    CHECK(ordered_sums(keys, values, static_cast<unsigned>(often.size())) == expected);
+}
+
+}  // namespace
+
+TEST_SUITE_BEGIN(backend::name);
+
+TEST_CASE("sums in order are complete, wherever keys begin and end") {
+    check_whole<float>({1});
+    check_whole<float>({0, 1, 0});
+    check_whole<float>({5, 0, 3, 32, 1, 31});
+    check_whole<float>({1024});
+    check_whole<float>({1024, 1024, 1});
+    check_whole<float>({1023, 2, 1023});
+    check_whole<float>({5000});
+    check_whole<float>({3, 5000, 4, 0, 1100, 1});
+    check_whole<float>(std::vector<unsigned>(3000, 1));
+    check_whole<double>({992, 32, 31, 1, 2047, 0, 40});
+    check_whole<std::int32_t>({3, 5000, 4, 0, 1100, 1});
+    std::mt19937 random(3);
+    for (int i = 0; i < (backend::every_nth_mask > 1 ? 3 : 60); ++i) {
+        std::vector<unsigned> often(40);
+        for (unsigned& n : often) {
+            const auto most = 1u << (random() % 11 + 1);
+            n = random() % 4 == 0 ? 0 : static_cast<unsigned>(random()) % most;
+        }
+        check_whole<float>(often);
+    }
+}
+
+TEST_CASE("sums in order have the same bits again, err by no more than their bound, and keep the order") {
+    const std::vector<unsigned> often{700, 3000, 1, 300}, keys = keys_of(often);
+    std::mt19937 random(5);
+    std::normal_distribution<float> normal;
+    std::vector<float> values;
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        values.push_back(std::exp(2 * normal(random)) * normal(random));
+    const std::vector<float> found = ordered_sums(keys, values, 4);
+    CHECK(ordered_sums(keys, values, 4) == found);
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        double sum = 0, magnitude = 0;
+        for (std::size_t i = first; i < first + often[k]; ++i) {
+            sum += static_cast<double>(values[i]);
+            magnitude += std::abs(static_cast<double>(values[i]));
+        }
+        first += often[k];
+        const double steps = 1024.0 / backend::warp::size + 10 + often[k] / 1024.0;
+        CHECK(std::abs(static_cast<double>(found[k]) - sum) <= steps * 0x1p-24 * magnitude);
+    }
+    // Another order is another sum: nothing sorts behind the caller's back.
+    std::reverse(values.begin() + 700, values.begin() + 3700);
+    CHECK(ordered_sums(keys, values, 4)[1] != found[1]);
+}
+
+TEST_SUITE_END();
