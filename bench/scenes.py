@@ -22,18 +22,23 @@ KEPT = ["psnr", "ssim", "training_psnr", "gaussians", "iterations", "iterations_
         "gradient", "tests"]
 
 
-def train(program, data, scene, seed, options):
-    """One run: what metrics.json says of it, and the seconds of the whole process."""
-    with tempfile.TemporaryDirectory() as folder:
-        command = [program, "train", "-d", str(pathlib.Path(data) / scene), "-o", folder, "--eval", "-q",
-                   "--seed", str(seed), *options]
-        start = time.monotonic()
-        subprocess.run(command, check=True)
-        process = time.monotonic() - start
-        metrics = json.loads((pathlib.Path(folder) / "metrics.json").read_text())
+def train_into(folder, program, data, scene, seed, options):
+    """One run, whose results stay in the folder: what metrics.json says of it, and the seconds of the whole process."""
+    command = [program, "train", "-d", str(pathlib.Path(data) / scene), "-o", folder, "--eval", "-q",
+               "--seed", str(seed), *options]
+    start = time.monotonic()
+    subprocess.run(command, check=True)
+    process = time.monotonic() - start
+    metrics = json.loads((pathlib.Path(folder) / "metrics.json").read_text())
     kept = {"scene": scene, **{key: metrics[key] for key in KEPT}}
     kept["seconds"]["process"] = process
     return kept
+
+
+def train(*run):
+    """The same in a folder of its own, which goes again."""
+    with tempfile.TemporaryDirectory() as folder:
+        return train_into(folder, *run)
 
 
 def run(arguments):

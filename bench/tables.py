@@ -14,6 +14,7 @@ import re
 import statistics
 import sys
 
+import paper
 from scenes import where
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -303,6 +304,7 @@ EXAMPLES = {
 
 TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability, hard_cases,
                                  against_double, backward_ladder, backward_contenders, roofline, schedules, accuracy)}
+TABLES["paper_cpu"] = lambda: paper.tables(results("paper_cpu"))
 TABLES.update({f"{name}_{m}": example(m, title) for name, title in EXAMPLES.items() for m in ("emulator", "gpu")})
 
 
