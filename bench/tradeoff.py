@@ -27,9 +27,9 @@ from train import add_run, measure
 
 DEFAULT, AGAIN, HALF, DOUBLE = "default", "again", "half", "double"
 MOST_TOGETHER = 4
-# What the trainer refuses together.
+# What the trainer refuses together, or the one brings with it.
 EXCLUDES = {"--gradient": {"--accumulate", "--deterministic"}, "--deterministic": {"--accumulate"},
-            "--budget": {"--densify-grad-threshold"}}
+            "--budget": {"--densify-grad-threshold"}, "--quality": {"--sh-lr", "--num-downscales"}}
 
 
 def parsed(words):
@@ -78,9 +78,8 @@ def together(names, n):
             merged.update(known[name])
     merge = lambda some, length: {k: v for name in some for k, v in knobs(length)[name].items()}
     found = {" + ".join(chosen[:k]): merge(chosen[:k], n) for k in range(2, len(chosen) + 1)}
-    if chosen and "-i" not in merged:
-        for name, length in ((HALF, max(n // 2, 1)), (DOUBLE, 2 * n)):
-            found[" + ".join([*chosen, name])] = {**merge(chosen, length), "-i": [str(length)]}
+    for name, length in ((HALF, max(n // 2, 1)), (DOUBLE, 2 * n)) if chosen else ():
+        found[" + ".join([*chosen, name])] = {"-i": [str(length)], **merge(chosen, length)}
     return found
 
 
@@ -107,7 +106,8 @@ def apart(some, others):
 
 
 def points(runs):
-    """Of each knob: its medians, how they stand to the default's, what is beyond the spread, and whether on the front."""
+    """Of each knob: its medians, how they stand to the default's, what is beyond the spread, and whether it is on the front,
+    where one of which nothing is beyond the spread does not stand: it is not told apart from the default."""
     sets = by("options", runs)
     middle = lambda same, pick: statistics.median(pick(r) for r in same)
     found = [{"name": name, "runs": same, "ratio": middle(same, lambda r: r["ratio"]),
@@ -123,8 +123,10 @@ def points(runs):
         p["beyond"] = [key for key in ("psnr", "ratio") if several and apart([r[key] for r in p["runs"]],
                                                                             [r[key] for r in reference])]
         p["several"] = several
-        p["front"] = p["name"] != AGAIN and not any(
-            q["name"] != AGAIN and q["ratio"] <= p["ratio"] and q["psnr"] >= p["psnr"]
+        p["told_apart"] = p["name"] == DEFAULT or p["name"] != AGAIN and (bool(p["beyond"]) or not several)
+    for p in found:
+        p["front"] = p["told_apart"] and not any(
+            q["told_apart"] and q["ratio"] <= p["ratio"] and q["psnr"] >= p["psnr"]
             and (q["ratio"], q["psnr"]) != (p["ratio"], p["psnr"]) for q in found)
     return found
 
@@ -133,7 +135,7 @@ def paying(runs):
     """The knobs that reach more PSNR than a run of that length does, by more than seeds differ; the best first."""
     seeds = [r["psnr"] for r in runs if r["options"] == DEFAULT]
     noise = max(seeds) - min(seeds)
-    able = [p for p in points(runs) if p["name"] not in (DEFAULT, AGAIN) and (p["above_length"] or 0) > noise]
+    able = [p for p in points(runs) if p["name"] != DEFAULT and p["told_apart"] and (p["above_length"] or 0) > noise]
     return [p["name"] for p in sorted(able, key=lambda p: -p["above_length"])]
 
 

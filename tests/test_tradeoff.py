@@ -23,7 +23,7 @@ def runs(**figures):
 
 GIVEN = runs(default=[(1, 30.0), (1, 30.2)], again=[(0.96, 30.0), (1.05, 30.5)], half=[(0.5, 28.1), (0.5, 28.1)],
              double=[(2, 32.1), (2, 32.1)], fixed=[(1.3, 30.0), (1.4, 30.1)], pruned=[(0.9, 30.15), (0.94, 30.25)],
-             fast=[(0.6, 30.0), (0.6, 30.0)], again_but_slow=[(1.02, 29.0), (1.1, 29.2)])
+             fast=[(0.6, 30.0), (0.6, 30.0)], same=[(0.7, 30.1), (1.1, 30.6)], again_but_slow=[(1.02, 29.0), (1.1, 29.2)])
 
 
 class Points(unittest.TestCase):
@@ -32,6 +32,10 @@ class Points(unittest.TestCase):
 
     def test_front_has_no_point_that_another_beats_in_both(self):
         self.assertEqual([name for name, p in self.points.items() if p["front"]], ["half", "double", "pruned", "fast"])
+
+    def test_what_is_not_told_apart_from_the_default_is_not_on_the_front(self):
+        self.assertEqual([name for name, p in self.points.items() if not p["told_apart"]], ["again", "same"])
+        self.assertTrue(all(p["told_apart"] for p in tradeoff.points([r for r in GIVEN if r["seed"] == 1]) if p["name"] != "again"))
 
     def test_spread_is_that_of_the_default_and_of_itself_again(self):
         beyond = {name: self.points[name]["beyond"] for name in ("fixed", "pruned", "fast", "again_but_slow")}
@@ -58,6 +62,7 @@ class Together(unittest.TestCase):
         some = tradeoff.together(["coarse to fine"], 700)
         self.assertEqual(some["coarse to fine + half"]["--resolution-schedule"], ["70"])
         self.assertEqual(some["coarse to fine + double"]["-i"], ["1400"])
+        self.assertEqual(tradeoff.together(["fast"], 700)["fast + double"]["-i"], ["1000"])
 
 
 class Program(unittest.TestCase):
