@@ -107,7 +107,7 @@ def apart(some, others):
 
 def points(runs):
     """Of each knob: its medians, how they stand to the default's, what is beyond the spread, and whether it is on the front,
-    where one of which nothing is beyond the spread does not stand: it is not told apart from the default."""
+    where none stands that does not gain PSNR or time beyond the spread: a front is not made of noise."""
     sets = by("options", runs)
     middle = lambda same, pick: statistics.median(pick(r) for r in same)
     found = [{"name": name, "runs": same, "ratio": middle(same, lambda r: r["ratio"]),
@@ -123,10 +123,11 @@ def points(runs):
         p["beyond"] = [key for key in ("psnr", "ratio") if several and apart([r[key] for r in p["runs"]],
                                                                             [r[key] for r in reference])]
         p["several"] = several
-        p["told_apart"] = p["name"] == DEFAULT or p["name"] != AGAIN and (bool(p["beyond"]) or not several)
+        gains = {"psnr": p["to_default"] > 0, "ratio": p["ratio"] < 1}
+        p["better"] = p["name"] == DEFAULT or p["name"] != AGAIN and any(gains[key] for key in (p["beyond"] if several else gains))
     for p in found:
-        p["front"] = p["told_apart"] and not any(
-            q["told_apart"] and q["ratio"] <= p["ratio"] and q["psnr"] >= p["psnr"]
+        p["front"] = p["better"] and not any(
+            q["better"] and q["ratio"] <= p["ratio"] and q["psnr"] >= p["psnr"]
             and (q["ratio"], q["psnr"]) != (p["ratio"], p["psnr"]) for q in found)
     return found
 
@@ -135,7 +136,7 @@ def paying(runs):
     """The knobs that reach more PSNR than a run of that length does, by more than seeds differ; the best first."""
     seeds = [r["psnr"] for r in runs if r["options"] == DEFAULT]
     noise = max(seeds) - min(seeds)
-    able = [p for p in points(runs) if p["name"] != DEFAULT and p["told_apart"] and (p["above_length"] or 0) > noise]
+    able = [p for p in points(runs) if p["name"] != DEFAULT and p["better"] and (p["above_length"] or 0) > noise]
     return [p["name"] for p in sorted(able, key=lambda p: -p["above_length"])]
 
 

@@ -33,9 +33,8 @@ class Points(unittest.TestCase):
     def test_front_has_no_point_that_another_beats_in_both(self):
         self.assertEqual([name for name, p in self.points.items() if p["front"]], ["half", "double", "pruned", "fast"])
 
-    def test_what_is_not_told_apart_from_the_default_is_not_on_the_front(self):
-        self.assertEqual([name for name, p in self.points.items() if not p["told_apart"]], ["again", "same"])
-        self.assertTrue(all(p["told_apart"] for p in tradeoff.points([r for r in GIVEN if r["seed"] == 1]) if p["name"] != "again"))
+    def test_what_gains_nothing_beyond_the_spread_is_not_on_the_front(self):
+        self.assertEqual([name for name, p in self.points.items() if not p["better"]], ["again", "fixed", "same", "again_but_slow"])
 
     def test_spread_is_that_of_the_default_and_of_itself_again(self):
         beyond = {name: self.points[name]["beyond"] for name in ("fixed", "pruned", "fast", "again_but_slow")}
