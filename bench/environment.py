@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
-"""What the benches share: what a figure belongs to (commit, GPU, compilers, processor), and the command line."""
+"""What the benches share: what a figure belongs to (commit, GPU, compilers, processor), Markdown, and the command line."""
 import subprocess
 import sys
 
@@ -19,6 +19,12 @@ def environment(commit):
             "nvcc": nvcc,
             "compiler": first_line("c++", "--version"),
             "processor": first_line("sh", "-c", "grep -m1 'model name' /proc/cpuinfo | cut -d: -f2")}
+
+
+def markdown(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+    lines += ["| " + " | ".join(row) + " |" for row in rows]
+    return "\n".join(lines) + "\n"
 
 
 def own_and_passed_on():

@@ -15,7 +15,9 @@ import statistics
 import sys
 
 import paper
+from environment import markdown
 from scenes import where
+from tradeoff import table as tradeoff_table
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TABLE = re.compile(r"(<!-- table (\w+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
@@ -24,12 +26,6 @@ MAIN_N = (1, 2, 3, 4, 8, 9, 16, 24, 32)
 
 def results(name):
     return json.loads((ROOT / "bench" / "results" / f"{name}.json").read_text())
-
-
-def markdown(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
-    lines += ["| " + " | ".join(row) + " |" for row in rows]
-    return "\n".join(lines) + "\n"
 
 
 class Atomics:
@@ -264,6 +260,10 @@ def schedules():
     return markdown(head, rows) + f"\n`{options}`, {machine_and_seeds}; medians, in brackets how they stand to the default's.\n"
 
 
+def tradeoff():
+    return tradeoff_table(results("tradeoff_lego_50_cpu"))
+
+
 def accuracy():
     """Each way of keeping a sum: errors by condition, of its bound, bit patterns, and cost beside native's."""
     f = results("accuracy_emulator")
@@ -303,7 +303,7 @@ EXAMPLES = {
 }
 
 TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability, hard_cases,
-                                 against_double, backward_ladder, backward_contenders, roofline, schedules, accuracy)}
+                                 against_double, backward_ladder, backward_contenders, roofline, schedules, accuracy, tradeoff)}
 TABLES["paper_cpu"] = lambda: paper.tables(results("paper_cpu"))
 TABLES.update({f"{name}_{m}": example(m, title) for name, title in EXAMPLES.items() for m in ("emulator", "gpu")})
 
