@@ -10,7 +10,7 @@ import json
 import pathlib
 
 CONDITION = "condition 1e"
-MARKERS = {"native": "o", "f64": "s", "compensated": "^", "fixed, scaled to fit": "D", "binned<2>": "v", "binned<3>": "<", "exact": "*"}
+MARKERS = {"native": "o", "f64": "s", "compensated": "^", "fixed, scaled to fit": "D", "binned<2>": "v", "binned<3>": "<", "exact": "*", "ordered": "P"}
 
 
 def of(row):
@@ -28,7 +28,7 @@ def errors_by_condition(axis, rows):
                                 ("bound of compensated", "-.", lambda k: u + 5 * n * u * u * k),
                                 ("bound of f64", "--", lambda k: u + n * 2.0 ** -53 * k)):
         axis.loglog(conditions, [bound(k) for k in conditions], color="0.5", linestyle=style, linewidth=1, label=label)
-    axis.set(xlabel="condition number of the sum", ylabel="largest relative error", ylim=(1e-9, 1e3), title=f"{n:,} values, one sum")
+    axis.set(xlabel="condition number of the sum", ylabel="largest relative error", ylim=(1e-9, 1e3), title=f"{n:,.0f} values, one sum")
     axis.legend(fontsize=7, ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.13))
     axis.grid(alpha=0.2)
 
@@ -40,6 +40,10 @@ def errors_by_time(axis, rows, values):
             axis.loglog(found["nanoseconds_a_value"]["median"], found["largest_error"], "k", marker=marker, markerfacecolor=face, linestyle="")
     axis.set(xlabel="ns a value (white: one sum, black: many)", ylabel="largest relative error", title=f"{values}: error against time")
     axis.grid(alpha=0.2)
+
+
+def where(result):
+    return f"{result['device']}, " + ("" if result["device"].startswith("cuda") else f"{result['processor']}, ") + f"commit {result['commit']}"
 
 
 def main():
@@ -55,7 +59,7 @@ def main():
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4.5))
     errors_by_condition(left, [r for r in result["rows"] if r["sums"] == 1])
     errors_by_time(right, result["rows"], "condition 1e06")
-    figure.suptitle(f"{result['device']}, {result['processor']}, commit {result['commit']}", fontsize=8)
+    figure.suptitle(where(result), fontsize=8)
     figure.savefig(arguments.picture, bbox_inches="tight", metadata={"Date": None})
 
 

@@ -261,12 +261,12 @@ def schedules():
 
 
 def tradeoff():
-    return tradeoff_table(results("tradeoff_lego_50_cpu"))
+    return tradeoff_table(results("tradeoff_lego"))
 
 
-def accuracy():
+def accuracy_of(name):
     """Each way of keeping a sum: errors by condition, of its bound, bit patterns, and cost beside native's."""
-    f = results("accuracy_emulator")
+    f = results(name)
     of = lambda row: {t["tag"]: t for t in row["tags"]}
     one = {row["values"]: of(row) for row in f["rows"] if row["sums"] == 1}
     conditions = {"condition 1e00": "k = 1", "condition 1e06": "1e6", "condition 1e12": "1e12"}
@@ -282,11 +282,58 @@ def accuracy():
         rows.append([f"`{tag}`"] + [f"{one[c][tag]['largest_error']:.0e}" for c in conditions]
                     + [f"{max(t['error_over_bound'] for t in same):.2g}",
                        f"{min(patterns)} to {max(patterns)}" if min(patterns) < max(patterns) else f"{max(patterns)}"]
-                    + [f"{t:.1f}×" for t in times])
+                    + [f"{t:.3g}×" for t in times])
     head = ["tag"] + [f"largest relative error, {c}" for c in conditions.values()] + ["of its bound, at most", "bit patterns"]
     head += [f"time, {sums:,} sum{'s' * (sums > 1)}" for sums in sorted({row["sums"] for row in f["rows"]})]
-    return markdown(head, rows) + (f"\n{f['rows'][0]['n']:,} values in {f['orders']} orders; median of times, beside `native`'s; spread (largest - least) / "
-                                   f"median up to {100 * spread:.0f} %. {f['device']}, {f['processor']}, {f['compiler']}, commit {f['commit']}, seed {f['seed']}.\n")
+    return markdown(head, rows) + (f"\n{f['rows'][0]['n']:,.0f} values in {f['orders']} orders; median of times, beside `native`'s; spread (largest - least) / "
+                                   f"median up to {100 * spread:.0f} %. {accuracy_machine(f)}\n")
+
+
+def accuracy_machine(f):
+    where = f"{f['device']}, driver {f['driver']}, nvcc {f['nvcc']}" if f["device"].startswith("cuda") else f"{f['device']}, {f['processor']}, {f['compiler']}"
+    return f"{where}, commit {f['commit']}, seed {f['seed']}."
+
+
+def accuracy():
+    return accuracy_of("accuracy_emulator")
+
+
+def accuracy_gpu():
+    return accuracy_of("accuracy_gpu")
+
+
+def accuracy_active():
+    """Nanoseconds a value against the share of the lanes that have one."""
+    f = results("accuracy_gpu_active")
+    columns = [(row["sums"], row["active"]) for row in f["rows"]]
+    of = {column: {t["tag"]: t["nanoseconds_a_value"]["median"] for t in row["tags"]} for column, row in zip(columns, f["rows"])}
+    rows = [[f"`{tag}`"] + [f"{of[c][tag]:.3g}" for c in columns] for tag in of[columns[0]]]
+    head = ["ns a value"] + [f"{sums:,} sum{'s' * (sums > 1)}, {100 * share:.0f} % of the lanes" for sums, share in columns]
+    return markdown(head, rows) + f"\n{f['rows'][0]['n']:,.0f} values, median of {f['orders']} orders. {accuracy_machine(f)}\n"
+
+
+def accumulations():
+    """In what the trainer's gradients are added up: time of the kernel and of training, and what it changes."""
+    kernels = [results("accumulate_backward_lego"), results("accumulate_backward_lego_1600")]
+    training = results("accumulate_lego")
+    median = lambda mode, pick: statistics.median(pick(r) for r in training["modes"][mode])
+    rows = []
+    for i, mode in enumerate(training["modes"]):
+        row = [f"`{mode}`"]
+        for k in kernels:
+            standing, first = k["accumulations"][i], k["accumulations"][0]
+            row += [f"{standing['backward_ms']:.3f} ({standing['backward_ms'] / first['backward_ms']:.2f}×)"]
+        row += [f"{kernels[0]['accumulations'][i]['error']:.1e}", f"{kernels[0]['accumulations'][i]['apart']:.1e}"]
+        loop = lambda r: r["seconds"]["train"]
+        psnr = sorted(r["psnr"] for r in training["modes"][mode])
+        row += [f"{median(mode, loop):.2f} ({median(mode, loop) / median('native', loop):.2f}×)",
+                f"{statistics.mean(psnr):.3f} ({psnr[0]:.2f} to {psnr[-1]:.2f})"]
+        rows.append(row)
+    head = ["`--accumulate`", "backward blending, ms, lego 400²", "1600²", "sums' distance from double, 400²", "from `native`'s",
+            "training, s", "held-out PSNR, dB, mean of three seeds"]
+    k = kernels[0]
+    return markdown(head, rows) + (f"\nKernel: {k['gaussians']:,} Gaussians, median of {k['rounds']} rounds, {k['device']}, driver {k['driver']}, nvcc {k['nvcc']}, commit {k['commit']}, "
+                                   f"seed {k['seed']}. Training: lego 400², 7,000 iterations, seeds 0, 1, 2, {machine(training)}\n")
 
 
 def machine(figures):
@@ -303,8 +350,8 @@ EXAMPLES = {
 }
 
 TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability, hard_cases,
-                                 against_double, backward_ladder, backward_contenders, roofline, schedules, accuracy, tradeoff)}
-TABLES["paper_cpu"] = lambda: paper.tables(results("paper_cpu"))
+                                 against_double, backward_ladder, backward_contenders, roofline, schedules, tradeoff, accuracy, accuracy_gpu, accuracy_active, accumulations)}
+TABLES.update({name: lambda name=name: paper.tables(results(name)) for name in ("paper_cpu", "paper_h200")})
 TABLES.update({f"{name}_{m}": example(m, title) for name, title in EXAMPLES.items() for m in ("emulator", "gpu")})
 
 

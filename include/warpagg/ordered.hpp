@@ -33,6 +33,7 @@ struct ordered_pieces {
     /// How many there are of n places.
     static constexpr WARPAGG_HD unsigned pieces(unsigned n) { return (n + piece - 1) / piece; }
 
+    /// The sums of piece `index`. All lanes call this.
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
@@ -111,6 +112,7 @@ struct ordered_join {
     std::size_t edges;          ///< how many
     T* sums;                    ///< by key
 
+    /// The sum of the key whose first edge this is, if it is one's.
     WARPAGG_HD void operator()(std::size_t edge) const {
         constexpr unsigned no_key = ordered_pieces<T>::no_key;
         const unsigned key = edge_keys[edge];
