@@ -463,7 +463,7 @@ TEST_CASE("a number that makes no sense is refused") {
                                                         {"--sh-update-interval", "0", ""},
                                                         {"--background", "beige", ""},
                                                         {"--device", "tpu", ""},
-                                                        {"--quality", "best", ""},
+                                                        {"--quality", "worst", ""},
                                                         {"--gradient", "magic", ""},
                                                         {"-i", "99999999999999999999", "--iterations"}};
     for (const auto& [option, value, long_name] : cases)
@@ -762,12 +762,24 @@ TEST_CASE("--quality fast sets what pays, and nothing that was said") {
     const json said = settings_of("said", {"-i", "20", "--sh-lr", "1e-4", "--num-downscales", "0"});
     CHECK(said.at("sh_lr") == 1e-4);
     CHECK(said.at("num_downscales") == 0);
-    check_success(small_training(folder / "full") + words{"-q", "--quality", "full"});
+    check_success(small_training(folder / "balanced") + words{"-q", "--quality", "balanced"});
     check_success(small_training(folder / "default") + words{"-q"});
-    CHECK(read_json(folder / "full/settings.json") == read_json(folder / "default/settings.json"));
+    CHECK(read_json(folder / "balanced/settings.json") == read_json(folder / "default/settings.json"));
     CHECK(settings_of("one", {"-i", "1"}).at("num_downscales") == 0);
     CHECK(settings_of("small", {"-i", "20", "--num-downscales", "3"}).at("resolution_schedule") == 2);
     check_refusal_without_trace(fast + words{"--save-iterations", "5001"}, {"5001", "1 to 5000"});
+}
+
+TEST_CASE("--quality best takes its time, and what was said") {
+    const temporary_folder folder;
+    const words best{"train",     "-r",  "16", "--device", "cpu", "-q", "-d", "synthetic:spheres",
+                     "--quality", "best"};
+    check_refusal_without_trace(best + words{"--save-iterations", "30001"}, {"30001", "1 to 30000"});
+    check_success(best + words{"-o", (folder / "chosen").string(), "-i", "20"});
+    CHECK(read_json(folder / "chosen/settings.json").at("densify_grad_threshold") == 5e-5);
+    CHECK(read_json(folder / "chosen/settings.json").at("iterations") == 20);
+    check_success(best + words{"-o", (folder / "said").string(), "-i", "20", "--budget", "900"});
+    CHECK(read_json(folder / "said/settings.json").at("densify_grad_threshold") > 5e-5);
 }
 
 TEST_CASE("--quiet prints nothing") {

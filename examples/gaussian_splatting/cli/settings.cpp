@@ -12,7 +12,7 @@
 
 #include "../error.hpp"
 #include "../raster/gradient_policy.hpp"
-#include "choose_fast.hpp"
+#include "choose_quality.hpp"
 
 namespace gs::cli {
 
@@ -174,9 +174,11 @@ CLI::App* add_train(CLI::App& app, settings& s) {
     add_common(*train, s);
     train->add_option("-o,--output,-m,--model-path", s.output, "Folder for the results")->required();
     train
-        ->add_option("--quality", s.quality,
-                     "fast: 5000 iterations, and options of the schedule that save time; what is said wins")
-        ->check(CLI::IsMember({"full", "fast"}))
+        ->add_option(
+            "--quality", s.quality,
+            "fast: 5000 iterations, and options of the schedule that save time; best: 30000, and more "
+            "Gaussians; what is said wins")
+        ->check(CLI::IsMember({"fast", "balanced", "best"}))
         ->capture_default_str();
     train->add_option("-i,--iterations", s.schedule.iterations)
         ->check(whole_number(1, 10000000))
@@ -317,7 +319,7 @@ settings parse(int argc, char** argv) {
     }
     s.command = app.get_subcommands().front()->get_name();
     s.scene.seed = s.seed;
-    if (s.quality == "fast") choose_fast(*app.get_subcommand("train"), s.schedule);
+    choose_quality(*app.get_subcommand("train"), s.quality, s.schedule);
     if (s.command != "train" && s.background == "random")
         throw error("--background random is for training: " + s.command + " needs one colour");
     refuse_late(s.save_iterations, s.schedule.iterations, "--save-iterations");

@@ -24,7 +24,7 @@ struct settings {
     std::uint64_t seed = 0;
     bool quiet = false;
 
-    std::string quality = "full";
+    std::string quality = "balanced";
     train::schedule schedule;
     std::size_t max_cap = 0;  ///< 0: by the photos
     std::size_t budget = 0;   ///< 0: none
