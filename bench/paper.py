@@ -21,7 +21,7 @@ import statistics
 import subprocess
 import tempfile
 
-from environment import environment, own_and_passed_on
+from environment import environment, markdown, own_and_passed_on
 from scenes import by, train, train_into
 
 RUNGS = ["per-lane", "reduce", "reduce-skip", "split"]
@@ -72,7 +72,7 @@ def measure(arguments, scene, bench_options):
         for _ in range(arguments.turns):
             for rung in RUNGS:
                 same_length.append(told(train_into(folder, program, *options(rung, arguments.iterations)), "of one length:"))
-        ply = next(pathlib.Path(folder).glob("point_cloud/*/point_cloud.ply"))
+        ply = pathlib.Path(folder) / "point_cloud" / f"iteration_{arguments.iterations}" / "point_cloud.ply"
         figures = pathlib.Path(folder) / "paper.json"
         subprocess.run([str(build / "bench" / "bench_paper"), str(ply), "-d", str(pathlib.Path(arguments.data) / scene),
                         "--seed", str(arguments.seed), "-o", str(figures), *bench_options], check=True)
@@ -123,10 +123,6 @@ def active(scene):
     busy = sum(warps[1:])
     return ([n / busy for n in warps[1:]], sum(n * lanes for lanes, n in enumerate(warps)) / busy,
             warps[0] / (busy + warps[0]), 1 - busy / listed)
-
-
-def markdown(head, rows):
-    return "\n".join("| " + " | ".join(row) + " |" for row in [head, ["---"] * len(head), *rows]) + "\n"
 
 
 def tables(result):

@@ -93,9 +93,9 @@ def turns(arguments, common, some):
 
 
 def after_that_time(lengths, ratio):
-    """The PSNR of runs that are only shorter or longer, at a time; None if they do not say."""
+    """The PSNR of runs that are only shorter or longer, at a time between theirs; None if they do not say."""
     ends = sorted((math.log(p["ratio"]), p["psnr"]) for p in lengths)
-    if len(ends) < 3 or len({x for x, _ in ends}) < 3:
+    if len(ends) < 3 or len({x for x, _ in ends}) < 3 or not ends[0][0] <= math.log(ratio) <= ends[2][0]:
         return None
     (x0, y0), (x1, y1) = ends[:2] if math.log(ratio) < ends[1][0] else ends[1:]
     return y0 + (y1 - y0) * (math.log(ratio) - x0) / (x1 - x0)
@@ -114,14 +114,14 @@ def points(runs):
               "psnr": middle(same, lambda r: r["psnr"])} for name, same in sets.items()]
     default = found[0]
     lengths = [p for p in found if p["name"] in (HALF, DEFAULT, DOUBLE)]
-    reference = [r for name in (DEFAULT, AGAIN) for r in sets.get(name, [])]
+    reference = {key: [r[key] for name in (DEFAULT, AGAIN) for r in sets.get(name, [])] for key in ("psnr", "ratio")}
+    reference["ratio"] += [1 / r["ratio"] for r in sets.get(AGAIN, [])]  # the default may as well have been the slower one
     several = len({r["seed"] for r in runs}) > 1
     for p in found:
         p["to_default"] = p["psnr"] - default["psnr"]
         plain = after_that_time(lengths, p["ratio"])
         p["above_length"] = None if plain is None else p["psnr"] - plain
-        p["beyond"] = [key for key in ("psnr", "ratio") if several and apart([r[key] for r in p["runs"]],
-                                                                            [r[key] for r in reference])]
+        p["beyond"] = [key for key in ("psnr", "ratio") if several and apart([r[key] for r in p["runs"]], reference[key])]
         p["several"] = several
         gains = {"psnr": p["to_default"] > 0, "ratio": p["ratio"] < 1}
         p["better"] = p["name"] == DEFAULT or p["name"] != AGAIN and any(gains[key] for key in (p["beyond"] if several else gains))

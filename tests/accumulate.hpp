@@ -250,6 +250,9 @@ TEST_CASE("sums err by no more than their bound, whatever cancels") {
                 [](auto s) { return s.n * 0x1p-48 * s.largest + u * std::abs(s.sum); }, "binned<3>");
             check_bound(
                 values, accumulate::exact{}, [](auto s) { return u * std::abs(s.sum); }, "exact");
+            check_bound(
+                values, between_warps(exact),
+                [](auto s) { return 5 * u * s.magnitude + u * std::abs(s.sum); }, "exact between warps");
         }
 }
 

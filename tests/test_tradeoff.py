@@ -48,6 +48,9 @@ class Points(unittest.TestCase):
         self.assertAlmostEqual(self.points["half"]["above_length"], 0)
         self.assertAlmostEqual(self.points["fixed"]["above_length"], 30.05 - (30.1 + 2 * 0.43296), 4)  # 1.35 = 2^0.43296
         self.assertEqual(tradeoff.paying(GIVEN), ["fast", "pruned"])
+        lengths = [self.points[name] for name in ("half", "default", "double")]
+        self.assertIsNone(tradeoff.after_that_time(lengths, 0.49))
+        self.assertIsNone(tradeoff.after_that_time(lengths, 2.01))
 
 
 class Together(unittest.TestCase):

@@ -31,7 +31,7 @@ struct ordered_pieces {
     T* edge_sums;         ///< two a piece
 
     /// How many there are of n places.
-    static constexpr WARPAGG_HD unsigned pieces(unsigned n) { return (n + piece - 1) / piece; }
+    static constexpr WARPAGG_HD unsigned pieces(unsigned n) { return n / piece + (n % piece != 0 ? 1 : 0); }
 
     /// The sums of piece `index`. All lanes call this.
     WARPAGG_EXEC_CHECK_DISABLE
@@ -39,7 +39,7 @@ struct ordered_pieces {
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
         using math::select;
         using math::uniform;
-        const unsigned begin = index * piece, end = math::min(n, begin + piece);
+        const unsigned begin = index * piece, end = begin + math::min(n - begin, piece);
         const unsigned first = key_at(w, begin);
         unsigned open = first;  // the key whose values go on, and what they came to so far
         T so_far{};

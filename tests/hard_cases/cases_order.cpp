@@ -155,5 +155,4 @@ TEST_CASE("case 27: what cancels in the sums of gradients") {
         for (std::size_t channel = 0; channel < 3; ++channel)
             CHECK(std::abs(sums[channel] - 0.99 * 0x1p-10) <= rounds(256) * u * mass);
     });
-    remark("accumulation as it is by default, `native`");
 }

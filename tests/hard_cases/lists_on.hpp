@@ -127,9 +127,9 @@ class lists_on {
             backward.view = {background,  picture.data(),     transmittance.data(),
                              last.data(), checkpoints.data(), gradient.data()};
             backward.tile_of_segment = tile_of_segment.data();
-            const std::size_t warps = backward.template warps<warp>(tiles.size(), segments);
-            sums.begin(backward, made.size(), largest_of(q.gradient), warps);
-            device.for_each_warp(warps, backward);
+            sums.begin(backward, made.size(), largest_of(q.gradient),
+                       backward.template warps_of_sum<warp>(tiles.size()));
+            device.for_each_warp(backward.template warps<warp>(tiles.size(), segments), backward);
             const auto& rounded = sums.end(backward);
             records = on.get(rounded.data(), rounded.size());
         });

@@ -160,7 +160,7 @@ TEST_CASE("a trained scene: gradients in float against double") {
     std::string name = "lego";
     if (!std::filesystem::is_directory(lego())) {
         o.data = "synthetic:spheres";
-        name = "synthetic:spheres, since there is no " + lego().string();
+        name = "synthetic:spheres, since lego is not there";
     }
     const gs::scene scene = gs::load_scene(o, [](const std::string&) {});
     const std::vector<measured> on_cpu =

@@ -198,6 +198,7 @@ void train(const settings& s) {
     metrics["densify_seconds"] = result.densify_seconds;
     metrics["skipped_steps"] = result.skipped_steps;
     metrics["left_out_gradients"] = result.left_out_gradients;
+    metrics["left_out_sums"] = result.left_out_sums;
     metrics["silent_gaussians"] = result.silent_gaussians;
     metrics["pairs_per_iteration"] = pairs;
     metrics["stages"] = stages_json(times, pairs);

@@ -58,6 +58,11 @@ struct blend_backward {
     static std::size_t warps(std::size_t tiles, std::size_t segments) {
         return (Split ? segments : tiles) * patch<W, Real, Cut>::per_tile;
     }
+    /// How many of them may add to one Gaussian's sums: it is in a tile's list once.
+    template <class W>
+    static std::size_t warps_of_sum(std::size_t tiles) {
+        return tiles * patch<W, Real, Cut>::per_tile;
+    }
     template <class W>
     using scratch = splat_stage<W, Real>;
     template <class W>
@@ -112,7 +117,7 @@ struct blend_backward {
             const unsigned staged = reader.stage(w, base, base - W::size, base - 2 * W::size);
             if constexpr (!std::is_same_v<mask_t<W>, bool>)  // one thread, which would wait for each
                 for (unsigned i = 0; i < staged; ++i)
-                    __builtin_prefetch(sums + stage.splats[i].gaussian * record_stride, 1);
+                    __builtin_prefetch(sums + stage.splats[i].gaussian() * record_stride, 1);
             for (unsigned i = staged; i-- > 0;) add_splat(w, p, stage.splats[i], end, pixels);
             if (base <= from) break;
         }
@@ -148,8 +153,8 @@ struct blend_backward {
     WARPAGG_HD void add_splat(const W& w, const Patch& p, const staged_splat<Real>& s, const ends& end,
                               pixel_state<real> (&pixels)[Cut::rows]) const {
         constexpr unsigned rows = Cut::rows;
-        const auto rank = static_cast<unsigned>(s.rank);
-        const auto record = static_cast<unsigned>(s.gaussian) * record_stride;
+        const unsigned rank = s.rank();
+        const unsigned record = s.gaussian() * record_stride;
         const column_view<W, Real> seen(s, p.x);
         real v[rows], strength[rows];
         mask_t<W> counts[rows];

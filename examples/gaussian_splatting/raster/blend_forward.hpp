@@ -62,7 +62,7 @@ struct blend_forward {
             walked += staged;
             for (unsigned i = 0; i < staged; ++i) {
                 const staged_splat<Real>& s = stage.splats[i];
-                const value_t<W, unsigned> rank(static_cast<unsigned>(s.rank));
+                const value_t<W, unsigned> rank(s.rank());
                 const column_view<W, Real> seen(s, p.x);
                 real strength[rows];
                 const std::uint32_t reached = rows_with<Cut>(w, [&](unsigned k) {

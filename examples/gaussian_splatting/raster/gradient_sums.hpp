@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
+#include <string>
 #include <type_traits>
 
+#include "../error.hpp"
 #include "with_policy.hpp"
 
 namespace gs::raster {
@@ -38,7 +39,8 @@ class gradient_sums {
 
     /// Makes sums of zero for so many Gaussians and gives them to the kernel, a `blend_backward`.
     /// `largest`: the magnitude of a pixel's gradient, about; for fixed point, which leaves out what is more
-    /// than `headroom` times that. `warps`: how many may add to a sum.
+    /// than `headroom` times that. `warps`: how many may add to a sum. Throws `error` if those are too many
+    /// for fixed point.
     template <class Kernel>
     void begin(Kernel& kernel, std::size_t gaussians, float largest, std::size_t warps) {
         using in_memory = std::remove_pointer_t<decltype(kernel.sums)>;
@@ -55,9 +57,12 @@ class gradient_sums {
             kernel.sums = reinterpret_cast<in_memory*>(cells_.data());
         }
         if constexpr (requires { kernel.how.accumulating().fault; }) {
-            const float more = std::max(1.0f, static_cast<float>(warps) * 0x1p-18f);
+            if (warps > std::size_t{1} << fixed_log_warps)
+                throw error("sums in fixed point are of up to 2^" + std::to_string(fixed_log_warps) +
+                            " patches, and a picture has " + std::to_string(warps) +
+                            ": lower --resolution or take --accumulate exact");
             kernel.how = typename Kernel::policy(
-                {}, {}, {fixed_sums{fault_.data(), fixed_sums::scale_to_fit(headroom * more * largest)}});
+                {}, {}, {fixed_sums{fault_.data(), fixed_sums::scale_to_fit(headroom * largest)}});
         }
     }
     /// After the kernel: what the sums are as `Real`.

@@ -14,8 +14,14 @@ struct alignas(16) staged_splat {
     Real p, u0, r, v0;
     Real q, strength, red, green;
     Real blue;
-    bits_as<Real> rank;  ///< in the tile's list, from one
-    bits_as<Real> gaussian, unused;
+    Real rank_bits, gaussian_bits;  ///< of whole numbers: all of it is stored as `Real`
+    Real unused;
+
+    /// In the tile's list, from one.
+    WARPAGG_HD unsigned rank() const { return static_cast<unsigned>(bits_of<bits_as<Real>>(rank_bits)); }
+    WARPAGG_HD unsigned gaussian() const {
+        return static_cast<unsigned>(bits_of<bits_as<Real>>(gaussian_bits));
+    }
 };
 
 /// What the pixels of a lane's column see of a splat.

@@ -103,14 +103,13 @@ class renderer {
     /// `project_backward`.
     template <class Kernel>
     const buffer<Real>& blend_backward_by(Kernel kernel, const Real* picture_gradient, float largest) {
-        const std::size_t warps = kernel.template warps<warp>(tiles(), segments());
-        sums_.begin(kernel, count_, largest, warps);
+        sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()));
         device_.begin(device::stage::blend_backward);
         kernel.lists = lists();
         kernel.view = {colour(background_), picture_.data(),     transmittance_.data(),
                        last_.data(),        checkpoints_.data(), picture_gradient};
         kernel.tile_of_segment = tile_of_segment_.data();
-        device_.for_each_warp(warps, kernel);
+        device_.for_each_warp(kernel.template warps<warp>(tiles(), segments()), kernel);
         return sums_.end(kernel);
     }
     /// See `gradient_sums`.

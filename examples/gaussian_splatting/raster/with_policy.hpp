@@ -9,8 +9,10 @@
 
 namespace gs::raster {
 
-/// In units of 2^-45 of the largest sum there may be; of as many warps as a picture of 16 million pixels has.
-using fixed_sums = warpagg::accumulate::fixed<45, 18>;
+/// In units of 2^-45 of the largest sum there may be; of as many warps as a picture of 16 million pixels has
+/// patches.
+inline constexpr int fixed_log_warps = 18;
+using fixed_sums = warpagg::accumulate::fixed<63 - fixed_log_warps, fixed_log_warps>;
 
 /// Calls f with the `blend_backward` that the policy means, after a `blend_forward` that was cut up by `Cut`.
 /// In double sums are never kept otherwise than in double.

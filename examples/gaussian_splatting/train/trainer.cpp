@@ -90,10 +90,11 @@ class finite_watch {
         if (gradient.count > 0 && result.left_out_gradients == 0)
             events.warn(where(gradient) + ": the gradient of " + of(gradient) +
                         " is not finite or too large to square; such gradients are left out");
-        if (sum.count > 0 && result.left_out_gradients == 0)
+        if (sum.count > 0 && result.left_out_sums == 0)
             events.warn(where(sum) +
                         ": a sum of gradients does not fit in fixed point; such sums are left out");
-        result.left_out_gradients += gradient.count + sum.count;
+        result.left_out_gradients += gradient.count;
+        result.left_out_sums += sum.count;
         if (value.count > 0)
             throw error(where(value) + ": " + of(value) + " would not be finite; training ends here");
         if (loss.count > 0) throw error(where(loss) + ": the loss is not finite; training ends here");

@@ -45,7 +45,8 @@ struct train_result {
     double seconds = 0;          ///< in the loop
     double densify_seconds = 0;  ///< of these, for densification and for sizing the lists
     std::uint64_t skipped_steps = 0;
-    std::uint64_t left_out_gradients = 0;  ///< elements that were not finite, steps where a sum did not fit
+    std::uint64_t left_out_gradients = 0;  ///< elements that were not finite
+    std::uint64_t left_out_sums = 0;       ///< steps where one did not fit in fixed point
     std::uint64_t silent_gaussians = 0;    ///< the most at any densification: see `engine::densify`
 };
 

@@ -229,14 +229,16 @@ struct exact {
 };
 
 /// Float while a warp adds up what its lanes have, as `native`; in memory what A is, which takes each warp's
-/// sum apart. Error: 5 u k and A's, of as many values as there are warps (n u k and A's if few lanes are
-/// active). The order of warps shows where A's does; which values a warp has shows. Cost: of one taking apart
-/// a warp and component instead of one a lane and component, and native's shuffles.
-/// `warp_reduce_atomic` only.
+/// sum apart. Error: 5 u k and A's, of as many values as there are warps with an active lane. The order of
+/// warps shows where A's does; which values a warp has shows. Cost: of one taking apart a warp and component
+/// instead of one a lane and component, and native's shuffles. `warp_reduce_atomic` only.
 ///
 /// @snippet accumulate.cpp between_warps
 template <class A>
 struct between_warps : A {
+    static_assert(
+        requires { typename A::number; } && !requires { typename A::kept; },
+        "between_warps is of f64, compensated, fixed<Q>, binned<K> or exact");
     using kept = A;  ///< what memory's cells are of
 };
 

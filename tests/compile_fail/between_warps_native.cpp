@@ -1,0 +1,10 @@
+// expect: between_warps is of f64, compensated, fixed<Q>, binned<K> or exact
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <warpagg/atomic.hpp>
+#include <warpagg/simt/serial.hpp>
+
+void wrong(float* to, const float (&v)[3]) {
+    warpagg::warp_reduce_atomic(warpagg::emulator::serial{}, to, v, true,
+                                warpagg::policy{warpagg::between_warps(warpagg::native)});
+}
