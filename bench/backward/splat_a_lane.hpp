@@ -19,6 +19,10 @@ struct splat_a_lane {
     static std::size_t warps(std::size_t, std::size_t segments) {
         return segments;
     }
+    template <class W>
+    static std::size_t warps_of_sum(std::size_t tiles) {
+        return tiles;
+    }
 
     template <class W>
     WARPAGG_HD void operator()(const W& w, unsigned segment) const {

@@ -25,8 +25,8 @@ std::vector<column> all_columns() {
     std::vector<column> columns;
     for (const backend& b : backends()) {
         columns.push_back({column_of(b.name, no_variant), false});
-        for (const auto variant : gs::gradient_policy_names)
-            columns.push_back({column_of(b.name, std::string(variant)), true});
+        for (const gradient_policy variant : variants())
+            columns.push_back({column_of(b.name, name_of(variant)), true});
     }
     return columns;
 }
