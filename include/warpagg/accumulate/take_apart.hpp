@@ -28,11 +28,11 @@ struct numbers_of_cells {
 };
 template <class Accumulate, class Dst>
 WARPAGG_HD auto record_of_numbers(Dst dst) {
-    const auto cells = cells_of<Accumulate>(dst);
-    if constexpr (std::is_same_v<decltype(cells), const commit::contiguous_record<cell<Accumulate>>>) {
+    auto cells = cells_of<Accumulate>(dst);
+    if constexpr (std::is_same_v<decltype(cells), commit::contiguous_record<cell<Accumulate>>>) {
         return cells.first->number;
     } else {
-        return numbers_of_cells<std::remove_const_t<decltype(cells)>, Accumulate::numbers>{cells};
+        return numbers_of_cells<decltype(cells), Accumulate::numbers>{cells};
     }
 }
 /// @}
@@ -96,8 +96,8 @@ struct cells_of_results {
 };
 template <class Accumulate, class Dst>
 WARPAGG_HD auto results_to_cells(const Accumulate& how, Dst dst) {
-    const auto cells = cells_of<Accumulate>(dst);
-    return cells_of_results<Accumulate, std::remove_const_t<decltype(cells)>>{how, cells};
+    auto cells = cells_of<Accumulate>(dst);
+    return cells_of_results<Accumulate, decltype(cells)>{how, cells};
 }
 /// Number k of each of them, as an accessor.
 template <class Cells>
