@@ -49,10 +49,9 @@ void by_emulator(const problem<size>& p, float* sums) {
     const warpagg::emulator::narrow_lanes<size> w;
     for (std::size_t i = 0; i < warps; ++i) {
         warpagg::lanes<float, size> v[values];
-        const warpagg::lanes<bool, size> all(true);
         for (std::size_t k = 0; k < values; ++k)
-            v[k] = w.load_row(p.held.data(), static_cast<std::ptrdiff_t>((i * values + k) * size), all);
-        const auto active = w.load_row(p.active.data(), static_cast<std::ptrdiff_t>(i * size), all) != 0u;
+            v[k] = w.load_row(p.held.data(), static_cast<std::ptrdiff_t>((i * values + k) * size));
+        const auto active = w.load_row(p.active.data(), static_cast<std::ptrdiff_t>(i * size)) != 0u;
         warpagg::warp_reduce_atomic(w, sums + p.record[i] * values, v, active);
     }
 }

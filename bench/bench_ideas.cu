@@ -26,6 +26,11 @@ namespace commit = warpagg::commit;
 constexpr unsigned records = 1u << 20, blocks = 132 * 16, threads = 128, steps_per_warp = 2048, seed = 12345;
 constexpr int rounds = 7, n = 9, stride = 12;
 
+__device__ void scatter(const warp& w, float (&sums)[n]) {
+    reduce::over_warp<warpagg::operation::sum>(
+        reduce::scatter{}, w, [&](int i) { return sums[i]; }, sums);
+}
+
 /// An idea adds the values of `batch` steps, each to its own record.
 struct nothing {
     static constexpr int batch = 1;
@@ -55,7 +60,7 @@ struct masked_in_a_branch {
             for (int i = 0; i < n; ++i) sums[i] = active[0] ? sums[i] : 0.0f;
             asm volatile("");  // so that it stays a branch
         }
-        reduce::over_warp<warpagg::operation::sum>(reduce::scatter{}, w, sums);
+        scatter(w, sums);
         commit::scattered<warpagg::operation::sum>(w, commit::destination(to[0]), sums);
     }
 };
@@ -71,10 +76,10 @@ struct unmasked_if_full {
         float sums[n];
         if (votes == 0xffffffffu) {
             for (int i = 0; i < n; ++i) sums[i] = v[0][i];
-            reduce::over_warp<warpagg::operation::sum>(reduce::scatter{}, w, sums);
+            scatter(w, sums);
         } else {
             for (int i = 0; i < n; ++i) sums[i] = active[0] ? v[0][i] : 0.0f;
-            reduce::over_warp<warpagg::operation::sum>(reduce::scatter{}, w, sums);
+            scatter(w, sums);
         }
         commit::scattered<warpagg::operation::sum>(w, record, sums);
     }
@@ -203,7 +208,7 @@ struct bulk_commit {
         if (!w.any(active[0])) return;
         float sums[n];
         for (int i = 0; i < n; ++i) sums[i] = active[0] ? v[0][i] : 0.0f;
-        reduce::over_warp<warpagg::operation::sum>(reduce::scatter{}, w, sums);
+        scatter(w, sums);
         const unsigned index = reduce::scattered_index(w, 0);
         if (w.lane() == 0) asm volatile("cp.async.bulk.wait_group.read 0;" ::: "memory");
         __syncwarp();

@@ -80,8 +80,8 @@ void check_scatter_of() {
     counters total;
     const counted_lanes w{{&total}};
     warpagg::lanes<float, 32> v[N];
-    for (auto& x : v) x = warpagg::lanes<float, 32>(1.0f);
-    reduce::over_warp<warpagg::operation::sum>(reduce::scatter{}, w, v);
+    const auto one = [](int) { return warpagg::lanes<float, 32>(1.0f); };
+    reduce::over_warp<warpagg::operation::sum>(reduce::scatter{}, w, one, v);
     CHECK(total.shuffles == scatter_shuffles(N));
 }
 

@@ -50,17 +50,25 @@ WARPAGG_HD mask_t<W> opaque(const W& w, const mask_t<W>& flag) {
     }
 }
 
+/// The values of active lanes, and what changes no result from the others: a NaN ends here.
+template <class Op, class V, class Mask>
+struct active_values {
+    const V* values;
+    const Mask& active;
+
+    WARPAGG_HD V operator()(int i) const {
+        using math::select;  // and by its arguments, that of SIMD lanes
+        return select(active, values[i], V(Op::template identity<typename scalar_of<V>::type>()));
+    }
+};
+
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Choice, warp W, class Record, class V, int N>
 WARPAGG_HD void reduce_and_commit(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
-    using math::select;  // and by its arguments, that of SIMD lanes
     using op = typename Choice::operation;
     using reduction = typename Choice::reduce;
-    const V nothing(op::template identity<typename scalar_of<V>::type>());
     V results[N];
-    WARPAGG_UNROLL
-    for (int i = 0; i < N; ++i) results[i] = select(active, values[i], nothing);  // a NaN ends here
-    over_warp<op>(reduction{}, w, results);
+    over_warp<op>(reduction{}, w, active_values<op, V, mask_t<W>>{values, active}, results);
     commit::results<op, reduction, typename Choice::commit>(w, record, results);
 }
 
@@ -79,7 +87,10 @@ WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const
         const unsigned least =
             commit::is_packed<op, alone, V>(w, record) ? Choice::gate::lanes_if_packed : Choice::gate::lanes;
         if (math::popcount(w.ballot(active)) < least) [[unlikely]] {
-            commit::each_lane<op, alone>(w, record, values, active);
+            V own[N];  // what is indexed by lanes lies in memory, where the values themselves need not
+            WARPAGG_UNROLL
+            for (int i = 0; i < N; ++i) own[i] = values[i];
+            commit::each_lane<op, alone>(w, record, own, active);
             return;
         }
         reduce_and_commit<Choice>(w, record, values, active);

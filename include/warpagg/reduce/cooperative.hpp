@@ -22,13 +22,14 @@ struct cooperative {
 };
 
 /// Cost: N log2(W) shuffles.
-template <class Op, class T, int N>
-__device__ __forceinline__ void over_warp(cooperative, const cuda::warp&, T (&v)[N]) {
+template <class Op, class Values, class T, int N>
+__device__ __forceinline__ void over_warp(cooperative, const cuda::warp&, const Values& value,
+                                          T (&results)[N]) {
     namespace groups = ::cooperative_groups;
     const auto warp = groups::tiled_partition<32>(groups::this_thread_block());
     WARPAGG_UNROLL
     for (int i = 0; i < N; ++i)
-        v[i] = groups::reduce(warp, v[i], [](const T& a, const T& b) { return Op::combine(a, b); });
+        results[i] = groups::reduce(warp, value(i), [](const T& a, const T& b) { return Op::combine(a, b); });
 }
 
 }  // namespace reduce

@@ -20,14 +20,15 @@ struct cub {
 };
 
 /// Cost: N log2(W) shuffles.
-template <class Op, class T, int N>
-__device__ __forceinline__ void over_warp(cub, const cuda::warp&, T (&v)[N]) {
+template <class Op, class Values, class T, int N>
+__device__ __forceinline__ void over_warp(cub, const cuda::warp&, const Values& value, T (&results)[N]) {
     using machine = ::cub::WarpReduce<T>;
     static_assert(sizeof(typename machine::TempStorage) <= 1, "a whole warp reduces by shuffles alone");
     typename machine::TempStorage nothing;
     WARPAGG_UNROLL
     for (int i = 0; i < N; ++i)
-        v[i] = machine(nothing).Reduce(v[i], [](const T& a, const T& b) { return Op::combine(a, b); });
+        results[i] =
+            machine(nothing).Reduce(value(i), [](const T& a, const T& b) { return Op::combine(a, b); });
 }
 
 }  // namespace reduce

@@ -40,42 +40,58 @@ WARPAGG_HD mask_t<W> is_upper(const W& w) {
     }
 }
 
-/// One step over the slots from K on: of the M values that it holds, a lane keeps those at even places and
-/// sends the others to its partner if its bit of `Distance` is clear, and the other way round if it is set. A
-/// last value without a neighbour is combined by both. A recursion, not a loop: nvcc would split a loop on
-/// `upper` and so put the shuffles into divergent branches.
+/// How many of n values a lane still holds after the step of `distance`, which halves them as those before
+/// it.
+template <warp W>
+WARPAGG_HD constexpr int held_after_step(int n, unsigned distance) {
+    for (unsigned d = W::size / 2; d >= distance; d /= 2) n = (n + 1) / 2;
+    return n;
+}
+
+/// What the lane holds at place K after the step of Distance: of the values at 2K and 2K + 1 before, it keeps
+/// the first and sends the other to its partner if its bit of Distance is clear, and the other way round if
+/// it is set. A last value without a neighbour is combined by both. Each value is asked for when it is
+/// needed, and a recursion has few of them at a time: on SIMD lanes, registers are fewer than values. No
+/// loop, since nvcc would split one on `upper` and so put the shuffles into divergent branches.
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Op, unsigned Distance, int M, int K, warp W, class V>
-WARPAGG_HD void exchange(const W& w, V* v, const mask_t<W>& upper) {
+template <class V, class Op, unsigned Distance, int N, int K, warp W, class Values>
+WARPAGG_HD V scattered(const W& w, const mask_t<W>* upper, const Values& value) {
     using math::select;
-    if constexpr (2 * K + 1 < M) {
-        const V keep = select(upper, v[2 * K + 1], v[2 * K]);
-        const V send = select(upper, v[2 * K], v[2 * K + 1]);
-        v[K] = Op::combine(keep, w.shfl_xor(send, Distance));
-        exchange<Op, Distance, M, K + 1>(w, v, upper);
-    } else if constexpr (2 * K < M) {
-        v[K] = Op::combine(v[2 * K], w.shfl_xor(v[2 * K], Distance));
+    if constexpr (Distance == W::size) {
+        return value(K);
+    } else {
+        const V even = scattered<V, Op, 2 * Distance, N, 2 * K>(w, upper + 1, value);
+        if constexpr (2 * K + 1 < held_after_step<W>(N, 2 * Distance)) {
+            const V odd = scattered<V, Op, 2 * Distance, N, 2 * K + 1>(w, upper + 1, value);
+            return Op::combine(select(*upper, odd, even), w.shfl_xor(select(*upper, even, odd), Distance));
+        } else {
+            return Op::combine(even, w.shfl_xor(even, Distance));
+        }
     }
 }
 
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Op, unsigned Distance, int M, warp W, class V>
-WARPAGG_HD void scatter_from(const W& w, V* v) {
-    if constexpr (Distance > 0) {
-        exchange<Op, Distance, M, 0>(w, v, is_upper<Distance>(w));
-        scatter_from<Op, Distance / 2, (M + 1) / 2>(w, v);
+template <class Op, int K, warp W, class Values, class V, int N>
+WARPAGG_HD void scatter_from(const W& w, const mask_t<W>* upper, const Values& value, V (&results)[N]) {
+    if constexpr (K < held_after_scatter<W>(N)) {
+        results[K] = scattered<V, Op, 1, N, K>(w, upper, value);
+        scatter_from<Op, K + 1>(w, upper, value, results);
     }
 }
 
 }  // namespace detail
 
-/// Combines each of the N values over the warp and leaves the results spread over the lanes: see
+/// Combines value(0) ... value(N - 1) over the warp and leaves the results spread over the lanes: see
 /// `scattered_index`. The tree is that of `shfl_down`, so the results have the same bits. Cost: about N - 1 +
 /// log2(W / N) shuffles (N = 9: 12).
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Op, warp W, class V, int N>
-WARPAGG_HD void over_warp(scatter, const W& w, V (&v)[N]) {
-    detail::scatter_from<Op, W::size / 2, N>(w, v);
+template <class Op, warp W, class Values, class V, int N>
+WARPAGG_HD void over_warp(scatter, const W& w, const Values& value, V (&results)[N]) {
+    static_assert(W::size <= 32);
+    using detail::is_upper;
+    const mask_t<W> upper[] = {is_upper<1>(w), is_upper<2>(w), is_upper<4>(w), is_upper<8>(w),
+                               is_upper<16>(w)};
+    detail::scatter_from<Op, 0>(w, upper, value, results);
 }
 
 }  // namespace warpagg::reduce
