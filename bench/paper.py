@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
-"""The paper's Table 3 and Figures 2, 5, 6 and 9 for any scene: trains it by each rung from the original to the default,
+"""The paper's Table 3 and Figures 2, 4, 5, 6 and 9 to 11 for any scene: trains it by each rung from the original to the default,
 and measures the gradient kernel on what came of it.
 
     bench/paper.py run --build build/bench --data ../shared/data --scenes lego truck --seconds 60 \\
@@ -11,7 +11,8 @@ and measures the gradient kernel on what came of it.
 
 The options after -- are those of every training; --images, --resolution and --device are bench_paper's, too. They name
 no iterations: all rungs train for --iterations, and some for as many as fill --seconds in the loop, within 5 %. Seconds
-in the loop are without loading and testing.
+in the loop are without loading and testing. Each scene is written when it is measured; those that the output holds
+already, of the same commit and options, are not measured again. Figures 4, 10 and 11 are what ncu counts, where it is.
 """
 import argparse
 import json
@@ -21,6 +22,7 @@ import statistics
 import subprocess
 import tempfile
 
+import ncu
 from environment import environment, markdown, own_and_passed_on
 from scenes import by, train, train_into
 
@@ -28,6 +30,14 @@ RUNGS = ["per-lane", "reduce", "reduce-skip", "split"]
 TIMED = ["per-lane", "reduce-skip", "split"]  # baseline and ours of the paper, and what is default here
 WITHIN = 0.05
 MOST_ATTEMPTS = 8
+
+# Warps that wait for a reason while a scheduler issues, on average; the reasons that any kernel here has more than others.
+STALLS = {reason: f"smsp__average_warps_issue_stalled_{reason}_per_issue_active.ratio" for reason in
+          ("lg_throttle", "long_scoreboard", "short_scoreboard", "mio_throttle", "math_pipe_throttle", "wait", "not_selected",
+           "barrier", "branch_resolve", "dispatch_stall", "drain", "imc_miss", "membar", "misc", "no_instruction", "sleeping",
+           "tex_throttle", "selected")}
+USE = {"lsu_percent": "sm__inst_executed_pipe_lsu.avg.pct_of_peak_sustained_active",
+       "issue_percent": "smsp__issue_active.avg.pct_of_peak_sustained_active"}
 
 # What the paper says in words and in Table 3: its figures have no numbers. Mean and most of its six scenes.
 PAPER_MEAN = {"RTX 4090": {"share": "47.0 % (59.2 %)", "gradient": "3.04× (5.2×)", "loop": "1.58× (2.05×)"},
@@ -77,6 +87,12 @@ def measure(arguments, scene, bench_options):
         subprocess.run([str(build / "bench" / "bench_paper"), str(ply), "-d", str(pathlib.Path(arguments.data) / scene),
                         "--seed", str(arguments.seed), "-o", str(figures), *bench_options], check=True)
         kernel = json.loads(figures.read_text())
+        if kernel["device"].startswith("cuda") and ncu.is_there():
+            command = [build / "bench" / "bench_paper", ply, "-d", pathlib.Path(arguments.data) / scene, "--views", "1",
+                       "--rounds", "1", "-o", pathlib.Path(folder) / "counted.json", *bench_options]
+            names = list(kernel["kernels"])  # as bench_paper runs them first, one after the other
+            counted = ncu.profile(command, "blend_backward", len(names), {**STALLS, **USE})
+            kernel["counted"] = dict(zip(names, counted, strict=True))
     last = by("gradient", same_length)
     same_time = [filling(arguments.seconds, last[rung][-1], lambda n: told(train(program, *options(rung, n)), "of one time:"))
                  for rung in TIMED]
@@ -89,10 +105,17 @@ def run(arguments):
         shared.add_argument(*names)
     given = vars(shared.parse_known_args(arguments.options)[0])
     bench_options = [word for name, value in given.items() if value for word in (f"--{name}", value)]
-    scenes = [measure(arguments, scene, bench_options) for scene in arguments.scenes]
-    result = {"bench": "paper", "options": arguments.options, "seconds": arguments.seconds, "seed": arguments.seed,
-              **environment(arguments.commit), "scenes": scenes}
-    pathlib.Path(arguments.output).write_text(json.dumps(result, indent=1) + "\n")
+    output = pathlib.Path(arguments.output)
+    about = {"bench": "paper", "options": arguments.options, "iterations": arguments.iterations, "turns": arguments.turns,
+             "seconds": arguments.seconds, "seed": arguments.seed, **environment(arguments.commit)}
+    before = json.loads(output.read_text()) if output.exists() else {}
+    known = before.get("scenes", []) if {k: v for k, v in before.items() if k != "scenes"} == about else []
+    result = {**about, "scenes": known}
+    for scene in arguments.scenes:
+        if scene in (s["scene"] for s in result["scenes"]):
+            continue
+        result["scenes"].append(measure(arguments, scene, bench_options))
+        output.write_text(json.dumps(result, indent=1) + "\n")
     print(tables(result))
     if largest_off(result) > WITHIN:
         raise SystemExit(f"times that were to be equal are {100 * largest_off(result):.0f} % off: was the machine busy?")
@@ -158,6 +181,19 @@ def tables(result):
     head = ["scene", *(f"`{rung}`: PSNR, dB (iterations)" for rung in TIMED)]
     head += [f"the paper, {gpu}, 300 s: {what}" for gpu in PAPER_GPUS for what in ("baseline", "ours")]
     text.append(markdown(head, [row + [""] * (len(head) - len(row)) for row in rows]))
+
+    rows = []
+    for scene in scenes:
+        for name, counts in scene["kernel"].get("counted", {}).items():
+            waiting = sum(counts[reason] for reason in STALLS)
+            share = lambda *reasons: f"{100 * sum(counts[r] for r in reasons) / waiting:.0f} %"
+            rest = set(STALLS) - {"lg_throttle", "long_scoreboard", "not_selected", "selected"}
+            rows.append([scene["scene"], f"`{name}`" if name in RUNGS else name, f"{waiting:.1f}", share("lg_throttle"),
+                         share("long_scoreboard"), share(*rest), share("not_selected"), share("selected"),
+                         f"{counts['lsu_percent']:.0f} %", f"{counts['issue_percent']:.0f} %"])
+    if rows:
+        text.append(markdown(["scene", "kernel", "warps a scheduler has when it issues", "of them wait for room in the load-store queue (Figs. 4, 10)",
+                              "for memory", "for something else", "for their turn", "issue", "load-store unit used (Fig. 11)", "issue slots used"], rows))
 
     first = scenes[0]["kernel"]
     machine = (f"{result['processor'].strip()}, {first['device']}, {result['compiler']}" if first["device"].startswith("cpu")

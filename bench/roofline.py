@@ -8,7 +8,6 @@ bytes for each pixel-Gaussian pair that is evaluated, and how busy the GPU's ins
         --scene random --scene "lego:model.ply -d ../shared/data/lego"
 """
 import argparse
-import csv
 import json
 import pathlib
 import re
@@ -16,6 +15,7 @@ import statistics
 import subprocess
 import tempfile
 
+import ncu
 from environment import environment
 
 METRICS = {
@@ -30,19 +30,6 @@ METRICS = {
 KERNELS = {"forward": r"blend_forward<float", "backward": r"blend_backward<float.*>, (1|true), .*scatter"}
 
 
-def profile(program, arguments, launches):
-    """The first blending launches, a dict each."""
-    command = ["ncu", "--clock-control", "none", "--kernel-name-base", "demangled", "-k", "regex:blend_(forward|backward)",
-               "--launch-count", str(launches), "--metrics", ",".join(METRICS.values()), "--csv", "--page", "raw", program,
-               *arguments]
-    output = subprocess.run(command, capture_output=True, text=True).stdout
-    lines = [line for line in output.splitlines() if line.startswith('"')]
-    rows = list(csv.DictReader(lines))[1:]  # the first says the units
-    if not rows:
-        raise SystemExit(f"ncu printed no kernels:\n{output[-2000:]}")
-    return rows
-
-
 def count(program, name, arguments):
     arguments = [*arguments, "--views", "1", "--rounds", "1"]
     with tempfile.TemporaryDirectory() as folder:
@@ -50,13 +37,12 @@ def count(program, name, arguments):
         subprocess.run([program, *arguments, "-o", out], check=True, capture_output=True)
         figures = json.loads(out.read_text())
     split = next(v for v in figures["ladder"] if v["name"] == "split")
-    rows = profile(program, arguments, 2 * len(figures["ladder"]))  # the ladder comes first, forward and backward
+    rows = ncu.profile([program, *arguments], "blend_(forward|backward)", 2 * len(figures["ladder"]), METRICS)  # the ladder comes first
     result = {"scene": name, "width": figures["width"], "height": figures["height"], "gaussians": figures["gaussians"],
               "pairs": split["pairs"]}
     for kernel, pattern in KERNELS.items():
-        found = [r for r in rows if re.search(pattern, r["Kernel Name"])]
-        result[kernel] = {key: statistics.median(float(r[metric].replace(",", "")) for r in found)
-                          for key, metric in METRICS.items()}
+        found = [r for r in rows if re.search(pattern, r["kernel"])]
+        result[kernel] = {key: statistics.median(r[key] for r in found) for key in METRICS}
     return result
 
 

@@ -10,7 +10,7 @@ other, alone and then those together that pay; the Pareto front, and the command
     bench/tradeoff.py plot tradeoff.json tradeoff.svg          # needs matplotlib
 
 SCENE is a folder or synthetic:NAME; the options after -- are those of every run. All knobs of a seed take turns, and
-times are beside the default's of the same seed. A knob pays if it reaches more PSNR than more or fewer iterations do in
+times are beside the default's of the same seed. --kernels adds what bench/kernel_knobs.py has built. A knob pays if it reaches more PSNR than more or fewer iterations do in
 the time it takes. "again" is the default once more: what differs between the two is noise.
 """
 import argparse
@@ -21,6 +21,7 @@ import re
 import shlex
 import statistics
 
+import kernel_knobs
 from environment import environment, markdown, own_and_passed_on
 from scenes import by, spread, where
 from train import add_run, measure
@@ -83,10 +84,10 @@ def together(names, n):
     return found
 
 
-def turns(arguments, common, some):
+def turns(arguments, common, some, programs={}):
     """Runs by default and by each knob in `some`, and how their times stand to the default's of the same seed."""
     configurations = {name: words({**common, **own}) for name, own in {DEFAULT: {}, **some}.items()}
-    runs = measure(arguments, configurations)
+    runs = measure(arguments, configurations, programs)
     seconds = {r["seed"]: r["seconds"]["train"] for r in runs if r["options"] == DEFAULT}
     return [{**r, "ratio": r["seconds"]["train"] / seconds[r["seed"]],
              "milliseconds_per_iteration": 1000 / r["iterations_per_second"]} for r in runs]
@@ -136,7 +137,7 @@ def paying(runs):
     """The knobs that reach more PSNR than a run of that length does, by more than seeds differ; the best first."""
     seeds = [r["psnr"] for r in runs if r["options"] == DEFAULT]
     noise = max(seeds) - min(seeds)
-    able = [p for p in points(runs) if p["name"] != DEFAULT and p["better"] and (p["above_length"] or 0) > noise]
+    able = [p for p in points(runs) if p["name"] in knobs(1) and p["better"] and (p["above_length"] or 0) > noise]
     return [p["name"] for p in sorted(able, key=lambda p: -p["above_length"])]
 
 
@@ -148,14 +149,16 @@ def run(arguments):
     if unknown:
         raise SystemExit(f"no such knob, or not with these options: {', '.join(sorted(unknown))}; there are {', '.join(alone)}")
     alone = {name: own for name, own in alone.items() if name in (arguments.knobs or alone) or name == AGAIN}
-    runs = turns(arguments, common, alone)
+    kernels = kernel_knobs.programs_in(arguments.kernels) if arguments.kernels else {}
+    runs = turns(arguments, common, {**alone, **dict.fromkeys(kernels, {})}, kernels)
     combined = together(paying(runs), n)
     if combined:
         runs += turns(arguments, common, combined)
-    chosen = {DEFAULT: {}, **alone, **combined}
+    chosen = {DEFAULT: {}, **alone, **dict.fromkeys(kernels, {}), **combined}
     result = {"bench": "tradeoff", "program": pathlib.Path(arguments.program).name, "data": arguments.data,
               **environment(arguments.commit), "device": runs[0]["device"], "seeds": arguments.seeds,
-              "options": words(common), "knobs": {name: words(own) for name, own in chosen.items()}, "runs": runs}
+              "options": words(common), "knobs": {name: words(own) for name, own in chosen.items()},
+              "kernels": {name: kernel_knobs.knobs()[name][0] for name in kernels}, "runs": runs}
     pathlib.Path(arguments.output).write_text(json.dumps(result, indent=1) + "\n")
     print(table(result))
 
@@ -173,14 +176,16 @@ def table(result):
         column = lambda pick, form: spread([pick(r) for r in p["runs"]], form)
         beyond = " and ".join({"psnr": "PSNR", "ratio": "time"}[b] for b in p["beyond"]) or "nothing"
         own = " ".join(result["knobs"][p["name"]])
-        rows.append([str(i), p["name"], f"`{own}`" if own else "", column(lambda r: r["seconds"]["train"], "{:.2f}"),
+        what = result["kernels"].get(p["name"], f"`{own}`" if own else "")
+        rows.append([str(i), p["name"], what, column(lambda r: r["seconds"]["train"], "{:.2f}"),
                      column(lambda r: r["ratio"], "{:.2f}"), column(lambda r: r["psnr"], "{:.2f}"), f"{p['to_default']:+.2f}",
                      "" if p["above_length"] is None else f"{p['above_length']:+.2f}",
                      "" if p["name"] == DEFAULT else beyond if p["several"] else "one seed", "**yes**" if p["front"] else "no"])
     head = ["", "knob", "options", "loop, s", "times the default's", "held-out PSNR, dB", "to the default's", "to as long a run's",
             "beyond the spread", "on the front"]
     front = sorted((p for p in found if p["front"]), key=lambda p: p["ratio"])
-    lines = "".join(f"{command(result, p['name'])}  # {p['name']}: {p['ratio']:.2f}, {p['psnr']:.2f} dB\n" for p in front)
+    built = lambda p: "(built by bench/kernel_knobs.py) " if p["name"] in result["kernels"] else ""
+    lines = "".join(f"{built(p)}{command(result, p['name'])}  # {p['name']}: {p['ratio']:.2f}, {p['psnr']:.2f} dB\n" for p in front)
     return (markdown(head, rows) + f"\n`{' '.join(result['options'])}`, {pathlib.Path(result['data']).name}, {where(result)}.\n\n"
             f"The front, from the fastest:\n\n```sh\n{lines}```\n")
 
@@ -217,6 +222,7 @@ def main():
     commands = parser.add_subparsers(required=True)
     runner = add_run(commands, run)
     runner.add_argument("--data", required=True, help="the scene: a folder, or synthetic:NAME")
+    runner.add_argument("--kernels", help="the folder that bench/kernel_knobs.py has built")
     runner.add_argument("--knobs", nargs="+", default=[], help="these alone, by the names of the table")
     shower = commands.add_parser("table")
     shower.add_argument("file")

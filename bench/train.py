@@ -23,14 +23,14 @@ from scenes import by, print_tables, train, where
 COLUMNS = ["options", "seed", "iteration", "seconds", "psnr", "ssim"]
 
 
-def measure(arguments, configurations):
+def measure(arguments, configurations, programs={}):
     """Runs of each configuration (a name and its options) by each seed. Those of one seed follow one another, so
-    that a machine which slows down slows down all of them."""
+    that a machine which slows down slows down all of them. `programs`: of those that have one of their own."""
     runs = []
     data = pathlib.Path(arguments.data)
     for seed in arguments.seeds:
         for name, options in configurations.items():
-            one = train(arguments.program, data.parent, data.name, seed, options)
+            one = train(programs.get(name, arguments.program), data.parent, data.name, seed, options)
             runs.append({"options": name, **one})
             print(data.name, seed, name, f"{one['psnr']:.2f} dB", f"{one['seconds']['train']:.1f} s", flush=True)
     return runs
