@@ -34,7 +34,7 @@ MOST_ATTEMPTS = 8
 # Warps that wait for a reason while a scheduler issues, on average; the reasons that any kernel here has more than others.
 STALLS = {reason: f"smsp__average_warps_issue_stalled_{reason}_per_issue_active.ratio" for reason in
           ("lg_throttle", "long_scoreboard", "short_scoreboard", "mio_throttle", "math_pipe_throttle", "wait", "not_selected",
-           "barrier", "branch_resolve", "dispatch_stall", "drain", "imc_miss", "membar", "misc", "no_instruction", "sleeping",
+           "barrier", "branch_resolving", "dispatch_stall", "drain", "imc_miss", "membar", "misc", "no_instruction", "sleeping",
            "tex_throttle", "selected")}
 USE = {"lsu_percent": "sm__inst_executed_pipe_lsu.avg.pct_of_peak_sustained_active",
        "issue_percent": "smsp__issue_active.avg.pct_of_peak_sustained_active"}

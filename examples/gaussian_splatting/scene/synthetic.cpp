@@ -17,6 +17,7 @@
 
 #include "../error.hpp"
 #include "look_at.hpp"
+#include "synthetic_parameters.hpp"
 
 namespace gs {
 namespace {
@@ -59,6 +60,7 @@ struct world {
     std::vector<ball> balls;
     std::optional<ground_disc> ground;
     bool transparent = false;  ///< what no ray hits: transparent, or else black
+    synthetic_parameters how;
 };
 
 struct surface_point {
@@ -111,13 +113,18 @@ struct named_world {
 };
 constexpr named_world worlds[] = {{"spheres", spheres_world}, {"alpha", alpha_world}};
 
-world world_called(const std::string& name) {
+world world_of(const std::string& text) {
+    const synthetic_parameters how = parse_synthetic(text);
     std::string known;
     for (const named_world& candidate : worlds) {
-        if (name == candidate.name) return candidate.make();
+        if (how.world == candidate.name) {
+            world made = candidate.make();
+            made.how = how;
+            return made;
+        }
         known += (known.empty() ? "" : ", ") + std::string(candidate.name);
     }
-    throw error("there is no synthetic scene '" + name + "'; there are: " + known);
+    throw error("there is no synthetic scene '" + how.world + "'; there are: " + known);
 }
 
 /// A square wave with rounded flanks: clear stripes to the eye, but no edge finer than a pixel.
@@ -196,8 +203,10 @@ double pool_of_light(const world& w, const vec& p) {
     return 1 - glm::smoothstep(0.5 * w.ground->radius, 0.98 * w.ground->radius, std::hypot(p.x, p.y));
 }
 
-/// The colour of a matte surface under a warm sun and a cool sky, as displayed, in [0, 1].
-vec shade(const world& w, const surface_point& s) {
+/// The colour of a surface under a warm sun and a cool sky, as displayed, in [0, 1]; `to_eye` has unit
+/// length. What is glossy has Phong's lobe of the sun and the sky of the mirrored direction, more at grazing
+/// angles (Schlick's formula), on top.
+vec shade(const world& w, const surface_point& s, const vec& to_eye) {
     static const vec sun_direction = glm::normalize(vec{0.50, -0.42, 0.80});
     const vec sun_colour{0.90, 0.83, 0.71};
     const vec sky_colour{0.25, 0.31, 0.40};
@@ -210,8 +219,19 @@ vec shade(const world& w, const surface_point& s) {
         sky *= sky_past(b, s);
     }
     const vec ambient = glm::mix(bounce_colour, sky_colour, 0.5 + 0.5 * s.normal.z);
-    const vec light = pool_of_light(w, s.position) * (sun * sun_colour + sky * ambient);
-    return glm::sqrt(glm::clamp(light * s.albedo, 0.0, 1.0));
+    const double pool = pool_of_light(w, s.position);
+    vec colour = pool * (sun * sun_colour + sky * ambient) * s.albedo;
+    if (w.how.gloss > 0) {
+        const double facing = std::max(glm::dot(s.normal, to_eye), 0.0);
+        const vec mirrored = 2 * facing * s.normal - to_eye;
+        constexpr double sharpness = 16, head_on = 0.25;
+        const double lobe =
+            sun > 0 ? std::pow(std::max(glm::dot(mirrored, sun_direction), 0.0), sharpness) : 0;
+        const double share = w.how.gloss * (head_on + (1 - head_on) * std::pow(1 - facing, 5));
+        colour += pool * share *
+                  (2 * lobe * sun_colour + glm::mix(bounce_colour, 2.0 * sky_colour, 0.5 + 0.5 * mirrored.z));
+    }
+    return glm::sqrt(glm::clamp(colour, 0.0, 1.0));
 }
 
 std::uint8_t to_byte(double in_unit_interval) {
@@ -219,15 +239,18 @@ std::uint8_t to_byte(double in_unit_interval) {
 }
 
 /// The i-th of the cameras on a spiral that turns by the golden angle: evenly spread, neighbours in space far
-/// apart in number, so that every n-th camera lies between others.
-camera spiral_camera(int i, int size) {
+/// apart in number, so that every n-th camera lies between others. Their distances are `scales` apart at
+/// most, each evenly likely by its logarithm.
+camera spiral_camera(int i, int size, double scales) {
     const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
     const double lowest = std::sin(12 * std::numbers::pi / 180);
     const double highest = std::sin(76 * std::numbers::pi / 180);
     const double height = glm::mix(lowest, highest, (i + 0.5) / view_count);
     const double across = std::sqrt(1 - height * height);
     const double angle = golden_angle * i;
-    const vec eye = camera_distance * vec{across * std::cos(angle), across * std::sin(angle), height};
+    const double farther = std::pow(scales, std::fmod(i * std::numbers::sqrt2, 1.0));
+    const vec eye =
+        farther * camera_distance * vec{across * std::cos(angle), across * std::sin(angle), height};
     return look_at(eye, vec{0}, {0, 0, 1}, size, 0.5 * size / std::tan(0.5 * field_of_view));
 }
 
@@ -235,52 +258,79 @@ vec ray_direction(const camera& c, double x, double y) {
     return glm::normalize(glm::transpose(c.rotation) * vec{(x - c.cx) / c.fx, (y - c.cy) / c.fy, 1});
 }
 
-void render_row(const world& w, const camera& c, int row, std::uint8_t* rgba) {
+/// Spelt out because the standard leaves the results of its distributions to the implementation.
+double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+/// Box and Muller's.
+double normal(std::mt19937_64& random) {
+    const double radius = std::sqrt(-2 * std::log(1 - uniform(random)));
+    return radius * std::cos(2 * std::numbers::pi * uniform(random));
+}
+
+/// Of the n-th photo, as a factor of what is displayed.
+double exposure_of(const world& w, std::size_t photo) {
+    std::mt19937_64 random(photo);
+    return std::exp2(w.how.exposure * normal(random));
+}
+
+void render_row(const world& w, const camera& c, std::size_t photo, int row, std::uint8_t* rgba) {
     const vec origin = c.centre();
+    const double exposure = w.how.exposure > 0 ? exposure_of(w, photo) : 1;
+    std::mt19937_64 random((photo << 32) + static_cast<std::size_t>(row));
     for (int column = 0; column < c.width; ++column, rgba += 4) {
         vec colour{0};
         int hits = 0;
         for (int sample = 0; sample < samples_per_side * samples_per_side; ++sample) {
             const double x = column + (sample % samples_per_side + 0.5) / samples_per_side;
             const double y = row + (sample / samples_per_side + 0.5) / samples_per_side;
-            const std::optional<surface_point> hit = first_hit(w, origin, ray_direction(c, x, y));
+            const vec direction = ray_direction(c, x, y);
+            const std::optional<surface_point> hit = first_hit(w, origin, direction);
             if (!hit) continue;
-            colour += shade(w, *hit);
+            colour += shade(w, *hit, -direction);
             ++hits;
         }
         constexpr double weight = 1.0 / (samples_per_side * samples_per_side);
-        for (int channel = 0; channel < 3; ++channel) rgba[channel] = to_byte(weight * colour[channel]);
         rgba[3] = w.transparent ? to_byte(weight * hits) : std::uint8_t{255};
+        for (int channel = 0; channel < 3; ++channel) {
+            double shown = exposure * weight * colour[channel];
+            if (w.how.noise > 0 && hits > 0) shown += w.how.noise * normal(random);
+            const double most = rgba[3] / 255.0;  // premultiplied
+            rgba[channel] = to_byte(std::clamp(shown, 0.0, most));
+        }
     }
 }
 
-std::vector<view> spiral_views(int size) {
+std::vector<view> spiral_views(int size, double scales) {
     std::vector<view> views(view_count);
     for (int i = 0; i < view_count; ++i) {
         view& v = views[static_cast<std::size_t>(i)];
         v.name = "view_" + std::string(i < 10 ? "0" : "") + std::to_string(i) + ".png";
-        v.camera = spiral_camera(i, size);
+        v.camera = spiral_camera(i, size, scales);
     }
     return views;
 }
 
 void take_photos(const world& w, std::vector<view>& views) {
-    std::vector<std::pair<view*, int>> rows;
+    struct place {
+        view* photo;
+        std::size_t number;
+        int row;
+    };
+    std::vector<place> rows;
     for (view& v : views) {
         const int width = v.camera.width, height = v.camera.height;
         v.pixels = {width, height, {}, w.transparent};
         v.pixels.rgba.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-        for (int row = 0; row < height; ++row) rows.emplace_back(&v, row);
+        for (int row = 0; row < height; ++row)
+            rows.push_back({&v, static_cast<std::size_t>(&v - views.data()), row});
     }
 #pragma omp parallel for schedule(dynamic, 8)
-    for (const auto& [v, row] : rows) {
+    for (const auto& [v, number, row] : rows) {
         const std::size_t bytes_per_row = 4 * static_cast<std::size_t>(v->camera.width);
-        render_row(w, v->camera, row, v->pixels.rgba.data() + bytes_per_row * static_cast<std::size_t>(row));
+        render_row(w, v->camera, number, row,
+                   v->pixels.rgba.data() + bytes_per_row * static_cast<std::size_t>(row));
     }
 }
-
-/// Spelt out because the standard leaves the results of its distributions to the implementation.
-double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 /// Where rays through random places of random views meet a surface: seen by a camera by construction, and
 /// denser where more cameras look, as a cloud from structure from motion is.
@@ -293,9 +343,10 @@ std::vector<coloured_point> seen_points(const world& w, const std::vector<view>&
         const camera& c = views[chosen].camera;
         const double x = uniform(random) * c.width;
         const double y = uniform(random) * c.height;
-        const std::optional<surface_point> hit = first_hit(w, c.centre(), ray_direction(c, x, y));
+        const vec direction = ray_direction(c, x, y);
+        const std::optional<surface_point> hit = first_hit(w, c.centre(), direction);
         if (!hit) continue;
-        const vec colour = shade(w, *hit);
+        const vec colour = shade(w, *hit, -direction);
         points.push_back({hit->position, {to_byte(colour.r), to_byte(colour.g), to_byte(colour.b)}});
     }
     return points;
@@ -320,9 +371,9 @@ std::vector<std::string> synthetic_scene_names() {
 }
 
 scene make_synthetic_scene(const std::string& name, const load_options& options, const log_function& log) {
-    const world w = world_called(name);
+    const world w = world_of(name);
     const int size = size_at(options.resolution);
-    std::vector<view> views = spiral_views(size);
+    std::vector<view> views = spiral_views(size, w.how.scales);
     take_photos(w, views);
 
     scene result;
@@ -343,12 +394,12 @@ scene make_synthetic_scene(const std::string& name, const load_options& options,
 }
 
 void photograph_synthetic(const std::string& name, std::vector<view>& views) {
-    take_photos(world_called(name), views);
+    take_photos(world_of(name), views);
 }
 
 std::vector<coloured_point> synthetic_points(const std::string& name, const std::vector<view>& views,
                                              std::size_t count, std::uint64_t seed) {
-    return seen_points(world_called(name), views, count, seed);
+    return seen_points(world_of(name), views, count, seed);
 }
 
 }  // namespace gs

@@ -9,8 +9,9 @@
 namespace gs {
 
 /// A ray-traced scene that needs no download, with exact cameras on a hemisphere around it (z is up).
-/// Everything lies within 1.3 of the origin along each axis, and shading does not depend on the direction one
-/// looks from.
+/// Everything lies within 1.3 of the origin along each axis. `name` is that of a world and, behind commas,
+/// parameters: see `synthetic_parameters`; without any, shading does not depend on the direction one looks
+/// from.
 ///
 ///     spheres   patterned spheres in a pool of light on a dark ground; opaque, black where nothing is
 ///     alpha     spheres that float before a transparent background

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "synthetic_parameters.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <set>
+#include <sstream>
+
+#include "../error.hpp"
+
+namespace gs {
+namespace {
+
+struct parameter {
+    const char* name;
+    double synthetic_parameters::*value;
+    double least, most;
+};
+constexpr parameter parameters[] = {{"gloss", &synthetic_parameters::gloss, 0, 1},
+                                    {"exposure", &synthetic_parameters::exposure, 0, 2},
+                                    {"scales", &synthetic_parameters::scales, 1, 16},
+                                    {"noise", &synthetic_parameters::noise, 0, 0.5}};
+
+const parameter& parameter_called(const std::string& name) {
+    std::string known;
+    for (const parameter& p : parameters) {
+        if (name == p.name) return p;
+        known += (known.empty() ? "" : ", ") + std::string(p.name);
+    }
+    throw error("a synthetic scene has no parameter '" + name + "'; there are: " + known);
+}
+
+}  // namespace
+
+synthetic_parameters parse_synthetic(const std::string& text) {
+    synthetic_parameters result;
+    std::istringstream words(text);
+    std::getline(words, result.world, ',');
+    std::set<std::string> said;
+    for (std::string word; std::getline(words, word, ',');) {
+        const std::string name = word.substr(0, word.find('='));
+        const parameter& p = parameter_called(name);
+        if (!said.insert(name).second)
+            throw error("a synthetic scene has one '" + name + "', not several: " + text);
+        const std::string number = word.substr(std::min(word.size(), name.size() + 1));
+        double& value = result.*p.value;
+        const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), value);
+        if (problem != std::errc() || end != number.data() + number.size() ||
+            !(value >= p.least && value <= p.most)) {
+            char range[64];
+            std::snprintf(range, sizeof range, "%g to %g", p.least, p.most);
+            throw error("the '" + name + "' of a synthetic scene is a number from " + range + ", not '" +
+                        number + "'");
+        }
+    }
+    return result;
+}
+
+}  // namespace gs

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace gs {
+
+/// What a synthetic scene shows, and how it was photographed. The defaults are what a matte world, cameras at
+/// one distance and one exposure, and no noise come to.
+struct synthetic_parameters {
+    std::string world;
+    double gloss = 0;     ///< how much surfaces reflect sun and sky, beside what they scatter: 0 to 1
+    double exposure = 0;  ///< standard deviation of the photos' exposures, in stops: 0 to 2
+    double scales = 1;    ///< the farthest camera's distance over the nearest's: 1 to 16
+    double noise = 0;     ///< standard deviation of a photo's values, which are in [0, 1]: 0 to 0.5
+};
+
+/// From "WORLD", or "WORLD,gloss=0.5,noise=0.02" and so on. Throws `error` for a parameter that is none,
+/// twice there, or out of its range; the world is looked at elsewhere.
+synthetic_parameters parse_synthetic(const std::string& text);
+
+}  // namespace gs
