@@ -477,6 +477,25 @@ TEST_CASE("training that would not stay finite ends, and touches no earlier resu
                                 {"iteration 1", "view ", "opacity of Gaussian"});
 }
 
+TEST_CASE("inspect says what a scene calls for, and writes it") {
+    const temporary_folder folder;
+    const fs::path file = folder / "effects.json";
+    const outcome o = run({"inspect", "-d", "synthetic:spheres,gloss=0.6,exposure=0.3", "-o", file.string()});
+    CAPTURE(o.err);
+    CHECK(o.code == 0);
+    const auto json = nlohmann::json::parse(read_file(file));
+    REQUIRE(json.at("effects").size() == 4);
+    for (const auto& effect : json.at("effects")) {
+        const auto name = effect.at("name").get<std::string>();
+        CHECK(effect.at("called_for").get<bool>() ==
+              (name == "view-dependent colour" || name == "exposure by photo"));
+        CHECK(says(o.out, {name, effect.at("evidence").get<std::string>()}));
+    }
+    check_refusal({"inspect", "-d", "synthetic:spheres,shine=1"}, {"'shine'", "gloss"});
+    check_refusal({"inspect", "-d", "synthetic:spheres", "-o", (folder / "none/effects.json").string()},
+                  {"none"});
+}
+
 TEST_CASE("--device cuda is refused where there is no GPU") {
     std::string reason;
     if (gs::train::cuda_is_available(reason)) {

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
         if (settings.command == "train") gs::cli::train(settings);
         if (settings.command == "evaluate") gs::cli::evaluate(settings);
         if (settings.command == "render") gs::cli::render(settings);
+        if (settings.command == "inspect") gs::cli::inspect(settings);
         return 0;
     } catch (const gs::error& e) {
         std::fprintf(stderr, "error: %s\n", e.what());

@@ -99,7 +99,7 @@ CLI::Validator positive_number(std::optional<int> below = {}) {
 
 void add_scene(CLI::App& app, settings& s, bool required) {
     auto* data = app.add_option("-d,--data,-s,--source-path", s.scene.data,
-                                "Scene: a folder (COLMAP or Blender) or synthetic:NAME");
+                                "Scene: a folder (COLMAP or Blender) or synthetic:NAME[,PARAMETER=VALUE...]");
     if (required) data->required();
     app.add_option("--images", s.scene.images, "Folder of the photos, below the scene's (COLMAP)")
         ->capture_default_str();
@@ -254,6 +254,13 @@ CLI::App* add_render(CLI::App& app, settings& s) {
     return render;
 }
 
+CLI::App* add_inspect(CLI::App& app, settings& s) {
+    CLI::App* inspect = app.add_subcommand("inspect", "What a scene's photos call for");
+    add_scene(*inspect, s, true);
+    inspect->add_option("-o,--output", s.output, "A JSON file");
+    return inspect;
+}
+
 void refuse_late(const std::set<int>& iterations, int last, const std::string& option) {
     for (const int i : iterations)
         if (i < 1 || i > last)
@@ -299,7 +306,8 @@ settings parse(int argc, char** argv) {
     CLI::App app("3D Gaussian splatting: from photos to a .ply, on a CPU or a GPU.", "gaussian_splatting");
     app.require_subcommand(1);
     app.set_version_flag("--version", WARPAGG_VERSION);
-    const std::vector<CLI::App*> commands{add_train(app, s), add_evaluate(app, s), add_render(app, s)};
+    const std::vector<CLI::App*> commands{add_train(app, s), add_evaluate(app, s), add_render(app, s),
+                                          add_inspect(app, s)};
 
     std::vector<std::string> arguments(argv + 1, argv + argc);
     for (std::string& a : arguments)

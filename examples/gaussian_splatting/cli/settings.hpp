@@ -15,7 +15,7 @@ namespace gs::cli {
 
 /// What the command line says, as it says it.
 struct settings {
-    std::string command;  ///< "train", "evaluate" or "render"
+    std::string command;  ///< "train", "evaluate", "render" or "inspect"
     load_options scene;
     std::string output;
     std::string ply;
@@ -47,5 +47,6 @@ settings parse(int argc, char** argv);
 void train(const settings& settings);
 void evaluate(const settings& settings);
 void render(const settings& settings);
+void inspect(const settings& settings);
 
 }  // namespace gs::cli

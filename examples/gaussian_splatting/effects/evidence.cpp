@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../model/spherical_harmonics.hpp"
+#include "../parallel.hpp"
+
+namespace gs::effects {
+namespace {
+
+using points_seen = std::vector<std::vector<observation>>;
+
+constexpr std::size_t least_views_of_point = 5, least_points_of_view = 20;
+constexpr double ridges[] = {0.3, 1, 3, 10};  ///< on all but the constant, in units of an observation
+constexpr float one_size = 1.6f;
+constexpr double outlier = 4.0;  ///< in standard deviations: something else was in front
+
+double quantile(std::vector<double>& values, double share) {
+    if (values.empty()) return 0;
+    const auto there =
+        values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+    std::nth_element(values.begin(), there, values.end());
+    return *there;
+}
+double median(std::vector<double>& values) { return quantile(values, 0.5); }
+
+/// Of a symmetric positive definite matrix, row by row, by Cholesky's factors.
+std::vector<double> solve(std::vector<double> matrix, std::vector<double> right) {
+    const std::size_t n = right.size();
+    const auto at = [&](std::size_t i, std::size_t k) -> double& { return matrix[i * n + k]; };
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = 0; k <= i; ++k) {
+            double sum = at(i, k);
+            for (std::size_t j = 0; j < k; ++j) sum -= at(i, j) * at(k, j);
+            at(i, k) = i == k ? std::sqrt(sum) : sum / at(k, k);
+        }
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t k = 0; k < i; ++k) right[i] -= at(i, k) * right[k];
+        right[i] /= at(i, i);
+    }
+    for (std::size_t i = n; i-- > 0;) {
+        for (std::size_t k = i + 1; k < n; ++k) right[i] -= at(k, i) * right[k];
+        right[i] /= at(i, i);
+    }
+    return right;
+}
+
+double brightness(const observation& o) { return (o.colour.r + o.colour.g + o.colour.b) / 3.0; }
+
+/// The observations that lie in smooth parts of the photos, at most half of them, of points that keep enough
+/// of them: where the picture is rough, a point's colour depends on where exactly it is. The smoothest tenth
+/// tells what is noise.
+points_seen smooth_part(points_seen points) {
+    std::vector<double> roughness;
+    for (const auto& seen : points)
+        for (const observation& o : seen) roughness.push_back(o.roughness);
+    constexpr double texture = 0.04, times_noise = 1.5;
+    const double noise = quantile(roughness, 0.1);
+    const double limit = std::min(quantile(roughness, 0.5), texture + times_noise * noise);
+    for (auto& seen : points) {
+        std::erase_if(seen, [&](const observation& o) { return o.roughness > limit; });
+        if (seen.size() < least_views_of_point) seen.clear();
+    }
+    std::erase_if(points, [](const auto& seen) { return seen.empty(); });
+    return points;
+}
+
+/// Of a point's observations the most that have it about as large: from another distance its surroundings
+/// blur into it.
+void keep_one_size(std::vector<observation>& seen) {
+    std::ranges::sort(seen, {}, [](const observation& o) { return std::pair(o.footprint, o.view); });
+    std::size_t first = 0, most = 0;
+    for (std::size_t i = 0, end = 0; i < seen.size(); ++i) {
+        while (end < seen.size() && seen[end].footprint <= one_size * seen[i].footprint) ++end;
+        if (end - i > most) {
+            most = end - i;
+            first = i;
+        }
+    }
+    seen = {seen.begin() + static_cast<std::ptrdiff_t>(first),
+            seen.begin() + static_cast<std::ptrdiff_t>(first + most)};
+}
+
+/// Squares of what is left of each observation by degree 0 to 3, summed over its channels; observations of
+/// one point.
+void add_residuals(const std::vector<observation>& seen, double ridge,
+                   std::vector<std::array<double, 4>>& residuals) {
+    const std::size_t n = seen.size();
+    glm::dvec3 mean(0);
+    for (const observation& o : seen) mean += glm::dvec3(o.colour) / double(n);
+    std::vector<std::array<double, 16>> rows(n);
+    std::array<double, 16> centre{};
+    for (std::size_t i = 0; i < n; ++i) {
+        sh_basis<double>(3, glm::dvec3(seen[i].direction), rows[i].data());
+        for (std::size_t k = 0; k < 16; ++k) centre[k] += rows[i][k] / double(n);
+    }
+    // About their means, so that the constant is not held back.
+    for (auto& row : rows)
+        for (std::size_t k = 0; k < 16; ++k) row[k] -= centre[k];
+    std::vector<std::array<double, 4>> left(n);
+    for (int degree = 0; degree <= 3; ++degree) {
+        const auto size = static_cast<std::size_t>((degree + 1) * (degree + 1) - 1);
+        // The normal equations' Cholesky factor, bands 1 to `degree`.
+        double factor[15][15] = {};
+        for (std::size_t a = 0; a < size; ++a)
+            for (std::size_t b = 0; b <= a; ++b) {
+                double sum = a == b ? ridge : 0;
+                for (const auto& row : rows) sum += row[a + 1] * row[b + 1];
+                for (std::size_t k = 0; k < b; ++k) sum -= factor[a][k] * factor[b][k];
+                factor[a][b] = a == b ? std::sqrt(sum) : sum / factor[b][b];
+            }
+        // Each row by the inverse factor: the hat matrix is W W^T, besides 1/n of the constant.
+        std::vector<std::array<double, 15>> whitened(n);
+        std::array<glm::dvec3, 15> projected{};
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t a = 0; a < size; ++a) {
+                double sum = rows[i][a + 1];
+                for (std::size_t k = 0; k < a; ++k) sum -= factor[a][k] * whitened[i][k];
+                whitened[i][a] = sum / factor[a][a];
+                projected[a] += whitened[i][a] * (glm::dvec3(seen[i].colour) - mean);
+            }
+        for (std::size_t i = 0; i < n; ++i) {
+            double own = 1 / double(n);  // what an observation adds to its own prediction
+            glm::dvec3 rest = glm::dvec3(seen[i].colour) - mean;
+            for (std::size_t a = 0; a < size; ++a) {
+                own += whitened[i][a] * whitened[i][a];
+                rest -= whitened[i][a] * projected[a];
+            }
+            rest /= 1 - own;
+            left[i][static_cast<std::size_t>(degree)] = glm::dot(rest, rest) / 3;
+        }
+    }
+    residuals.insert(residuals.end(), left.begin(), left.end());
+}
+
+std::array<double, 4> unexplained_with(const points_seen& points, double ridge) {
+    std::vector<std::vector<std::array<double, 4>>> residuals(points.size());
+    for_each_in_parallel(points.size(), [&](std::size_t p) {
+        if (points[p].size() >= least_views_of_point) add_residuals(points[p], ridge, residuals[p]);
+    });
+    std::vector<double> sizes;
+    for (const auto& of_point : residuals)
+        for (const auto& r : of_point) sizes.push_back(r[0]);
+    const double limit = outlier * outlier * 1.4826 * 1.4826 * median(sizes);
+    std::array<double, 4> sum{};
+    for (const auto& of_point : residuals)
+        for (const auto& r : of_point)
+            for (std::size_t d = 0; d < 4; ++d) sum[d] += std::min(r[d], limit) / double(sizes.size());
+    return sum;
+}
+
+}  // namespace
+
+exposure_estimate exposures(const points_seen& points, std::size_t views) {
+    constexpr int rounds = 10;
+    constexpr double huber = 2;  // standard deviations, from which a residual counts less
+    std::vector<double> stops(views, 0.0), information(views, 0.0), off;
+    double deviation = 0;
+    for (int round = 0; round < rounds; ++round) {
+        // Normal equations of log2(brightness) = point + photo, the points eliminated.
+        std::vector<double> matrix(views * views, 0.0), right(views, 0.0);
+        off.clear();
+        for (const auto& seen : points) {
+            std::vector<double> logs, weights(seen.size(), 1.0);
+            std::vector<double> own;
+            for (const observation& o : seen) {
+                logs.push_back(std::log2(brightness(o)));
+                own.push_back(logs.back() - stops[o.view]);
+            }
+            const std::vector<double> all = own;
+            const double of_point = median(own);
+            double sum = 0, mean = 0;
+            for (std::size_t i = 0; i < seen.size(); ++i) {
+                const double apart = std::abs(all[i] - of_point);
+                off.push_back(apart);
+                if (deviation > 0 && apart > huber * deviation) weights[i] = huber * deviation / apart;
+                sum += weights[i];
+                mean += weights[i] * logs[i];
+            }
+            for (std::size_t i = 0; i < seen.size(); ++i) {
+                double* row = &matrix[seen[i].view * views];
+                row[seen[i].view] += weights[i];
+                right[seen[i].view] += weights[i] * (logs[i] - mean / sum);
+                for (std::size_t k = 0; k < seen.size(); ++k)
+                    row[seen[k].view] -= weights[i] * weights[k] / sum;
+            }
+        }
+        deviation = 1.4826 * median(off);
+        constexpr double held = 1e-3;  // to zero, in observations: all photos together are of no exposure
+        for (std::size_t v = 0; v < views; ++v) {
+            information[v] = matrix[v * views + v];
+            matrix[v * views + v] += held;
+        }
+        stops = solve(std::move(matrix), std::move(right));
+    }
+    std::vector<std::size_t> seen_by(views);
+    for (const auto& seen : points)
+        for (const observation& o : seen) ++seen_by[o.view];
+    exposure_estimate found{stops, std::vector<double>(views, 0.0)};
+    for (std::size_t v = 0; v < views; ++v) {
+        if (seen_by[v] < least_points_of_view)
+            found.stops[v] = 0;
+        else
+            found.error[v] = std::max(deviation, 1e-6) / std::sqrt(std::max(information[v], 1.0));
+    }
+    return found;
+}
+
+std::array<double, 4> unexplained_by_direction(const points_seen& points) {
+    std::array<double, 4> least = unexplained_with(points, ridges[0]);
+    for (const double ridge : ridges) {
+        const std::array<double, 4> by_ridge = unexplained_with(points, ridge);
+        for (std::size_t d = 0; d < 4; ++d) least[d] = std::min(least[d], by_ridge[d]);
+    }
+    return least;
+}
+
+evidence gather(const scene& of) {
+    evidence found;
+    found.alpha = of.has_alpha;
+    points_seen points = observe_points(of);
+    std::vector<double> ratios;
+    for (const auto& seen : points) {
+        if (seen.size() < least_views_of_point) continue;
+        const auto [least, most] = std::ranges::minmax(seen, {}, &observation::footprint);
+        ratios.push_back(most.footprint / least.footprint);
+    }
+    if (!ratios.empty()) found.scale_ratio = median(ratios);
+    points = smooth_part(std::move(points));
+    found.points = points.size();
+    for (const auto& seen : points) found.observations += seen.size();
+    if (points.empty()) return found;
+
+    const exposure_estimate exposure = exposures(points, of.train.size());
+    std::vector<double> errors;
+    double square = 0;
+    for (std::size_t v = 0; v < of.train.size(); ++v) {
+        if (exposure.error[v] == 0) continue;
+        errors.push_back(exposure.error[v]);
+        square += exposure.stops[v] * exposure.stops[v];
+    }
+    if (!errors.empty()) {
+        found.exposure_spread = std::sqrt(square / double(errors.size()));
+        found.exposure_error = median(errors);
+    }
+    for (auto& seen : points) {
+        std::erase_if(seen, [&](const observation& o) { return exposure.error[o.view] == 0; });  // not known
+        keep_one_size(seen);
+        for (observation& o : seen) o.colour *= static_cast<float>(std::exp2(-exposure.stops[o.view]));
+    }
+    found.unexplained = unexplained_by_direction(points);
+    return found;
+}
+
+}  // namespace gs::effects

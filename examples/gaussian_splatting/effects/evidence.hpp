@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "observations.hpp"
+
+namespace gs::effects {
+
+/// What the photos say of the effects that a scene may call for. Without points there is nothing that photos
+/// share.
+struct evidence {
+    std::size_t points = 0;        ///< that were seen often enough
+    std::size_t observations = 0;  ///< of them
+
+    /// Exposures: the photos' brightness at the same points, as logarithms to base 2 (stops).
+    double exposure_spread = 0;  ///< root mean square over the photos
+    double exposure_error = 0;   ///< median standard error of a photo's
+
+    /// Colour by direction, once exposures are taken out. `unexplained[d]`: the mean square of what is left
+    /// of an observation, in [0, 1] units, when it is predicted from the point's others by spherical
+    /// harmonics of degree d.
+    std::array<double, 4> unexplained{};
+
+    /// How much nearer a point is seen in one photo than in another, in pixels of its size: the median
+    /// point's largest footprint over its least.
+    double scale_ratio = 1;
+
+    bool alpha = false;  ///< photos have transparent parts
+};
+
+evidence gather(const scene& of);
+
+/// Parts of it.
+/// @{
+/// Of each photo, in stops; those of all photos that share points have a mean of zero. Photos that share too
+/// little with others have zero, and no error. Least squares over points and photos, with Huber's weights;
+/// V^3 / 3 operations for V photos.
+struct exposure_estimate {
+    std::vector<double> stops, error;
+};
+exposure_estimate exposures(const std::vector<std::vector<observation>>& points, std::size_t views);
+/// See `evidence::unexplained`. Ridge regression a point, each observation left out of its own prediction.
+std::array<double, 4> unexplained_by_direction(const std::vector<std::vector<observation>>& points);
+/// @}
+
+}  // namespace gs::effects

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "../examples/gaussian_splatting/effects/decide.hpp"
+#include "../examples/gaussian_splatting/error.hpp"
+#include "../examples/gaussian_splatting/scene/synthetic_parameters.hpp"
+
+namespace {
+
+using namespace gs::effects;
+
+gs::scene made(const std::string& parameters) {
+    gs::load_options o;
+    o.data = "synthetic:" + parameters;
+    return gs::load_scene(o, {});
+}
+
+bool calls_for(const std::vector<decision>& found, const std::string& name) {
+    const auto d = std::ranges::find(found, name, &decision::name);
+    REQUIRE(d != found.end());
+    return d->called_for;
+}
+
+}  // namespace
+
+TEST_CASE("a scene calls for what it was made with, and for nothing else") {
+    const struct {
+        const char* scene;
+        bool direction, exposure, antialiasing, background;
+    } cases[] = {{"spheres", false, false, false, false},
+                 {"spheres,noise=0.03", false, false, false, false},
+                 {"spheres,gloss=0.6", true, false, false, false},
+                 {"spheres,exposure=0.3,noise=0.01", false, true, false, false},
+                 {"spheres,scales=4", false, false, true, false},
+                 {"alpha", false, false, false, true},
+                 {"alpha,gloss=0.6,exposure=0.3,noise=0.01", true, true, false, true}};
+    for (const auto& c : cases) {
+        INFO(c.scene);
+        const auto found = decide(gather(made(c.scene)));
+        CHECK(calls_for(found, "view-dependent colour") == c.direction);
+        CHECK(calls_for(found, "exposure by photo") == c.exposure);
+        CHECK(calls_for(found, "antialiasing") == c.antialiasing);
+        CHECK(calls_for(found, "background") == c.background);
+    }
+}
+
+TEST_CASE("exposures are found to a hundredth of a stop, on average") {
+    // Each photo's own, by the formula of the synthetic scenes.
+    gs::scene plain = made("spheres"), varied = made("spheres,exposure=0.3");
+    const exposure_estimate found = exposures(observe_points(varied), varied.train.size());
+    double mean = 0, square = 0;
+    std::vector<double> off;
+    for (std::size_t v = 0; v < varied.train.size(); ++v) {
+        if (found.error[v] == 0) continue;
+        // Of the brightness of pixels that neither photo saturates.
+        double brighter = 0;
+        int n = 0;
+        const auto &a = plain.train[v].pixels.rgba, &b = varied.train[v].pixels.rgba;
+        for (std::size_t i = 0; i < a.size(); i += 4)
+            if (a[i] > 60 && b[i] > 60 && a[i] < 240 && b[i] < 240) {
+                brighter += std::log2(double(b[i]) / a[i]);
+                ++n;
+            }
+        REQUIRE(n > 0);
+        off.push_back(found.stops[v] - brighter / n);
+        mean += off.back();
+    }
+    REQUIRE(off.size() > 30);
+    for (const double x : off) square += std::pow(x - mean / double(off.size()), 2);
+    CHECK(std::sqrt(square / double(off.size())) < 0.01);
+}
+
+TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
+    const auto refusal = [](const std::string& text) -> std::string {
+        try {
+            gs::parse_synthetic(text);
+        } catch (const gs::error& e) {
+            return e.what();
+        }
+        return "";
+    };
+    CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
+    CHECK(refusal("spheres,glos=0.5") ==
+          "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, noise");
+    CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
+    CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
+    CHECK(refusal("spheres,gloss=nan") ==
+          "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
+    CHECK(refusal("spheres,gloss=0,gloss=1") ==
+          "a synthetic scene has one 'gloss', not several: spheres,gloss=0,gloss=1");
+}
