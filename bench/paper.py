@@ -31,7 +31,7 @@ TIMED = ["per-lane", "reduce-skip", "split"]  # baseline and ours of the paper, 
 WITHIN = 0.05
 MOST_ATTEMPTS = 8
 
-# Warps that wait for a reason while a scheduler issues, on average; the reasons that any kernel here has more than others.
+# Warps of a scheduler that wait for a reason, on average over the cycles in which it issues; the last one is what issues.
 STALLS = {reason: f"smsp__average_warps_issue_stalled_{reason}_per_issue_active.ratio" for reason in
           ("lg_throttle", "long_scoreboard", "short_scoreboard", "mio_throttle", "math_pipe_throttle", "wait", "not_selected",
            "barrier", "branch_resolving", "dispatch_stall", "drain", "imc_miss", "membar", "misc", "no_instruction", "sleeping",
@@ -109,7 +109,10 @@ def run(arguments):
     about = {"bench": "paper", "options": arguments.options, "iterations": arguments.iterations, "turns": arguments.turns,
              "seconds": arguments.seconds, "seed": arguments.seed, **environment(arguments.commit)}
     before = json.loads(output.read_text()) if output.exists() else {}
-    known = before.get("scenes", []) if {k: v for k, v in before.items() if k != "scenes"} == about else []
+    # What is written here makes a checkout dirty.
+    clean = lambda told: {**told, "scenes": None, "commit": (told.get("commit") or "").removesuffix("-dirty")}
+    known = before.get("scenes", []) if clean(before) == clean(about) else []
+    about["commit"] = before["commit"] if known else about["commit"]
     result = {**about, "scenes": known}
     for scene in arguments.scenes:
         if scene in (s["scene"] for s in result["scenes"]):

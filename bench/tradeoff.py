@@ -9,7 +9,7 @@ other, alone and then those together that pay; the Pareto front, and the command
     bench/tradeoff.py table tradeoff.json
     bench/tradeoff.py plot tradeoff.json tradeoff.svg          # needs matplotlib
 
-SCENE is a folder or synthetic:NAME; the options after -- are those of every run. All knobs of a seed take turns, and
+SCENE is a folder or synthetic:NAME[,PARAMETER=VALUE...]; the options after -- are those of every run. All knobs of a seed take turns, and
 times are beside the default's of the same seed. --kernels adds what bench/kernel_knobs.py has built. A knob pays if it reaches more PSNR than more or fewer iterations do in
 the time it takes. "again" is the default once more: what differs between the two is noise.
 """
@@ -150,6 +150,8 @@ def run(arguments):
         raise SystemExit(f"no such knob, or not with these options: {', '.join(sorted(unknown))}; there are {', '.join(alone)}")
     alone = {name: own for name, own in alone.items() if name in (arguments.knobs or alone) or name == AGAIN}
     kernels = kernel_knobs.programs_in(arguments.kernels) if arguments.kernels else {}
+    if arguments.kernels and not kernels:
+        raise SystemExit(f"{arguments.kernels} has none of what bench/kernel_knobs.py builds")
     runs = turns(arguments, common, {**alone, **dict.fromkeys(kernels, {})}, kernels)
     combined = together(paying(runs), n)
     if combined:
@@ -184,8 +186,8 @@ def table(result):
     head = ["", "knob", "options", "loop, s", "times the default's", "held-out PSNR, dB", "to the default's", "to as long a run's",
             "beyond the spread", "on the front"]
     front = sorted((p for p in found if p["front"]), key=lambda p: p["ratio"])
-    built = lambda p: "(built by bench/kernel_knobs.py) " if p["name"] in result["kernels"] else ""
-    lines = "".join(f"{built(p)}{command(result, p['name'])}  # {p['name']}: {p['ratio']:.2f}, {p['psnr']:.2f} dB\n" for p in front)
+    built = lambda p: ", built by bench/kernel_knobs.py" if p["name"] in result["kernels"] else ""
+    lines = "".join(f"{command(result, p['name'])}  # {p['name']}{built(p)}: {p['ratio']:.2f}, {p['psnr']:.2f} dB\n" for p in front)
     return (markdown(head, rows) + f"\n`{' '.join(result['options'])}`, {pathlib.Path(result['data']).name}, {where(result)}.\n\n"
             f"The front, from the fastest:\n\n```sh\n{lines}```\n")
 
@@ -223,7 +225,7 @@ def main():
     runner = add_run(commands, run)
     runner.add_argument("--data", required=True, help="the scene: a folder, or synthetic:NAME")
     runner.add_argument("--kernels", help="the folder that bench/kernel_knobs.py has built")
-    runner.add_argument("--knobs", nargs="+", default=[], help="these alone, by the names of the table")
+    runner.add_argument("--knobs", nargs="+", default=[], help="of the options these alone, by the names of the table")
     shower = commands.add_parser("table")
     shower.add_argument("file")
     shower.set_defaults(action=lambda arguments: print(table(json.loads(pathlib.Path(arguments.file).read_text())), end=""))

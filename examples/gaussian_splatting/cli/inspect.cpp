@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <cstdio>
 
 #include "../effects/decide.hpp"
@@ -14,10 +13,15 @@ void inspect(const settings& s) {
     const effects::evidence evidence = effects::gather(scene);
     nlohmann::ordered_json found = nlohmann::ordered_json::array();
     for (const effects::decision& d : effects::decide(evidence)) {
-        std::printf("%-22s %-4s %s\n%27s -> %s\n", d.name.c_str(), d.called_for ? "yes" : "no",
+        std::printf("%-22s %-4s %s\n%27s -> %s\n", d.name.c_str(),
+                    !d.called_for   ? "?"
+                    : *d.called_for ? "yes"
+                                    : "no",
                     d.evidence.c_str(), "", d.choice.c_str());
-        found.push_back(
-            {{"name", d.name}, {"called_for", d.called_for}, {"evidence", d.evidence}, {"choice", d.choice}});
+        found.push_back({{"name", d.name},
+                         {"called_for", d.called_for ? nlohmann::ordered_json(*d.called_for) : nullptr},
+                         {"evidence", d.evidence},
+                         {"choice", d.choice}});
     }
     if (!s.output.empty()) write_json(s.output, {{"data", s.scene.data}, {"effects", found}});
 }

@@ -243,7 +243,7 @@ class basic_cpu {
         const auto digit = [&](std::uint32_t key) { return key >> shift & (digits - 1); };
         std::uint32_t* to_keys = other_keys_.data();
         std::uint32_t* to_values = other_values_.data();
-        // Of a few thousand keys the sums over the slices' digits, which one thread makes, would take longer.
+        // Of a few thousand keys the sums over the slices' digits would take longer.
         const std::size_t slices =
             std::clamp<std::size_t>(n / (2 * digits), 1, static_cast<std::size_t>(omp_get_max_threads()));
         histograms_.resize(digits * slices);
@@ -256,9 +256,17 @@ class basic_cpu {
             std::fill_n(counts, digits, std::size_t{0});
             for (std::size_t i = from; i < to; ++i) ++counts[digit(keys[i])];
         });
-        for (std::size_t d = 0, sum = 0; d < digits; ++d)
+        // Where each digit begins, and in it each slice: by all threads, since what others counted is slow to
+        // come by.
+        starts_.resize(digits);
+        for_each_index(digits, [&](std::size_t d) {
+            std::size_t sum = 0;
             for (std::size_t s = 0; s < slices; ++s) sum += std::exchange(histograms_[s * digits + d], sum);
+            starts_[d] = sum;
+        });
+        for (std::size_t d = 0, sum = 0; d < digits; ++d) sum += std::exchange(starts_[d], sum);
         for_each_slice([&](std::size_t from, std::size_t to, std::size_t* places) {
+            for (std::size_t d = 0; d < digits; ++d) places[d] += starts_[d];
             for (std::size_t i = from; i < to; ++i) {
                 const std::size_t at = places[digit(keys[i])]++;
                 to_keys[at] = keys[i];
@@ -268,7 +276,7 @@ class basic_cpu {
     }
 
     buffer<std::uint32_t> other_keys_, other_values_;
-    std::vector<std::size_t> histograms_;
+    std::vector<std::size_t> histograms_, starts_;
     // Of `distribute`.
     struct instance {
         std::uint32_t bucket, value;

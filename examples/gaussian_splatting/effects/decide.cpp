@@ -15,43 +15,43 @@ std::string text(const char* format, Values... values) {
     return line;
 }
 
-bool tells_direction(const evidence& e, const thresholds& limits) {
-    return e.points >= limits.points && e.unexplained[0] > 0;
+std::string too_few(std::size_t points, const char* where) {
+    return text("no telling: %zu points lie %s of 5 photos or more", points, where);
 }
 
 decision view_dependent_colour(const evidence& e, const thresholds& limits) {
     const int degree = sh_degree(e, limits);
     const std::string choice = "--sh-degree " + std::to_string(degree);
-    if (!tells_direction(e, limits))
-        return {"view-dependent colour", true,
-                "no telling: too few points lie in smooth parts of 5 photos that were taken from about one "
-                "distance",
+    if (e.direction_points < limits.points)
+        return {"view-dependent colour",
+                {},
+                too_few(e.direction_points, "about as large in smooth parts"),
                 choice};
     const auto up_to = static_cast<std::size_t>(degree == 0 ? 3 : degree);
-    const double gone = e.unexplained[0] - e.unexplained[up_to];
     return {"view-dependent colour", degree > 0,
-            text("degree %zu explains %.0f %% of %.1f %% by which photos of a point differ", up_to,
-                 100 * std::max(gone, 0.0) / e.unexplained[0], 100 * std::sqrt(e.unexplained[0])),
+            text("degree %zu brings what photos of a point differ by from %.2f %% down to %.2f %%", up_to,
+                 100 * std::sqrt(e.unexplained[0]), 100 * std::sqrt(e.unexplained[up_to])),
             choice};
 }
 
 decision exposure(const evidence& e, const thresholds& limits) {
-    if (e.points < limits.points)
-        return {"exposure by photo", false,
-                text("no telling: %zu points lie in smooth parts of 5 photos or more", e.points),
-                "as they are"};
+    if (e.exposure_points < limits.points)
+        return {"exposure by photo", {}, too_few(e.exposure_points, "in smooth parts"), "as they are"};
     const bool varies = e.exposure_spread >= limits.exposure &&
                         e.exposure_spread >= limits.exposure_errors * e.exposure_error;
+    const auto percent = [](double log2) { return 100 * (std::exp2(log2) - 1); };
     return {"exposure by photo", varies,
-            text("the same points differ by %.2f stops between photos, measured to %.2f", e.exposure_spread,
-                 e.exposure_error),
+            text("photos have the same points %.1f %% brighter or darker, measured to %.1f %%",
+                 percent(e.exposure_spread), percent(e.exposure_error)),
             varies ? "called for, but not simulated" : "as they are"};
 }
 
 decision antialiasing(const evidence& e, const thresholds& limits) {
+    if (e.scale_points < limits.points)
+        return {"antialiasing", {}, too_few(e.scale_points, "in sight"), "off"};
     const bool spreads = e.scale_ratio >= limits.scale_ratio;
     return {"antialiasing", spreads,
-            text("a point is up to %.1f times as large in one photo as in another", e.scale_ratio),
+            text("the median point is %.1f times as large in one photo as in another", e.scale_ratio),
             spreads ? "called for, but not simulated" : "off"};
 }
 
@@ -63,7 +63,7 @@ decision background(const evidence& e) {
 }  // namespace
 
 int sh_degree(const evidence& e, const thresholds& limits) {
-    if (!tells_direction(e, limits)) return 3;
+    if (e.direction_points < limits.points) return 3;
     std::size_t degree = 0;
     for (std::size_t d = 1; d < e.unexplained.size(); ++d) {
         const double gone = e.unexplained[degree] - e.unexplained[d];

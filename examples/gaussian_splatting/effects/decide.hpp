@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,17 +13,17 @@ namespace gs::effects {
 /// An effect, and whether a scene calls for it.
 struct decision {
     std::string name;
-    bool called_for = false;
-    std::string evidence;  ///< with its numbers
-    std::string choice;    ///< what to do about it
+    std::optional<bool> called_for;  ///< none where too little tells
+    std::string evidence;            ///< with its numbers
+    std::string choice;              ///< what to do about it
 };
 
 /// From which evidence on an effect is called for.
 struct thresholds {
     std::size_t points = 50;             ///< fewer of them say nothing
-    double direction_share = 0.03;       ///< of what photos differ by, each further degree explains as much
-    double direction_amplitude = 0.002;  ///< of full brightness, root mean square
-    double exposure = 0.1;               ///< stops
+    double direction_share = 0.03;       ///< of the mean square that is unexplained, for each further degree
+    double direction_amplitude = 0.002;  ///< and this root mean square, of full brightness
+    double exposure = 0.1;               ///< see `evidence::exposure_spread`
     double exposure_errors = 3;          ///< times its standard error
     double scale_ratio = 2;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "../model/spherical_harmonics.hpp"
 #include "../parallel.hpp"
@@ -157,7 +158,7 @@ std::array<double, 4> unexplained_with(const points_seen& points, double ridge) 
 exposure_estimate exposures(const points_seen& points, std::size_t views) {
     constexpr int rounds = 10;
     constexpr double huber = 2;  // standard deviations, from which a residual counts less
-    std::vector<double> stops(views, 0.0), information(views, 0.0), off;
+    std::vector<double> brighter(views, 0.0), information(views, 0.0), off;
     double deviation = 0;
     for (int round = 0; round < rounds; ++round) {
         // Normal equations of log2(brightness) = point + photo, the points eliminated.
@@ -168,7 +169,7 @@ exposure_estimate exposures(const points_seen& points, std::size_t views) {
             std::vector<double> own;
             for (const observation& o : seen) {
                 logs.push_back(std::log2(brightness(o)));
-                own.push_back(logs.back() - stops[o.view]);
+                own.push_back(logs.back() - brighter[o.view]);
             }
             const std::vector<double> all = own;
             const double of_point = median(own);
@@ -194,15 +195,15 @@ exposure_estimate exposures(const points_seen& points, std::size_t views) {
             information[v] = matrix[v * views + v];
             matrix[v * views + v] += held;
         }
-        stops = solve(std::move(matrix), std::move(right));
+        brighter = solve(std::move(matrix), std::move(right));
     }
     std::vector<std::size_t> seen_by(views);
     for (const auto& seen : points)
         for (const observation& o : seen) ++seen_by[o.view];
-    exposure_estimate found{stops, std::vector<double>(views, 0.0)};
+    exposure_estimate found{brighter, std::vector<double>(views, 0.0)};
     for (std::size_t v = 0; v < views; ++v) {
         if (seen_by[v] < least_points_of_view)
-            found.stops[v] = 0;
+            found.brighter[v] = 0;
         else
             found.error[v] = std::max(deviation, 1e-6) / std::sqrt(std::max(information[v], 1.0));
     }
@@ -210,7 +211,8 @@ exposure_estimate exposures(const points_seen& points, std::size_t views) {
 }
 
 std::array<double, 4> unexplained_by_direction(const points_seen& points) {
-    std::array<double, 4> least = unexplained_with(points, ridges[0]);
+    std::array<double, 4> least;
+    least.fill(std::numeric_limits<double>::infinity());
     for (const double ridge : ridges) {
         const std::array<double, 4> by_ridge = unexplained_with(points, ridge);
         for (std::size_t d = 0; d < 4; ++d) least[d] = std::min(least[d], by_ridge[d]);
@@ -228,10 +230,10 @@ evidence gather(const scene& of) {
         const auto [least, most] = std::ranges::minmax(seen, {}, &observation::footprint);
         ratios.push_back(most.footprint / least.footprint);
     }
+    found.scale_points = ratios.size();
     if (!ratios.empty()) found.scale_ratio = median(ratios);
     points = smooth_part(std::move(points));
-    found.points = points.size();
-    for (const auto& seen : points) found.observations += seen.size();
+    found.exposure_points = points.size();
     if (points.empty()) return found;
 
     const exposure_estimate exposure = exposures(points, of.train.size());
@@ -240,7 +242,7 @@ evidence gather(const scene& of) {
     for (std::size_t v = 0; v < of.train.size(); ++v) {
         if (exposure.error[v] == 0) continue;
         errors.push_back(exposure.error[v]);
-        square += exposure.stops[v] * exposure.stops[v];
+        square += exposure.brighter[v] * exposure.brighter[v];
     }
     if (!errors.empty()) {
         found.exposure_spread = std::sqrt(square / double(errors.size()));
@@ -249,9 +251,11 @@ evidence gather(const scene& of) {
     for (auto& seen : points) {
         std::erase_if(seen, [&](const observation& o) { return exposure.error[o.view] == 0; });  // not known
         keep_one_size(seen);
-        for (observation& o : seen) o.colour *= static_cast<float>(std::exp2(-exposure.stops[o.view]));
+        for (observation& o : seen) o.colour *= static_cast<float>(std::exp2(-exposure.brighter[o.view]));
     }
-    found.unexplained = unexplained_by_direction(points);
+    std::erase_if(points, [](const auto& seen) { return seen.size() < least_views_of_point; });
+    found.direction_points = points.size();
+    if (!points.empty()) found.unexplained = unexplained_by_direction(points);
     return found;
 }
 

@@ -13,20 +13,21 @@ namespace gs::effects {
 /// What the photos say of the effects that a scene may call for. Without points there is nothing that photos
 /// share.
 struct evidence {
-    std::size_t points = 0;        ///< that were seen often enough
-    std::size_t observations = 0;  ///< of them
-
-    /// Exposures: the photos' brightness at the same points, as logarithms to base 2 (stops).
-    double exposure_spread = 0;  ///< root mean square over the photos
-    double exposure_error = 0;   ///< median standard error of a photo's
+    /// Exposures: by what factor photos have the same points brighter than others have them, as displayed;
+    /// its logarithm to base 2. A photo's light has changed by about twice that.
+    std::size_t exposure_points = 0;  ///< that tell of it
+    double exposure_spread = 0;       ///< root mean square over the photos
+    double exposure_error = 0;        ///< median standard error of a photo's
 
     /// Colour by direction, once exposures are taken out. `unexplained[d]`: the mean square of what is left
     /// of an observation, in [0, 1] units, when it is predicted from the point's others by spherical
     /// harmonics of degree d.
+    std::size_t direction_points = 0;
     std::array<double, 4> unexplained{};
 
-    /// How much nearer a point is seen in one photo than in another, in pixels of its size: the median
-    /// point's largest footprint over its least.
+    /// How much larger a point is in one photo than in another: the median point's largest footprint of a
+    /// pixel over its least.
+    std::size_t scale_points = 0;
     double scale_ratio = 1;
 
     bool alpha = false;  ///< photos have transparent parts
@@ -36,11 +37,11 @@ evidence gather(const scene& of);
 
 /// Parts of it.
 /// @{
-/// Of each photo, in stops; those of all photos that share points have a mean of zero. Photos that share too
-/// little with others have zero, and no error. Least squares over points and photos, with Huber's weights;
-/// V^3 / 3 operations for V photos.
+/// Of each photo, see `evidence`; those of all photos that share points have a mean of zero. Photos that
+/// share too little with others have zero, and no error. Least squares over points and photos, with Huber's
+/// weights, in 10 rounds of V^3 / 3 operations for V photos.
 struct exposure_estimate {
-    std::vector<double> stops, error;
+    std::vector<double> brighter, error;
 };
 exposure_estimate exposures(const std::vector<std::vector<observation>>& points, std::size_t views);
 /// See `evidence::unexplained`. Ridge regression a point, each observation left out of its own prediction.

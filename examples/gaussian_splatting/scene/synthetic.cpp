@@ -269,7 +269,7 @@ double normal(std::mt19937_64& random) {
 
 /// Of the n-th photo, as a factor of what is displayed.
 double exposure_of(const world& w, std::size_t photo) {
-    std::mt19937_64 random(photo);
+    std::mt19937_64 random(~photo);  // none of the noise's
     return std::exp2(w.how.exposure * normal(random));
 }
 

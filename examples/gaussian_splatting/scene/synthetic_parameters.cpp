@@ -38,6 +38,7 @@ synthetic_parameters parse_synthetic(const std::string& text) {
     synthetic_parameters result;
     std::istringstream words(text);
     std::getline(words, result.world, ',');
+    if (text.ends_with(',')) parameter_called("");
     std::set<std::string> said;
     for (std::string word; std::getline(words, word, ',');) {
         const std::string name = word.substr(0, word.find('='));

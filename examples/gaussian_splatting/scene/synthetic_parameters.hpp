@@ -11,9 +11,9 @@ namespace gs {
 struct synthetic_parameters {
     std::string world;
     double gloss = 0;     ///< how much surfaces reflect sun and sky, beside what they scatter: 0 to 1
-    double exposure = 0;  ///< standard deviation of the photos' exposures, in stops: 0 to 2
+    double exposure = 0;  ///< standard deviation of log2 of a photo's brightness, as displayed: 0 to 2
     double scales = 1;    ///< the farthest camera's distance over the nearest's: 1 to 16
-    double noise = 0;     ///< standard deviation of a photo's values, which are in [0, 1]: 0 to 0.5
+    double noise = 0;     ///< standard deviation of values in [0, 1] where a photo shows something: 0 to 0.5
 };
 
 /// From "WORLD", or "WORLD,gloss=0.5,noise=0.02" and so on. Throws `error` for a parameter that is none,
