@@ -8,6 +8,16 @@
 namespace gs::effects {
 namespace {
 
+/// From which evidence on an effect is called for.
+constexpr struct {
+    std::size_t points = 50;             ///< fewer of them say nothing
+    double direction_share = 0.03;       ///< of the mean square that is unexplained, for each further degree
+    double direction_amplitude = 0.002;  ///< and this root mean square, of full brightness
+    double exposure = 0.1;               ///< see `evidence::exposure_spread`
+    double exposure_errors = 3;          ///< times its standard error
+    double scale_ratio = 2;
+} limits;
+
 template <class... Values>
 std::string text(const char* format, Values... values) {
     char line[200];
@@ -19,8 +29,8 @@ std::string too_few(std::size_t points, const char* where) {
     return text("no telling: %zu points lie %s of 5 photos or more", points, where);
 }
 
-decision view_dependent_colour(const evidence& e, const thresholds& limits) {
-    const int degree = sh_degree(e, limits);
+decision view_dependent_colour(const evidence& e) {
+    const int degree = sh_degree(e);
     const std::string choice = "--sh-degree " + std::to_string(degree);
     if (e.direction_points < limits.points)
         return {"view-dependent colour",
@@ -34,7 +44,7 @@ decision view_dependent_colour(const evidence& e, const thresholds& limits) {
             choice};
 }
 
-decision exposure(const evidence& e, const thresholds& limits) {
+decision exposure(const evidence& e) {
     if (e.exposure_points < limits.points)
         return {"exposure by photo", {}, too_few(e.exposure_points, "in smooth parts"), "as they are"};
     const bool varies = e.exposure_spread >= limits.exposure &&
@@ -46,7 +56,7 @@ decision exposure(const evidence& e, const thresholds& limits) {
             varies ? "called for, but not simulated" : "as they are"};
 }
 
-decision antialiasing(const evidence& e, const thresholds& limits) {
+decision antialiasing(const evidence& e) {
     if (e.scale_points < limits.points)
         return {"antialiasing", {}, too_few(e.scale_points, "in sight"), "off"};
     const bool spreads = e.scale_ratio >= limits.scale_ratio;
@@ -62,7 +72,7 @@ decision background(const evidence& e) {
 
 }  // namespace
 
-int sh_degree(const evidence& e, const thresholds& limits) {
+int sh_degree(const evidence& e) {
     if (e.direction_points < limits.points) return 3;
     std::size_t degree = 0;
     for (std::size_t d = 1; d < e.unexplained.size(); ++d) {
@@ -73,8 +83,8 @@ int sh_degree(const evidence& e, const thresholds& limits) {
     return static_cast<int>(degree);
 }
 
-std::vector<decision> decide(const evidence& e, const thresholds& limits) {
-    return {view_dependent_colour(e, limits), exposure(e, limits), antialiasing(e, limits), background(e)};
+std::vector<decision> decide(const evidence& e) {
+    return {view_dependent_colour(e), exposure(e), antialiasing(e), background(e)};
 }
 
 }  // namespace gs::effects

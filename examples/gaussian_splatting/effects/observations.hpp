@@ -21,8 +21,8 @@ struct observation {
 
 /// What the training photos have of the scene's points, by point; some thousands of the points stand for all.
 /// Left out: where a point in front of it, a few spacings off in the picture, may hide it, and where the
-/// photo is transparent or a channel is saturated. Cost: about a second for 100 photos and 70,000 points on
-/// one core.
+/// photo is transparent or a channel is saturated. Cost: that of projecting all
+/// points into all photos.
 std::vector<std::vector<observation>> observe_points(const scene& of);
 
 }  // namespace gs::effects

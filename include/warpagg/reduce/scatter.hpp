@@ -82,8 +82,9 @@ WARPAGG_HD void scatter_from(const W& w, const mask_t<W>* upper, const Values& v
 }  // namespace detail
 
 /// Combines value(0) ... value(N - 1) over the warp and leaves the results spread over the lanes: see
-/// `scattered_index`. The tree is that of `shfl_down`, so the results have the same bits. Cost: about N - 1 +
-/// log2(W / N) shuffles (N = 9: 12).
+/// `scattered_index`. `results` has N places, of which the first `held_after_scatter` are filled. The tree is
+/// that of `shfl_down`, so the results have the same bits. Cost: about N - 1 + log2(W / N) shuffles (N = 9:
+/// 12).
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
 WARPAGG_HD void over_warp(scatter, const W& w, const Values& value, V (&results)[N]) {
