@@ -108,7 +108,7 @@ void run(trial& t, gs::train::engine& engine, ordered_json& row) {
     gs::recentre(scene, [](const std::string& line) { std::puts(line.c_str()); });
     std::vector<gs::view> views = scene.train;
     views.insert(views.end(), scene.test.begin(), scene.test.end());
-    engine.set_views(scene.train, views);
+    engine.set_views(scene.train, views, t.schedule.num_downscales);
     engine.set_model(gs::from_points(scene.points, t.schedule.sh_degree, t.cap, t.seed));
     row["first_gaussians"] = engine.count();
 

@@ -28,12 +28,12 @@ def variants(iterations, gaussians):
     length = ["-i", str(iterations)]
     alone = [["--sh-lr", "1.25e-4"],
              ["--sh-lr", "5e-4"],
-             ["--sh-degree-interval", "500"],
+             ["--sh-degree-interval", "1000"],
              ["--sh-update-interval", "4", "--sh-lr", "5e-4"],
              ["--scaling-lr", "5e-3"],
              ["--no-revised-opacity"],
-             ["--prune-share", "0.2"],
-             ["--num-downscales", "1", "--resolution-schedule", str(iterations // 5)]]
+             ["--prune-share", "0"],
+             ["--num-downscales", "0"]]
     return {**{f"`{' '.join(own)}`": [*length, *own] for own in alone},
             "`--budget` of 4/5 of the default's": [*length, "--budget", str(gaussians * 4 // 5)],
             "`--quality fast`": ["--quality", "fast"]}

@@ -30,7 +30,7 @@ DEFAULT, AGAIN, HALF, DOUBLE = "default", "again", "half", "double"
 MOST_TOGETHER = 4
 # What the trainer refuses together, or the one brings with it.
 EXCLUDES = {"--gradient": {"--accumulate", "--deterministic"}, "--deterministic": {"--accumulate"},
-            "--budget": {"--densify-grad-threshold"}, "--quality": {"--sh-lr", "--num-downscales"}}
+            "--budget": {"--densify-grad-threshold"}, "--quality": {"--sh-lr"}}
 
 
 def parsed(words):
@@ -59,9 +59,9 @@ def knobs(n):
              HALF: f"-i {max(n // 2, 1)}", DOUBLE: f"-i {2 * n}",
              "no direction": "--sh-degree 0", "degree 2": "--sh-degree 2",
              "direction every 4th": "--sh-update-interval 4", "direction faster": "--sh-lr 5e-4",
-             "coarse to fine": f"--num-downscales 1 --resolution-schedule {max(n // 5, 1)}",
+             "direction later": "--sh-degree-interval 1000", "not coarse to fine": "--num-downscales 0",
              "grow less": "--densify-grad-threshold 2e-4", "grow more": "--densify-grad-threshold 6e-5",
-             "pruned": "--prune-share 0.2", "opacity not shared": "--no-revised-opacity",
+             "not pruned": "--prune-share 0", "pruned more": "--prune-share 0.4", "opacity not shared": "--no-revised-opacity",
              "fast": f"--quality fast -i {max(n * 5 // 7, 1)}"}
     return {name: parsed(line.split()) for name, line in lines.items()}
 

@@ -701,8 +701,8 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
                         {"densification_interval", 100},
                         {"densify_from_iter", 500},
                         {"densify_until_iter", 30},
-                        {"num_downscales", 0},
-                        {"resolution_schedule", 3000},
+                        {"num_downscales", 1},
+                        {"resolution_schedule", 12},
                         {"sh_update_interval", 1},
                         {"prune_share", 0},
                         {"budget", 0},
@@ -722,7 +722,7 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
                 {"densification_interval", 5},
                 {"densify_from_iter", 10},
                 {"densify_until_iter", 20},
-                {"num_downscales", 1},
+                {"num_downscales", 2},
                 {"resolution_schedule", 7},
                 {"sh_update_interval", 2},
                 {"sh_lr", 1e-3},
@@ -771,21 +771,17 @@ TEST_CASE("--quality fast sets what pays, and nothing that was said") {
         check_success(fast + words{"-o", (folder / name).string()} + options);
         return read_json(folder / name / "settings.json");
     };
-    const json expected{{"quality", "fast"},         {"iterations", 20},    {"sh_lr", 5e-4},
-                        {"sh_degree_interval", 500}, {"num_downscales", 1}, {"resolution_schedule", 4}};
+    const json expected{{"quality", "fast"}, {"iterations", 20}, {"sh_lr", 5e-4}};
     const json chosen = settings_of("chosen", {"-i", "20"});
     for (const auto& [name, value] : expected.items()) {
         CAPTURE(name);
         CHECK(chosen.at(name) == value);
     }
-    const json said = settings_of("said", {"-i", "20", "--sh-lr", "1e-4", "--num-downscales", "0"});
+    const json said = settings_of("said", {"-i", "20", "--sh-lr", "1e-4"});
     CHECK(said.at("sh_lr") == 1e-4);
-    CHECK(said.at("num_downscales") == 0);
     check_success(small_training(folder / "balanced") + words{"-q", "--quality", "balanced"});
     check_success(small_training(folder / "default") + words{"-q"});
     CHECK(read_json(folder / "balanced/settings.json") == read_json(folder / "default/settings.json"));
-    CHECK(settings_of("one", {"-i", "1"}).at("num_downscales") == 0);
-    CHECK(settings_of("small", {"-i", "20", "--num-downscales", "3"}).at("resolution_schedule") == 2);
     check_refusal_without_trace(fast + words{"--save-iterations", "5001"}, {"5001", "1 to 5000"});
 }
 
@@ -799,6 +795,18 @@ TEST_CASE("--quality best takes its time, and what was said") {
     CHECK(read_json(folder / "chosen/settings.json").at("iterations") == 20);
     check_success(best + words{"-o", (folder / "said").string(), "-i", "20", "--budget", "900"});
     CHECK(read_json(folder / "said/settings.json").at("densify_grad_threshold") > 5e-5);
+}
+
+TEST_CASE("a fifth of what grew is pruned, but not of a budget, nor if it is said") {
+    const temporary_folder folder;
+    const auto share = [&](const char* name, const words& options) {
+        check_success(small_training(folder / name) + words{"-q", "--densify-from-iter", "10"} + options);
+        return read_json(folder / name / "settings.json").at("prune_share");
+    };
+    CHECK(share("default", {}) == 0.2);
+    CHECK(share("budget", {"--budget", "900"}) == 0);
+    CHECK(share("none", {"--prune-share", "0"}) == 0);
+    CHECK(share("both", {"--budget", "900", "--prune-share", "0.1"}) == 0.1);
 }
 
 TEST_CASE("--quiet prints nothing") {

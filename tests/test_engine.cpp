@@ -48,10 +48,10 @@ TEST_CASE("training brings the held-out views near the photos") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {
         const auto e = make();
-        e->set_views(scene.train, scene.test);
+        gs::train::train_options o;
+        e->set_views(scene.train, scene.test, o.schedule.num_downscales);
         e->set_model(gs::from_points(scene.points, 1, 3000, 1));
         const double before = e->measure(0, {}).psnr();
-        gs::train::train_options o;
         o.schedule.iterations = 300;
         o.schedule.sh_degree = 1;
         o.schedule.sh_degree_interval = 100;

@@ -56,9 +56,9 @@ bool is_sane(const gs::frame& f) {
 }
 
 gs::gaussians trained(gs::train::engine& engine, const gs::scene& scene) {
-    engine.set_views(scene.train, scene.test);
-    engine.set_model(gs::from_points(scene.points, 0, 3000, 1));
     gs::train::train_options o;
+    engine.set_views(scene.train, scene.test, o.schedule.num_downscales);
+    engine.set_model(gs::from_points(scene.points, 0, 3000, 1));
     o.schedule.iterations = 200;
     o.schedule.densify_from_iter = 50;
     o.schedule.densification_interval = 25;

@@ -27,7 +27,7 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene, gs::gradient
     o.schedule.densify_grad_threshold = 1e-5;
     o.max_cap = 4000;
     o.gradient = how;
-    e.set_views(scene.train, {});
+    e.set_views(scene.train, {}, o.schedule.num_downscales);
     e.set_model(gs::from_points(scene.points, o.schedule.sh_degree, 500, 1));
     gs::train::train(e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
     return e.get_model();

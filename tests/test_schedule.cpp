@@ -21,15 +21,18 @@ TEST_CASE("rates of the positions fall a hundredfold, by the scene's extent") {
 TEST_CASE("a degree of spherical harmonics every interval") {
     schedule s;
     s.sh_degree = 2;
-    CHECK(s.sh_degree_at(999) == 0);
-    CHECK(s.sh_degree_at(1000) == 1);
-    CHECK(s.sh_degree_at(2500) == 2);
+    CHECK(s.sh_degree_at(499) == 0);
+    CHECK(s.sh_degree_at(500) == 1);
+    CHECK(s.sh_degree_at(1250) == 2);
     CHECK(s.sh_degree_at(6999) == 2);
 }
 
 TEST_CASE("photos are shrunk less and less") {
     schedule s;
     s.resolution_schedule = 10;
+    CHECK(s.downscales_at(10) == 1);
+    CHECK(s.downscales_at(11) == 0);
+    s.num_downscales = 0;
     CHECK(s.downscales_at(1) == 0);
     s.num_downscales = 2;
     CHECK(s.downscales_at(1) == 2);
@@ -38,6 +41,19 @@ TEST_CASE("photos are shrunk less and less") {
     CHECK(s.downscales_at(20) == 1);
     CHECK(s.downscales_at(21) == 0);
     CHECK(s.downscales_at(1000) == 0);
+}
+
+TEST_CASE("photos are whole after a fifth of the iterations, or from the first of very few") {
+    schedule s;
+    s.iterations = 100;
+    CHECK(s.downscales_at(20) == 1);
+    CHECK(s.downscales_at(21) == 0);
+    s.num_downscales = 3;
+    CHECK(s.downscales_at(14) == 3);
+    CHECK(s.downscales_at(42) == 1);
+    CHECK(s.downscales_at(43) == 0);
+    s.iterations = 6;
+    CHECK(s.downscales_at(1) == 0);
 }
 
 TEST_CASE("colours that depend on direction can learn more rarely") {
@@ -74,17 +90,17 @@ TEST_CASE("densification ends half-way, and opacities are reset only when an int
 TEST_CASE("the shorter densification is, the larger are the gradients that grow, unless one is said") {
     schedule s;
     s.iterations = 30000;
-    CHECK(s.growth_threshold() == doctest::Approx(1e-4));
+    CHECK(s.growth_threshold() == doctest::Approx(8e-5));
     s.iterations = 100000;
-    CHECK(s.growth_threshold() == doctest::Approx(1e-4));
+    CHECK(s.growth_threshold() == doctest::Approx(8e-5));
     s.densify_until_iter = 30000;
-    CHECK(s.growth_threshold() == doctest::Approx(1e-4));
-    s.densify_until_iter = 15000 / 256;
-    CHECK(s.growth_threshold() == doctest::Approx(2e-4).epsilon(0.01));
+    CHECK(s.growth_threshold() == doctest::Approx(8e-5));
+    s.densify_until_iter = 15000 / 16;
+    CHECK(s.growth_threshold() == doctest::Approx(1.6e-4).epsilon(0.001));
     s.iterations = 7000;
     s.densify_until_iter = 30000;
     CHECK(s.densify_until() == 7000);
-    CHECK(s.growth_threshold() == doctest::Approx(1e-4 * std::pow(15.0 / 7, 0.125)));
+    CHECK(s.growth_threshold() == doctest::Approx(8e-5 * std::pow(15.0 / 7, 0.25)));
     CHECK_FALSE(s.resets_opacity(6000));
     s.densify_until_iter = 0;
     CHECK(std::isfinite(s.growth_threshold()));
@@ -96,12 +112,28 @@ TEST_CASE("pruning follows densification, half-way to the end at the latest") {
     schedule s;
     s.iterations = 1000;
     s.densify_until_iter = 600;
+    CHECK(s.share_to_prune() == 0.2);
+    s.prune_share = 0;
     CHECK(s.prune_after(50) == 0);
     s.prune_share = 0.1;
     CHECK(s.prune_after(50) == 650);
     CHECK(s.watches(650, 50));
     CHECK_FALSE(s.watches(651, 50));
     CHECK(s.prune_after(500) == 800);
+}
+
+TEST_CASE("where nothing grows, or until the end, nothing is pruned, unless it is said") {
+    schedule s;
+    s.iterations = 1000;
+    CHECK(s.prune_after(50) == 0);  // densification would begin as it ends
+    s.densify_from_iter = 100;
+    CHECK(s.prune_after(50) == 550);
+    s.densify_until_iter = 1000;
+    CHECK(s.prune_after(50) == 0);
+    s.densify_until_iter = 0;
+    CHECK(s.prune_after(50) == 0);
+    s.prune_share = 0.3;
+    CHECK(s.prune_after(50) == 50);
 }
 
 TEST_CASE("how many densifications are left, this one among them") {
@@ -149,6 +181,7 @@ TEST_CASE("densification and resets keep to their intervals") {
     s.densify_from_iter = 20;
     s.densification_interval = 10;
     s.densify_until_iter = 900;
+    s.prune_share = 0;
     s.opacity_reset_interval = 30;
     CHECK_FALSE(s.densifies(20));
     CHECK(s.densifies(30));

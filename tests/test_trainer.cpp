@@ -78,6 +78,7 @@ recorder trained(gs::train::train_options o, std::size_t gaussians = 50, std::si
     gs::scene scene;
     scene.train.resize(3);
     o.schedule.iterations = 21;
+    o.schedule.prune_share = o.schedule.prune_share.value_or(0);
     o.schedule.densify_from_iter = 2;
     o.schedule.densification_interval = 2;
     o.schedule.densify_until_iter = 15;
@@ -93,18 +94,20 @@ recorder trained(gs::train::train_options o, std::size_t gaussians = 50, std::si
 
 }  // namespace
 
-TEST_CASE("by default every step learns all from whole photos, and growth is free up to the cap") {
+TEST_CASE(
+    "by default every step learns all, a fifth from photos of half the size, and growth is free up to the "
+    "cap") {
     const recorder made = trained({});
-    for (const auto& [plan, downscales] : made.steps) {
-        CHECK(downscales == 0);
-        CHECK(plan.updates_sh);
+    for (std::size_t i = 0; i < 21; ++i) {
+        CHECK(made.steps[i].downscales == (i < 4 ? 1 : 0));
+        CHECK(made.steps[i].plan.updates_sh);
     }
     CHECK(made.cleared_after == std::vector<std::size_t>{2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 21});
     for (const densify_rule& rule : made.rules) {
         CHECK(rule.cap == 100);
         CHECK(rule.most_births == densify_rule{}.most_births);
         CHECK(rule.revised_opacity);
-        CHECK(rule.gradient == doctest::Approx(1e-4 * std::pow(1000, 0.125)));
+        CHECK(rule.gradient == doctest::Approx(8e-5 * std::pow(1000, 0.25)));
     }
 }
 
@@ -147,5 +150,5 @@ TEST_CASE(
     const recorder made = trained(o);  // densifies before 15; three views
     CHECK(made.pruned_after == std::vector<std::size_t>{18});
     for (std::size_t i = 0; i < 20; ++i) CHECK(made.steps[i].plan.watch == (i < 18));
-    CHECK(made.sizes_reserved.size() == 1 + 6 + 1);
+    CHECK(made.sizes_reserved.size() == 1 + 1 + 6 + 1);
 }

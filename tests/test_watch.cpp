@@ -44,7 +44,7 @@ gs::gaussians one_short_quaternion(const gs::scene& scene, std::size_t which) {
 std::unique_ptr<gs::train::engine> ready(make_engine make, const gs::scene& scene,
                                          const gs::gaussians& model) {
     auto e = make();
-    e->set_views(scene.train, {});
+    e->set_views(scene.train, {}, gs::train::schedule{}.num_downscales);
     e->set_model(model);
     e->reserve();
     return e;

@@ -104,9 +104,9 @@ std::filesystem::path lego() {
 
 /// A model after a short training, as a question about each of some of its views.
 std::vector<question> trained(gs::train::engine& engine, const gs::scene& scene, int iterations) {
-    engine.set_views(scene.train, scene.test);
-    engine.set_model(gs::from_points(gs::random_points(scene, 5000, 1), 3, 5000, 1));
     gs::train::train_options o;
+    engine.set_views(scene.train, scene.test, o.schedule.num_downscales);
+    engine.set_model(gs::from_points(gs::random_points(scene, 5000, 1), 3, 5000, 1));
     o.schedule.iterations = iterations;
     o.schedule.sh_degree_interval = iterations / 4;
     o.schedule.densify_from_iter = iterations / 4;

@@ -97,6 +97,15 @@ CLI::Validator positive_number(std::optional<int> below = {}) {
     return {refusal, "positive"};
 }
 
+/// CLI11's own check lets nan pass.
+CLI::Validator share() {
+    const auto refusal = [](const std::string& text) {
+        const bool none = !text.empty() && text.find_first_not_of("0.") == std::string::npos;
+        return none ? std::string() : positive_number(1)(text);
+    };
+    return {refusal, "0 to 1"};
+}
+
 void add_scene(CLI::App& app, settings& s, bool required) {
     auto* data = app.add_option("-d,--data,-s,--source-path", s.scene.data,
                                 "Scene: a folder (COLMAP or Blender) or synthetic:NAME[,PARAMETER=VALUE...]");
@@ -159,13 +168,17 @@ void add_schedule(CLI::App& app, train::schedule& s) {
     app.add_option("--num-downscales", s.num_downscales, "How often photos are halved at first")
         ->check(whole_number(0, 8))
         ->capture_default_str();
-    count("--resolution-schedule", s.resolution_schedule, 1,
-          "Iterations until they are halved once less, and again once less");
+    app.add_option(
+           "--resolution-schedule", s.resolution_schedule,
+           "Iterations until they are halved once less, and again once less; by default a fifth of all "
+           "if photos are halved once")
+        ->check(whole_number(1, 10000000));
     count("--sh-update-interval", s.sh_update_interval, 1,
           "Iterations between two steps of colours that depend on direction");
     app.add_option("--prune-share", s.prune_share,
-                   "Of the Gaussians, those that matter least are dropped when densification has ended")
-        ->check(positive_number(1));
+                   "Of the Gaussians, those that matter least are dropped when densification has ended; by "
+                   "default 0.2 if it grew any, but 0 with --budget")
+        ->check(share());
 }
 
 CLI::App* add_train(CLI::App& app, settings& s) {
@@ -176,8 +189,7 @@ CLI::App* add_train(CLI::App& app, settings& s) {
     train
         ->add_option(
             "--quality", s.quality,
-            "fast: 5000 iterations, and options of the schedule that save time; best: 30000, and more "
-            "Gaussians; what is said wins")
+            "fast: 5000 iterations, and faster colours; best: 30000, and more Gaussians; what is said wins")
         ->check(CLI::IsMember({"fast", "balanced", "best"}))
         ->capture_default_str();
     train->add_option("-i,--iterations", s.schedule.iterations)
@@ -193,7 +205,7 @@ CLI::App* add_train(CLI::App& app, settings& s) {
         ->add_option(
             "--densify-grad-threshold", s.schedule.densify_grad_threshold,
             "Mean gradient of a centre, in halves of the picture, from which a Gaussian grows; by default "
-            "1e-4 for 30000 iterations, and more for fewer")
+            "8e-5 for 30000 iterations, and more for fewer")
         ->check(positive_number());
     add_schedule(*train, s.schedule);
     train->add_option("--max-cap", s.max_cap, "Most Gaussians; by default one for 32 pixels of the photos")
@@ -269,15 +281,15 @@ void refuse_late(const std::set<int>& iterations, int last, const std::string& o
 }
 
 void refuse_endless_shrinking(const train::schedule& s) {
-    const std::int64_t until = std::int64_t{s.num_downscales} * s.resolution_schedule;
+    const std::int64_t until = std::int64_t{s.num_downscales} * s.resolution_interval();
     if (s.num_downscales > 0 && until >= s.iterations)
         throw error("--num-downscales " + std::to_string(s.num_downscales) + " with --resolution-schedule " +
-                    std::to_string(s.resolution_schedule) + " comes to whole photos after iteration " +
+                    std::to_string(s.resolution_interval()) + " comes to whole photos after iteration " +
                     std::to_string(until) + ", but there are only " + std::to_string(s.iterations));
 }
 
 void refuse_pruning_at_no_time(const train::schedule& s) {
-    if (s.prune_share > 0 && s.densify_until() >= s.iterations)
+    if (s.share_to_prune() > 0 && s.densify_until() >= s.iterations)
         throw error("--prune-share is dropped after densification, which --densify-until-iter ends at " +
                     std::to_string(s.densify_until()) + ", but there are only " +
                     std::to_string(s.iterations) + " iterations");
@@ -327,7 +339,8 @@ settings parse(int argc, char** argv) {
     }
     s.command = app.get_subcommands().front()->get_name();
     s.scene.seed = s.seed;
-    choose_quality(*app.get_subcommand("train"), s.quality, s.schedule);
+    choose_quality(*app.get_subcommand("train"), s.quality);
+    if (s.budget > 0 && !s.schedule.prune_share) s.schedule.prune_share = 0;
     if (s.command != "train" && s.background == "random")
         throw error("--background random is for training: " + s.command + " needs one colour");
     refuse_late(s.save_iterations, s.schedule.iterations, "--save-iterations");

@@ -12,7 +12,12 @@ int schedule::sh_degree_at(int iteration) const {
 }
 
 int schedule::downscales_at(int iteration) const {
-    return std::max(0, num_downscales - (iteration - 1) / resolution_schedule);
+    const int interval = resolution_interval();
+    return interval > 0 ? std::max(0, num_downscales - (iteration - 1) / interval) : 0;
+}
+
+int schedule::resolution_interval() const {
+    return resolution_schedule.value_or(iterations / (4 + std::max(1, num_downscales)));
 }
 
 std::array<float, 8> schedule::rates_at(int iteration) const {
@@ -32,7 +37,7 @@ int schedule::densify_until() const {
 
 double schedule::growth_threshold() const {
     const double shorter = 15000.0 / std::clamp(densify_until(), 1, 15000);
-    return densify_grad_threshold.value_or(1e-4 * std::pow(shorter, 0.125));
+    return densify_grad_threshold.value_or(8e-5 * std::pow(shorter, 0.25));
 }
 
 bool schedule::densifies(int iteration) const {
@@ -40,9 +45,14 @@ bool schedule::densifies(int iteration) const {
            iteration % densification_interval == 0;
 }
 
+double schedule::share_to_prune() const {
+    const bool grows = densify_from_iter < densify_until() && densify_until() < iterations;
+    return prune_share.value_or(grows ? 0.2 : 0.0);
+}
+
 int schedule::prune_after(int views) const {
     const int until = densify_until();
-    return prune_share > 0 ? std::min(until + views, (until + iterations + 1) / 2) : 0;
+    return share_to_prune() > 0 ? std::min(until + views, (until + iterations + 1) / 2) : 0;
 }
 
 int schedule::densifications_from(int iteration) const {

@@ -14,9 +14,9 @@ namespace gs::train {
 struct schedule {
     int iterations = 7000;
     int sh_degree = 3;
-    int sh_degree_interval = 1000;  ///< iterations between two bands
-    double extent = 1;              ///< of the scene
-    bool white = false;             ///< photos without a background, shown on white
+    int sh_degree_interval = 500;  ///< iterations between two bands
+    double extent = 1;             ///< of the scene
+    bool white = false;            ///< photos without a background, shown on white
 
     /// Of Adam. Those of positions are by extent and fall from `init` to `final`, geometrically.
     double position_lr_init = 1.6e-4, position_lr_final = 1.6e-6;
@@ -31,14 +31,14 @@ struct schedule {
     std::optional<double> densify_grad_threshold;  ///< see `growth_threshold`
 
     /// Coarse to fine: photos are shrunk by two `num_downscales` times at first, and once less after every
-    /// `resolution_schedule` iterations.
-    int num_downscales = 0;
-    int resolution_schedule = 3000;
+    /// `resolution_interval` iterations.
+    int num_downscales = 1;
+    std::optional<int> resolution_schedule;
     /// Colours that depend on direction learn in every so many iterations.
     int sh_update_interval = 1;
 
     /// Of the Gaussians, those that matter least are dropped when densification has ended.
-    double prune_share = 0;
+    std::optional<double> prune_share;
 
     static constexpr double ssim_weight = 0.2;
     static constexpr float reset_opacity = 0.01f;
@@ -46,15 +46,20 @@ struct schedule {
     int sh_degree_at(int iteration) const;
     bool updates_sh(int iteration) const { return iteration % sh_update_interval == 0; }
     int downscales_at(int iteration) const;
+    /// A fifth of the iterations for one shrinking, less for more, where it is not said. 0, which is for
+    /// whole photos at once, where there are too few of them.
+    int resolution_interval() const;
     double sh_rate() const { return sh_lr.value_or(feature_lr / 10); }
     /// Adam's rates by `parameter`.
     std::array<float, 8> rates_at(int iteration) const;
     int densify_until() const;
     /// A Gaussian grows from this mean gradient of its centre, in halves of the picture. Where it is not
-    /// said, it is 1e-4 if densification lasts 15,000 iterations, and more, by the eighth root, if it is
+    /// said, it is 8e-5 if densification lasts 15,000 iterations, and more, by the fourth root, if it is
     /// shorter: a short training has no time for many Gaussians (docs/gaussian_splatting.md).
     double growth_threshold() const;
-    /// The iteration after which `prune_share` is dropped, when each of the training views has been seen
+    /// `prune_share`; where it is not said, a fifth of those that densification has grown.
+    double share_to_prune() const;
+    /// The iteration after which `share_to_prune` is dropped, when each of the training views has been seen
     /// about once since the last densification; 0 for none.
     int prune_after(int views) const;
     bool watches(int iteration, int views) const {

@@ -162,7 +162,7 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
                 result.silent_gaussians =
                     std::max(result.silent_gaussians,
                              engine.densify(rule_at(iteration, schedule, options, engine.count())));
-            if (prunes) engine.prune(schedule.prune_share);
+            if (prunes) engine.prune(schedule.share_to_prune());
             engine.reserve();
             result.densify_seconds += seconds_since(from);
         }
