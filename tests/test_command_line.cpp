@@ -809,6 +809,53 @@ TEST_CASE("a fifth of what grew is pruned, but not of a budget, nor if it is sai
     CHECK(share("both", {"--budget", "900", "--prune-share", "0.1"}) == 0.1);
 }
 
+TEST_CASE("train simulates what the scene calls for, or what it is told, and says so") {
+    const temporary_folder folder;
+    const auto effects = [&](const std::string& name, const std::string& scene, const words& options) {
+        check_success(words{"train", "-q", "-r", "48", "--eval", "-i", "20", "--device", "cpu", "-d", scene,
+                            "-o", (folder / name).string()} +
+                      options);
+        std::map<std::string, bool> on;
+        for (const json& e : read_json(folder / name / "metrics.json").at("effects"))
+            on[e.at("name").get<std::string>()] = e.at("on").get<bool>();
+        return on;
+    };
+    using set = std::map<std::string, bool>;
+    const std::string varied = "synthetic:spheres,exposure=0.5,scales=4";
+    CHECK(effects("auto", varied, {}) ==
+          set{{"direction", false}, {"exposure", true}, {"antialiasing", true}, {"background", false}});
+    const json found = read_json(folder / "auto/exposures.json");
+    CHECK(found.size() == 42);
+    CHECK(found.at("view_00.png").size() == 3);
+    CHECK(found.at("view_00.png")[2].size() == 4);
+    const json metrics = read_json(folder / "auto/metrics.json");
+    CHECK(metrics.at("fitted_psnr").is_number());
+    CHECK(metrics.at("views")[0].at("fitted_psnr").is_number());
+    const std::string model = (folder / "auto/point_cloud/iteration_20/point_cloud.ply").string();
+    CHECK(says(read_file(model).substr(0, 100), {"comment SplatRenderMode: mip\n"}));
+
+    CHECK(effects("some", varied, {"--effects=-exposure,+direction"}) ==
+          set{{"direction", true}, {"exposure", false}, {"antialiasing", true}, {"background", false}});
+    CHECK(!fs::exists(folder / "some/exposures.json"));
+    CHECK(!read_json(folder / "some/metrics.json").contains("fitted_psnr"));
+    CHECK(effects("degree", varied, {"--effects", "none", "--sh-degree", "2"}).at("direction"));
+    CHECK(read_json(folder / "degree/metrics.json").at("effects")[0].at("sh_degree") == 2);
+
+    // What was trained with a filter is drawn with it, and without it looks otherwise.
+    const auto psnr = [&](const std::string& ply) {
+        const outcome o =
+            run({"evaluate", ply, "-d", varied, "-r", "48", "--device", "cpu", "--eval", "--fit-exposure"});
+        CHECK(says(o.out, {"after fitting exposures"}));
+        return o.out;
+    };
+    std::string plain = read_file(model);
+    plain.erase(plain.find("comment"), std::string("comment SplatRenderMode: mip\n").size());
+    write_file(folder / "plain.ply", plain);
+    CHECK(psnr(model) != psnr((folder / "plain.ply").string()));
+
+    check_refusal_without_trace(train_spheres + words{"--effects", "glare"}, {"'glare'", "antialiasing"});
+}
+
 TEST_CASE("--quiet prints nothing") {
     const temporary_folder folder;
     const outcome o = run(small_training(folder.path()) + words{"--quiet"});

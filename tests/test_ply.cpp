@@ -215,6 +215,23 @@ TEST_CASE("ply: the bytes are those of the reference implementation") {
     CHECK((read_text(folder.path / "model.ply") == expected));
 }
 
+TEST_CASE("ply: that Gaussians are antialiased is a comment, as Brush writes it") {
+    const temporary_folder folder;
+    gs::gaussians model = sample_model(0, 2);
+    for (const bool antialiased : {false, true}) {
+        model.antialiased = antialiased;
+        gs::write_ply(folder.path / "model.ply", model);
+        CHECK(gs::read_ply(folder.path / "model.ply").antialiased == antialiased);
+        CHECK((read_text(folder.path / "model.ply").find("\ncomment SplatRenderMode: mip\nelement vertex") !=
+               std::string::npos) == antialiased);
+    }
+    const std::string text = read_text(folder.path / "model.ply");
+    for (const char* other : {"comment SplatRenderMode: default", "comment mip SplatRenderMode:"}) {
+        write_text(folder.path / "other.ply", with_replaced(text, "comment SplatRenderMode: mip", other));
+        CHECK_FALSE(gs::read_ply(folder.path / "other.ply").antialiased);
+    }
+}
+
 TEST_CASE("ply: shuffled and further properties of any type, comments and Windows line ends are read") {
     const temporary_folder folder;
     const properties list = {

@@ -52,13 +52,17 @@ class recorder final : public gs::train::engine {
         pruned_after.push_back(steps.size());
     }
     void reset_opacity(float) override {}
+    std::vector<gs::train::exposure> exposures() override { return {}; }
+    void set_exposures(const std::vector<gs::train::exposure>&) override {}
+    void centre_exposures() override {}
     std::vector<std::size_t> cleared_after;  ///< so many steps
     void clear_cameras() override { cleared_after.push_back(steps.size()); }
     void reserve() override { sizes_reserved.push_back(downscales_); }
     gs::train::quality take_training_quality() override { return {}; }
     std::uint64_t skipped_steps() override { return 0; }
     gs::train::findings take_findings() override { return {}; }
-    std::vector<float> render(const gs::camera&, const std::array<float, 3>&) override { return {}; }
+    std::vector<float> render(const gs::camera&, const std::array<float, 3>&, int) override { return {}; }
+    void lower_sh_degree(int) override {}
     gs::train::quality measure(std::size_t, const std::array<float, 3>&, std::vector<float>*) override {
         return {};
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/parameters.hpp"
+#include "raster/effect_set.hpp"
 #include "raster/gradient_policy.hpp"
 #include "scene/scene.hpp"
 #include "train/densify_rule.hpp"
@@ -22,6 +23,7 @@ using gs::gradient_policy;
 /// A picture of a few Gaussians and a photo to compare it with.
 struct question {
     int sh_degree = 3;
+    gs::effect_set effects;
     std::array<std::vector<double>, gs::parameter_count> parameters;
     gs::view view;
     std::array<float, 3> background{};

@@ -120,6 +120,7 @@ TEST_CASE("the reference's gradients are those of central differences") {
         const auto height = static_cast<int>(seed == 0 ? 47 : up_to(8, 47) / (1 + seed % 2));
         question q = random_question(static_cast<unsigned>(seed), splats, std::max(8, width),
                                      std::max(8, height), seed % 4);
+        q.effects.antialiasing = seed / 4 % 2 == 1;
         if (seed % 10 == 3)  // capped alphas, and pixels that end early
             for (double& o : q.parameters[3]) o += 6;
         std::vector<std::size_t> some(splats);

@@ -47,6 +47,7 @@ class pictures_on {
             const auto model = read(values);
             const gs::camera& camera = q.view.camera;
             // Room to spare, as in training: places that stay empty are part of the lists.
+            renderer.set_effects(q.effects);
             renderer.measure(model, q.count(), camera, q.sh_degree);
             const std::uint64_t needed = renderer.instances();
             renderer.reserve_instances(needed, needed / 2 + 64);
@@ -121,12 +122,14 @@ class pictures_on {
         };
         const gs::camera& camera = q.view.camera;
         using narrow = typename Device::narrow_warp;
-        using projection = gs::raster::project<narrow, Real>;
-        device.template for_each_warp<narrow>(
-            projection::warps(n),
-            projection{read(values), n, gs::raster::for_device<warpagg::value_t<narrow, Real>>(camera),
-                       q.sh_degree, tiles_along(camera.width), tiles_along(camera.height), splats.data(),
-                       boxes.data(), depths.data(), identities.data(), tiles.data()});
+        gs::raster::with_effects(q.effects, [&]<gs::effect_set Effects> {
+            using projection = gs::raster::project<narrow, Real, Effects>;
+            device.template for_each_warp<narrow>(
+                projection::warps(n),
+                projection{read(values), n, gs::raster::for_device<warpagg::value_t<narrow, Real>>(camera),
+                           q.sh_degree, tiles_along(camera.width), tiles_along(camera.height), splats.data(),
+                           boxes.data(), depths.data(), identities.data(), tiles.data()});
+        });
         const auto host = on.get_as_they_are(splats.data(), n);
         const auto depth = on.get_as_they_are(depths.data(), n), met = on.get_as_they_are(tiles.data(), n);
         std::vector<projected_splat> found(n);

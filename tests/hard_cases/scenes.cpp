@@ -147,6 +147,7 @@ TEST_CASE("100 random scenes: gradients in float against double") {
         const int width = 8 + static_cast<int>(random() % 26), height = 8 + static_cast<int>(random() % 40);
         questions.push_back(random_question(seed, 1 + random() % 49, seed == 100 ? 33 : width,
                                             seed == 100 ? 47 : height, static_cast<int>(seed % 4)));
+        questions.back().effects.antialiasing = seed / 4 % 2 == 1;
     }
     const std::vector<measured> all = measure(questions, false);
     CHECK(share_left_out(all) < 0.02);

@@ -27,7 +27,8 @@ void evaluate(const settings& s) {
 
     const stopwatch evaluating;
     const auto report = evaluate::measure_test_views(
-        *engine, scene, background.colour, output ? output->path() / "test" : std::filesystem::path());
+        *engine, scene, background.colour, output ? output->path() / "test" : std::filesystem::path(),
+        s.fit_exposure);
     nlohmann::ordered_json metrics = to_json(report);
     metrics["gaussians"] = model.count();
     metrics["seconds"] = {{"load", load_seconds}, {"evaluate", evaluating.seconds()}};
@@ -36,7 +37,7 @@ void evaluate(const settings& s) {
     char text[100];
     std::snprintf(text, sizeof text, "PSNR %.2f dB, SSIM %.4f over %zu views", report.psnr(), report.ssim(),
                   report.views.size());
-    session.say(text);
+    session.say(text + fitted_part(report));
 }
 
 }  // namespace gs::cli

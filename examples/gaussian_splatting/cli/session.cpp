@@ -72,9 +72,20 @@ nlohmann::ordered_json to_json(const evaluate::test_report& report) {
     if (report.views.empty()) return json;
     json["psnr"] = report.psnr();
     json["ssim"] = report.ssim();
-    for (const auto& v : report.views)
+    if (const auto fitted = report.fitted_psnr()) json["fitted_psnr"] = *fitted;
+    for (const auto& v : report.views) {
         json["views"].push_back({{"name", v.name}, {"psnr", v.quality.psnr()}, {"ssim", v.quality.ssim}});
+        if (v.fitted_psnr) json["views"].back()["fitted_psnr"] = *v.fitted_psnr;
+    }
     return json;
+}
+
+std::string fitted_part(const evaluate::test_report& report) {
+    const auto fitted = report.fitted_psnr();
+    if (!fitted) return "";
+    char text[64];
+    std::snprintf(text, sizeof text, ", %.2f dB after fitting exposures", *fitted);
+    return text;
 }
 
 void write_json(const fs::path& file, const nlohmann::ordered_json& json) {

@@ -49,6 +49,8 @@ class output_folder {
 /// The measures of a report, as metrics.json holds them: mean and per view, null where there is no test
 /// view, or the value is not finite.
 nlohmann::ordered_json to_json(const evaluate::test_report& report);
+/// ", 23.40 dB after fitting exposures" if they were.
+std::string fitted_part(const evaluate::test_report& report);
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
 
 class stopwatch {

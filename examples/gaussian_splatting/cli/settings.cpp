@@ -181,6 +181,11 @@ void add_schedule(CLI::App& app, train::schedule& s) {
         ->check(share());
 }
 
+void add_fit_exposure(CLI::App& app, settings& s) {
+    app.add_flag("--fit-exposure", s.fit_exposure,
+                 "Measure the right halves of test photos, too, after fitting the exposure on the left ones");
+}
+
 CLI::App* add_train(CLI::App& app, settings& s) {
     CLI::App* train = app.add_subcommand("train", "Photos to Gaussians");
     add_scene(*train, s, true);
@@ -195,9 +200,15 @@ CLI::App* add_train(CLI::App& app, settings& s) {
     train->add_option("-i,--iterations", s.schedule.iterations)
         ->check(whole_number(1, 10000000))
         ->capture_default_str();
-    train->add_option("--sh-degree", s.schedule.sh_degree, "Of view-dependent colour")
-        ->check(whole_number(0, 3))
-        ->capture_default_str();
+    train
+        ->add_option_function<std::string>(
+            "--effects", [&s](const std::string& text) { s.effects = effects::parse_selection(text); },
+            "What to simulate: auto is what the scene calls for (see inspect), all, none, or some of "
+            "direction, "
+            "exposure and antialiasing; auto,+exposure,-direction adds and leaves out")
+        ->default_str("auto");
+    train->add_option("--sh-degree", s.sh_degree, "Of view-dependent colour; by default as --effects has it")
+        ->check(whole_number(0, 3));
     train->add_option("--sh-degree-interval", s.schedule.sh_degree_interval, "Iterations between two degrees")
         ->check(whole_number(1, 10000000))
         ->capture_default_str();
@@ -234,6 +245,7 @@ CLI::App* add_train(CLI::App& app, settings& s) {
                    "The same bits in the .ply from the same seed, run after run, with any number of threads: "
                    "by --accumulate fixed, unless that says binned or exact")
         ->excludes(gradient);
+    add_fit_exposure(*train, s);
     train->add_option("--save-iterations", s.save_iterations, "Save the model then, too");
     train->add_option("--test-iterations", s.test_iterations, "Measure the test views then, too")
         ->needs(train->get_option("--eval"));
@@ -245,6 +257,7 @@ CLI::App* add_evaluate(CLI::App& app, settings& s) {
     evaluate->add_option("ply", s.ply, "The model")->required();
     add_scene(*evaluate, s, true);
     add_common(*evaluate, s);
+    add_fit_exposure(*evaluate, s);
     evaluate->add_option("-o,--output", s.output,
                          "Folder for metrics.json and the pictures; none are kept without");
     return evaluate;

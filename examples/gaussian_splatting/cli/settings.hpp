@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 
+#include "../effects/simulate.hpp"
 #include "../raster/gradient_policy.hpp"
 #include "../scene/scene.hpp"
 #include "../train/densify_rule.hpp"
@@ -24,6 +26,9 @@ struct settings {
     std::uint64_t seed = 0;
     bool quiet = false;
 
+    effects::selection effects;
+    std::optional<int> sh_degree;  ///< none: by `effects`
+    bool fit_exposure = false;
     std::string quality = "balanced";
     train::schedule schedule;
     std::size_t max_cap = 0;  ///< 0: by the photos

@@ -23,9 +23,14 @@ std::string_view accumulation_of(gradient_policy p) {
 }
 
 train::train_options options_of(const settings& s, const scene& scene,
-                                const train::background_choice& background) {
+                                const train::background_choice& background,
+                                const effects::simulation& simulated) {
     train::train_options o;
     o.schedule = s.schedule;
+    o.schedule.sh_degree = simulated.sh_degree;
+    o.drops_bands = simulated.drops_bands;
+    for (const float gain : simulated.exposures)
+        o.exposures.push_back({gain, 0, 0, 0, 0, gain, 0, 0, 0, 0, gain, 0});
     o.max_cap = s.max_cap > 0 ? s.max_cap : std::max(train::default_cap(scene), s.budget);
     o.budget = s.budget;
     o.revised_opacity = s.revised_opacity;
@@ -57,7 +62,16 @@ std::filesystem::path pictures_of(const std::filesystem::path& output, int itera
     return output / "test" / ("ours_" + std::to_string(iteration));
 }
 
-ordered_json settings_json(const settings& s, const train::train_options& o) {
+/// The names of what is simulated.
+ordered_json effects_on(const effects::simulation& simulated) {
+    ordered_json names = ordered_json::array();
+    for (const auto& o : simulated.outcomes)
+        if (o.on) names.push_back(o.name);
+    return names;
+}
+
+ordered_json settings_json(const settings& s, const train::train_options& o,
+                           const effects::simulation& simulated) {
     const train::schedule& plan = o.schedule;
     return {{"data", s.scene.data},
             {"images", s.scene.images},
@@ -66,6 +80,7 @@ ordered_json settings_json(const settings& s, const train::train_options& o) {
             {"test_every", s.scene.test_every},
             {"quality", s.quality},
             {"iterations", plan.iterations},
+            {"effects", effects_on(simulated)},
             {"sh_degree", plan.sh_degree},
             {"sh_degree_interval", plan.sh_degree_interval},
             {"position_lr_init", plan.position_lr_init},
@@ -97,15 +112,34 @@ ordered_json settings_json(const settings& s, const train::train_options& o) {
             {"seed", s.seed}};
 }
 
-/// What this trainer simulates of a scene, and why.
-ordered_json effects_json(const settings& s, const scene& scene, const train::background_choice& background) {
-    const auto effect = [](const char* name, bool on, const std::string& reason) {
-        return ordered_json{{"name", name}, {"on", on}, {"reason", reason}};
-    };
-    return {effect("view-dependent colour", s.schedule.sh_degree > 0,
-                   "--sh-degree " + std::to_string(s.schedule.sh_degree)),
-            effect("background", scene.has_alpha || background.random,
-                   scene.has_alpha ? "the photos have transparent parts" : "--background " + s.background)};
+/// What was simulated of a scene, why, and what training made of it.
+ordered_json effects_json(const settings& s, const scene& scene, const train::background_choice& background,
+                          const effects::simulation& simulated, const train::train_result& result) {
+    ordered_json all = ordered_json::array();
+    for (const auto& o : simulated.outcomes)
+        all.push_back({{"name", o.name}, {"on", o.on}, {"reason", o.reason}});
+    ordered_json& direction = all[static_cast<std::size_t>(effects::effect::direction)];
+    direction["sh_degree"] = result.sh_degree;
+    if (simulated.drops_bands) {
+        direction["sh_degree_at_first"] = simulated.sh_degree;
+        direction["change_without_highest_band"] = result.band_change;
+    }
+    all.push_back(
+        {{"name", "background"},
+         {"on", scene.has_alpha || background.random},
+         {"reason", scene.has_alpha ? "the photos have transparent parts" : "--background " + s.background}});
+    return all;
+}
+
+/// By photo, three rows of four numbers: as the implementation of Kerbl et al. 2024 writes them.
+ordered_json exposures_json(const scene& scene, const std::vector<train::exposure>& exposures) {
+    ordered_json all = ordered_json::object();
+    for (std::size_t v = 0; v < exposures.size(); ++v) {
+        const train::exposure& e = exposures[v];
+        for (std::size_t row = 0; row < 3; ++row)
+            all[scene.train[v].name].push_back({e[4 * row], e[4 * row + 1], e[4 * row + 2], e[4 * row + 3]});
+    }
+    return all;
 }
 
 /// Milliseconds of an iteration by stage, and nanoseconds a pixel-Gaussian pair where pairs are what a stage
@@ -139,9 +173,13 @@ void train(const settings& s) {
     const auto engine = session.make_engine();
     const stopwatch loading;
     const scene scene = session.load();
-    const train::background_choice background = session.background(scene.has_alpha);
-    const train::train_options options = options_of(s, scene, background);
-    const gaussians model = first_model(scene, options);
+    const effects::simulation simulated = effects::simulate(scene, s.effects, s.sh_degree);
+    for (const auto& o : simulated.outcomes) session.say(o.name + (o.on ? " on: " : " off: ") + o.reason);
+    const train::background_choice background =
+        session.background(scene.has_alpha && simulated.exposures.empty());
+    const train::train_options options = options_of(s, scene, background, simulated);
+    gaussians model = first_model(scene, options);
+    model.antialiased = simulated.antialiasing;
     const output_folder output(s.output);
     engine->set_views(scene.train, scene.test, options.schedule.num_downscales);
     engine->set_model(model);
@@ -185,7 +223,8 @@ void train(const settings& s) {
     // What is measured is what the file holds, which float has rounded in the scene's own frame.
     engine->set_model(into(scene.frame, out_of(scene.frame, engine->get_model())));
     const auto pictures = pictures_of(output.path(), options.schedule.iterations);
-    const auto report = evaluate::measure_test_views(*engine, scene, background.colour, pictures);
+    const auto report = evaluate::measure_test_views(*engine, scene, background.colour, pictures,
+                                                     s.fit_exposure || !simulated.exposures.empty());
 
     ordered_json metrics = to_json(report);
     metrics["training_psnr"] = last.psnr;
@@ -208,17 +247,19 @@ void train(const settings& s) {
     metrics["gradient"] = s.gradient;
     metrics["accumulate"] = accumulation_of(s.policy);
     metrics["deterministic"] = s.deterministic;
-    metrics["effects"] = effects_json(s, scene, background);
+    metrics["effects"] = effects_json(s, scene, background, simulated, result);
     metrics["seed"] = s.seed;
-    write_json(output.path() / "settings.json", settings_json(s, options));
+    write_json(output.path() / "settings.json", settings_json(s, options, simulated));
+    if (!result.exposures.empty())
+        write_json(output.path() / "exposures.json", exposures_json(scene, result.exposures));
     write_json(output.path() / "metrics.json", metrics);
 
     if (report.views.empty()) {
         session.say("training PSNR " + number("%.2f dB", last.psnr) + " (no held-out views without --eval)");
     } else {
         session.say("held-out PSNR " + number("%.2f dB", report.psnr()) + ", SSIM " +
-                    number("%.4f", report.ssim()) + " over " + std::to_string(report.views.size()) +
-                    " views");
+                    number("%.4f", report.ssim()) + fitted_part(report) + " over " +
+                    std::to_string(report.views.size()) + " views");
         session.say(
             "picture   " + (pictures / "renders" / evaluate::picture_names(scene.test).front()).string() +
             (report.views.size() > 1 ? " and " + std::to_string(report.views.size() - 1) + " more" : ""));

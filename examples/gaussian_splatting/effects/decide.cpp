@@ -46,14 +46,14 @@ decision view_dependent_colour(const evidence& e) {
 
 decision exposure(const evidence& e) {
     if (e.exposure_points < limits.points)
-        return {"exposure by photo", {}, too_few(e.exposure_points, "in smooth parts"), "as they are"};
+        return {"exposure by photo", {}, too_few(e.exposure_points, "in smooth parts"), "off"};
     const bool varies = e.exposure_spread >= limits.exposure &&
                         e.exposure_spread >= limits.exposure_errors * e.exposure_error;
     const auto percent = [](double log2) { return 100 * (std::exp2(log2) - 1); };
     return {"exposure by photo", varies,
             text("photos have the same points %.1f %% brighter or darker, measured to %.1f %%",
                  percent(e.exposure_spread), percent(e.exposure_error)),
-            varies ? "called for, but not simulated" : "as they are"};
+            varies ? "on" : "off"};
 }
 
 decision antialiasing(const evidence& e) {
@@ -62,7 +62,7 @@ decision antialiasing(const evidence& e) {
     const bool spreads = e.scale_ratio >= limits.scale_ratio;
     return {"antialiasing", spreads,
             text("the median point is %.1f times as large in one photo as in another", e.scale_ratio),
-            spreads ? "called for, but not simulated" : "off"};
+            spreads ? "on" : "off"};
 }
 
 decision background(const evidence& e) {

@@ -237,6 +237,7 @@ evidence gather(const scene& of) {
     if (points.empty()) return found;
 
     const exposure_estimate exposure = exposures(points, of.train.size());
+    found.brighter = exposure.brighter;
     std::vector<double> errors;
     double square = 0;
     for (std::size_t v = 0; v < of.train.size(); ++v) {

@@ -18,6 +18,7 @@ struct evidence {
     std::size_t exposure_points = 0;  ///< that tell of it
     double exposure_spread = 0;       ///< root mean square over the photos
     double exposure_error = 0;        ///< median standard error of a photo's
+    std::vector<double> brighter;     ///< see `exposure_estimate`; none without such points
 
     /// Colour by direction, once exposures are taken out. `unexplained[d]`: the mean square of what is left
     /// of an observation, in [0, 1] units, when it is predicted from the point's others by spherical

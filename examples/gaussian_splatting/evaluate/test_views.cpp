@@ -8,6 +8,7 @@
 #include <set>
 
 #include "../parallel.hpp"
+#include "fit_exposure.hpp"
 
 namespace gs::evaluate {
 
@@ -16,7 +17,7 @@ namespace {
 template <class Measure>
 double mean(const std::vector<view_quality>& views, Measure measure) {
     double sum = 0;
-    for (const view_quality& v : views) sum += measure(v.quality);
+    for (const view_quality& v : views) sum += measure(v);
     return sum / static_cast<double>(views.size());
 }
 
@@ -37,14 +38,19 @@ std::vector<std::string> picture_names(const std::vector<view>& views) {
 }
 
 double test_report::psnr() const {
-    return mean(views, [](const train::quality& q) { return q.psnr(); });
+    return mean(views, [](const view_quality& v) { return v.quality.psnr(); });
 }
 double test_report::ssim() const {
-    return mean(views, [](const train::quality& q) { return q.ssim; });
+    return mean(views, [](const view_quality& v) { return v.quality.ssim; });
+}
+std::optional<double> test_report::fitted_psnr() const {
+    if (views.empty() || !views.front().fitted_psnr) return {};
+    return mean(views, [](const view_quality& v) { return *v.fitted_psnr; });
 }
 
 test_report measure_test_views(train::engine& engine, const scene& scene,
-                               const std::array<float, 3>& background, const std::filesystem::path& folder) {
+                               const std::array<float, 3>& background, const std::filesystem::path& folder,
+                               bool fits) {
     test_report report;
     const bool keeps = !folder.empty();
     if (keeps) {
@@ -57,8 +63,17 @@ test_report measure_test_views(train::engine& engine, const scene& scene,
     for (std::size_t first = 0; first < scene.test.size(); first += pictures.size()) {
         const std::size_t count = std::min(pictures.size(), scene.test.size() - first);
         for (std::size_t i = 0; i < count; ++i)
-            report.views.push_back({scene.test[first + i].name,
-                                    engine.measure(first + i, background, keeps ? &pictures[i] : nullptr)});
+            report.views.push_back(
+                {scene.test[first + i].name,
+                 engine.measure(first + i, background, keeps || fits ? &pictures[i] : nullptr),
+                 {}});
+        if (fits)
+            for_each_in_parallel(count, [&](std::size_t i) {
+                const view& v = scene.test[first + i];
+                report.views[first + i].fitted_psnr =
+                    psnr_after_fit(pictures[i], over_background(v.pixels, background.data()), v.camera.width,
+                                   v.camera.height);
+            });
         if (!keeps) continue;
         for_each_in_parallel(2 * count, [&](std::size_t job) {
             const std::size_t i = job / 2;

@@ -14,6 +14,7 @@ constexpr int sh_coefficients(int degree) { return (degree + 1) * (degree + 1); 
 /// One array a parameter, Gaussian-major: `count * width` floats.
 struct gaussians {
     int sh_degree = 0;               ///< 0 to 3: what `sh_rest` has room for
+    bool antialiased = false;        ///< to be drawn as `effect_set::antialiasing` says
     std::vector<float> mean;         ///< 3: world position
     std::vector<float> log_scale;    ///< 3: log of the standard deviations along the principal axes
     std::vector<float> quaternion;   ///< 4: w x y z, of any length but zero

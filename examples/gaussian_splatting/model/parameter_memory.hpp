@@ -25,6 +25,11 @@ class parameter_memory {
                                   ? in_whole_blocks(count) * width_of(static_cast<parameter>(p))
                                   : 0);
     }
+    /// Keeps the contents, but for bands above the degree, which have no memory from now on.
+    void lower_sh_degree(int degree) {
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            if (!has_parameter(p, degree)) arrays_[p] = buffer();
+    }
     buffer& operator[](std::size_t p) { return arrays_[p]; }
 
     parameter_arrays<const float> read() const { return pointers<const float>(); }

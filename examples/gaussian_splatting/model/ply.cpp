@@ -59,9 +59,14 @@ std::vector<field> fields_of_degree(int sh_degree) {
 constexpr std::size_t normals_after = 3;  ///< fields before the normals: x y z
 constexpr std::size_t normals = 3;
 
-std::string header_of(const std::vector<field>& fields, std::size_t count) {
-    std::string header =
-        "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(count) + "\n";
+/// The comment that Brush writes, and other viewers read, of Gaussians that were trained with a 2D Mip
+/// filter.
+constexpr std::string_view render_mode = "SplatRenderMode:", mip = "mip";
+
+std::string header_of(const std::vector<field>& fields, const gaussians& model) {
+    std::string header = "ply\nformat binary_little_endian 1.0\n";
+    if (model.antialiased) header += "comment " + std::string(render_mode) + " " + std::string(mip) + "\n";
+    header += "element vertex " + std::to_string(model.count()) + "\n";
     for (std::size_t i = 0; i < fields.size(); ++i) {
         if (i == normals_after) header += "property float nx\nproperty float ny\nproperty float nz\n";
         header += "property float " + fields[i].name + "\n";
@@ -218,7 +223,9 @@ class reader {
                 found.count = std::min<std::size_t>(found.count + 1, 4);
                 found.last = word;
             }
-            if (found.count > 0 && found.words[0] != "comment" && found.words[0] != "obj_info") return found;
+            if (found.count == 0 || found.words[0] == "obj_info") continue;
+            if (found.words[0] != "comment") return found;
+            antialiased_ = antialiased_ || (found.words[1] == render_mode && found.words[2] == mip);
         }
         if (text_.size() == longest_header) fail("its header has no end_header in its first 65536 bytes");
         fail("its header has no end_header");
@@ -341,6 +348,7 @@ class reader {
     gaussians read_rows(const layout& l) {
         gaussians model;
         model.sh_degree = l.sh_degree;
+        model.antialiased = antialiased_;
         for (const column& c : l.columns)
             (model.*c.to.array).resize(l.count * static_cast<std::size_t>(c.to.width));
 
@@ -379,6 +387,7 @@ class reader {
     opened_file file_;
     std::string text_;      ///< the header, and what follows it up to that length
     std::size_t next_ = 0;  ///< where the next line begins in it
+    bool antialiased_ = false;
 };
 
 }  // namespace
@@ -386,7 +395,7 @@ class reader {
 void write_ply(const std::filesystem::path& file, const gaussians& model) {
     const std::vector<field> fields = fields_of_degree(model.sh_degree);
     write_aside(file, [&](std::ostream& out) {
-        out << header_of(fields, model.count());
+        out << header_of(fields, model);
         std::vector<float> row(fields.size() + normals, 0.0F);
         for (std::size_t i = 0; i < model.count(); ++i) {
             for (std::size_t j = 0; j < fields.size(); ++j) {

@@ -6,7 +6,9 @@
 #include <cstdint>
 
 #include "../model/spherical_harmonics.hpp"
+#include "antialiasing.hpp"
 #include "bits.hpp"
+#include "effect_set.hpp"
 #include "gaussian_row.hpp"
 #include "geometry.hpp"
 #include "splat.hpp"
@@ -15,7 +17,7 @@
 namespace gs::raster {
 
 /// Gaussians to splats, a Gaussian a lane.
-template <class W, class Real>
+template <class W, class Real, effect_set Effects>
 struct project {
     using real = value_t<W, Real>;
     using number = value_t<W, std::uint32_t>;
@@ -75,7 +77,8 @@ struct project {
         const auto quaternion = row.template load<4>(w, gaussians.quaternion, 0, 4);
         const real logit = row.template load<1>(w, gaussians.opacity, 0, 1).x;
         const footprint<real> f = see(at, log_scale, quaternion, camera);
-        const real opacity = sigmoid(logit);
+        real opacity = sigmoid(logit);
+        if constexpr (Effects.antialiasing) opacity *= opacity_left(whitened_axes<real>(f.shape, f.ax, f.ay));
         splat<real>& s = d.shape;
         s.strength = warpagg::math::log2(opacity);
         s.reach = warpagg::math::log2(opacity * constant<real>(1 / least_alpha));

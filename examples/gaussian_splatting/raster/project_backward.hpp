@@ -6,6 +6,8 @@
 #include <cstdint>
 
 #include "../model/spherical_harmonics.hpp"
+#include "antialiasing.hpp"
+#include "effect_set.hpp"
 #include "gaussian_row.hpp"
 #include "geometry.hpp"
 #include "list_room.hpp"
@@ -58,7 +60,7 @@ struct store_gradients {
 /// the value and the gradient of each parameter of those that take part, three components or so at a time,
 /// and may change the value at once: it has been read by all that needs it. `Sink::takes_zeros` says whether
 /// it wants the others' as well.
-template <class W, class Real, class Sink>
+template <class W, class Real, class Sink, effect_set Effects>
 struct project_backward {
     using real = value_t<W, Real>;
 
@@ -107,16 +109,17 @@ struct project_backward {
         const vec2<real> centre = two_ln2 * vec2<real>(p * s[sum_su] + r * s[sum_sv], q * s[sum_sv]);
 
         // dL/dcovariance = (2 ln2)^2 / 2 M^T W M with W the second moments, and the covariance is the Gram
-        // matrix of ax and ay, whose whitened forms are wx and wy.
-        const vec3<real> wx = p * f.ax, wy = r * f.ax + q * f.ay;
+        // matrix of ax and ay, whose whitened forms are `axes`.
+        const whitened_axes<real> axes(f.shape, f.ax, f.ay);
         const real k = two_ln2 * two_ln2;
-        const vec3<real> nx = k * (s[sum_suu] * wx + s[sum_suv] * wy),
-                         ny = k * (s[sum_suv] * wx + s[sum_svv] * wy);
+        vec3<real> nx = k * (s[sum_suu] * axes.x + s[sum_suv] * axes.y),
+                   ny = k * (s[sum_suv] * axes.x + s[sum_svv] * axes.y);
+        if constexpr (Effects.antialiasing) add_opacity_left_gradient(axes, s[sum_s], nx, ny);
         const vec3<real> dax = p * nx + r * ny, day = q * ny;
 
         const vec3<real> by_position =
             position(f, centre, f.rotation * (dax * f.scale), f.rotation * (day * f.scale));
-        put(parameter::log_scale, 0, 3, log_scale, nx * wx + ny * wy);
+        put(parameter::log_scale, 0, 3, log_scale, nx * axes.x + ny * axes.y);
         put(parameter::quaternion, 0, 4, quaternion, turn(f, dax * f.scale, day * f.scale));
         put(parameter::opacity, 0, 1, opacity, glm::vec<1, real>(s[sum_s] * sigmoid(-opacity.x)));
         put(parameter::mean, 0, 3, mean, by_position + colour(w, row, put, i, mean, s));

@@ -33,6 +33,9 @@ class renderer {
         device_.zero(reserve(needed_, 1).data(), 1);
     }
 
+    /// Of what is drawn from now on: none at first.
+    void set_effects(const effect_set& effects) { effects_ = effects; }
+
     /// Finds how many instances (Gaussian, tile) a view has: see `instances`.
     void measure(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         project_all(gaussians, count, view, sh_degree);
@@ -92,11 +95,13 @@ class renderer {
             policy, [&](auto kernel) { sums = blend_backward_by(kernel, picture_gradient, largest).data(); });
         device_.begin(stage::project_backward);
         using narrow = typename Device::narrow_warp;
-        device_.template for_each_warp<narrow>(
-            (count_ + narrow::size - 1) / narrow::size,
-            project_backward<narrow, Real, Sink>{
-                gaussians_, count_, for_device<value_t<narrow, Real>>(camera_), sh_degree_, learned_sh_degree,
-                splats_.data(), tiles_.data(), sums, sink, seen, room()});
+        with_effects(effects_, [&]<effect_set Effects> {
+            device_.template for_each_warp<narrow>(
+                (count_ + narrow::size - 1) / narrow::size,
+                project_backward<narrow, Real, Sink, Effects>{
+                    gaussians_, count_, for_device<value_t<narrow, Real>>(camera_), sh_degree_,
+                    learned_sh_degree, splats_.data(), tiles_.data(), sums, sink, seen, room()});
+        });
     }
 
     /// The blending's part of `backward` by this kernel, which is filled in. Returns its sums: see
@@ -162,13 +167,15 @@ class renderer {
         tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
         using narrow = typename Device::narrow_warp;
-        using projection = project<narrow, Real>;
-        device_.template for_each_warp<narrow>(
-            projection::warps(count),
-            projection{gaussians, count, for_device<value_t<narrow, Real>>(view), sh_degree, tiles_across_,
-                       tiles_down_, reserve(splats_, count).data(), reserve(boxes_, count).data(),
-                       reserve(depths_, count).data(), reserve(order_, count).data(),
-                       reserve(tiles_, count).data()});
+        with_effects(effects_, [&]<effect_set Effects> {
+            using projection = project<narrow, Real, Effects>;
+            device_.template for_each_warp<narrow>(
+                projection::warps(count),
+                projection{gaussians, count, for_device<value_t<narrow, Real>>(view), sh_degree,
+                           tiles_across_, tiles_down_, reserve(splats_, count).data(),
+                           reserve(boxes_, count).data(), reserve(depths_, count).data(),
+                           reserve(order_, count).data(), reserve(tiles_, count).data()});
+        });
     }
 
     /// Lists of Gaussians per tile, front to back: equal depths keep the order of the Gaussians.
@@ -208,6 +215,8 @@ class renderer {
     std::uint64_t capacity_ = 0;
 
     unsigned tiles_across_ = 0, tiles_down_ = 0;
+
+    effect_set effects_;
 
     // What `backward` belongs to.
     model gaussians_;

@@ -239,16 +239,16 @@ std::uint8_t to_byte(double in_unit_interval) {
 }
 
 /// The i-th of the cameras on a spiral that turns by the golden angle: evenly spread, neighbours in space far
-/// apart in number, so that every n-th camera lies between others. Their distances are `scales` apart at
-/// most, each evenly likely by its logarithm.
-camera spiral_camera(int i, int size, double scales) {
+/// apart in number, so that every n-th camera lies between others. Their distances are `how.scales` apart at
+/// most, each evenly likely by its logarithm, from `how.distance` on.
+camera spiral_camera(int i, int size, const synthetic_parameters& how) {
     const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
     const double lowest = std::sin(12 * std::numbers::pi / 180);
     const double highest = std::sin(76 * std::numbers::pi / 180);
     const double height = glm::mix(lowest, highest, (i + 0.5) / view_count);
     const double across = std::sqrt(1 - height * height);
     const double angle = golden_angle * i;
-    const double farther = std::pow(scales, std::fmod(i * std::numbers::sqrt2, 1.0));
+    const double farther = how.distance * std::pow(how.scales, std::fmod(i * std::numbers::sqrt2, 1.0));
     const vec eye =
         farther * camera_distance * vec{across * std::cos(angle), across * std::sin(angle), height};
     return look_at(eye, vec{0}, {0, 0, 1}, size, 0.5 * size / std::tan(0.5 * field_of_view));
@@ -300,12 +300,12 @@ void render_row(const world& w, const camera& c, std::size_t photo, int row, std
     }
 }
 
-std::vector<view> spiral_views(int size, double scales) {
+std::vector<view> spiral_views(int size, const synthetic_parameters& how) {
     std::vector<view> views(view_count);
     for (int i = 0; i < view_count; ++i) {
         view& v = views[static_cast<std::size_t>(i)];
         v.name = "view_" + std::string(i < 10 ? "0" : "") + std::to_string(i) + ".png";
-        v.camera = spiral_camera(i, size, scales);
+        v.camera = spiral_camera(i, size, how);
     }
     return views;
 }
@@ -373,7 +373,7 @@ std::vector<std::string> synthetic_scene_names() {
 scene make_synthetic_scene(const std::string& name, const load_options& options, const log_function& log) {
     const world w = world_of(name);
     const int size = size_at(options.resolution);
-    std::vector<view> views = spiral_views(size, w.how.scales);
+    std::vector<view> views = spiral_views(size, w.how);
     take_photos(w, views);
 
     scene result;

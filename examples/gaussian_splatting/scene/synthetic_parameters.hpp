@@ -13,6 +13,7 @@ struct synthetic_parameters {
     double gloss = 0;     ///< how much surfaces reflect sun and sky, beside what they scatter: 0 to 1
     double exposure = 0;  ///< standard deviation of log2 of a photo's brightness, as displayed: 0 to 2
     double scales = 1;    ///< the farthest camera's distance over the nearest's: 1 to 16
+    double distance = 1;  ///< of all cameras, in those of other scenes: 0.25 to 16
     double noise = 0;     ///< standard deviation of values in [0, 1] where a photo shows something: 0 to 0.5
 };
 

@@ -12,6 +12,7 @@
 #include "adam.hpp"
 #include "densification.hpp"
 #include "engine.hpp"
+#include "exposures.hpp"
 #include "photometric.hpp"
 #include "watch.hpp"
 
@@ -62,7 +63,8 @@ class device_engine final : public engine {
     using buffer = typename Device::template buffer<T>;
 
   public:
-    device_engine() : renderer_(device_), photometric_(device_), densification_(device_) {
+    device_engine()
+        : renderer_(device_), photometric_(device_), exposures_(device_), densification_(device_) {
         skipped_.resize(1);
         device_.zero(skipped_.data(), 1);
         found_.resize(1);
@@ -106,11 +108,14 @@ class device_engine final : public engine {
         device_.upload(cameras_.data(), centres.data(), centres.size());
         lengths_.resize(train.size());
         set_downscales(0);
+        exposures_.set(std::vector<exposure>(train.size(), unexposed));
         device_.wait();
     }
 
     void set_model(const gaussians& model) override {
         sh_degree_ = model.sh_degree;
+        effects_.antialiasing = model.antialiased;
+        renderer_.set_effects(effects_);
         trained_.values.upload(device_, model);
         for (auto* moments : {&trained_.first, &trained_.second}) {
             moments->resize(model.count(), sh_degree_);
@@ -120,11 +125,16 @@ class device_engine final : public engine {
         device_.zero(trained_.last_step.data(), model.count());
         begin_generation(model.count());
         std::ranges::fill(lengths_of_, 0);
+        exposures_.set(std::vector<exposure>(lengths_of_.size(), unexposed));
         device_.wait();
         steps_ = 0;
     }
 
-    gaussians get_model() override { return trained_.values.download(device_, count_, sh_degree_); }
+    gaussians get_model() override {
+        gaussians model = trained_.values.download(device_, count_, sh_degree_);
+        model.antialiased = effects_.antialiasing;
+        return model;
+    }
 
     std::size_t count() const override { return count_; }
 
@@ -161,6 +171,10 @@ class device_engine final : public engine {
                                lower_opacity{trained_.values.write().opacity, trained_.first.write().opacity,
                                              trained_.second.write().opacity, logit(most)});
     }
+
+    std::vector<exposure> exposures() override { return exposures_.get(); }
+    void set_exposures(const std::vector<exposure>& all) override { exposures_.set(all); }
+    void centre_exposures() override { exposures_.centre(); }
 
     void clear_cameras() override {
         device_.for_each_index(
@@ -209,16 +223,23 @@ class device_engine final : public engine {
         return watch::decode(found);
     }
 
-    std::vector<float> render(const camera& camera, const std::array<float, 3>& background) override {
-        draw(camera, background);
+    std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
+                              int sh_degree) override {
+        draw(camera, background, std::min(sh_degree, sh_degree_));
         return drawn(camera);
+    }
+
+    void lower_sh_degree(int degree) override {
+        sh_degree_ = std::min(sh_degree_, degree);
+        for (auto* all : {&trained_.values, &trained_.first, &trained_.second})
+            all->lower_sh_degree(sh_degree_);
     }
 
     quality measure(std::size_t test_view, const std::array<float, 3>& background,
                     std::vector<float>* picture) override {
         const photo& shot = test_[test_view];
         photometric_.take();  // what steps added
-        draw(shot.camera, background);
+        draw(shot.camera, background, sh_degree_);
         const std::size_t n = values_of(shot.camera);
         shown_.resize(n);
         device_.for_each_index(n, clamp_picture{renderer_.picture(), shown_.data()});
@@ -259,8 +280,14 @@ class device_engine final : public engine {
         device_.begin(stage::loss);
         photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
                                plan.background);
-        const float* by_picture =
-            photometric_.gradient(renderer_.picture(), plan.ssim_weight, renderer_.room());
+        const bool exposes = plan.exposure_rate > 0;
+        const std::size_t pixels = values_of(shot.camera) / 3;
+        const float* shown =
+            exposes ? exposures_.show(plan.view, renderer_.picture(), pixels) : renderer_.picture();
+        const float* by_picture = photometric_.gradient(shown, plan.ssim_weight, renderer_.room());
+        if (exposes)
+            by_picture = exposures_.learn(plan.view, renderer_.picture(), by_picture, pixels,
+                                          plan.exposure_rate, renderer_.room());
         const train::watch watch{found_.data(), static_cast<std::uint32_t>(plan.iteration)};
         renderer_.backward(by_picture, photometric_.largest_gradient(), plan.gradient,
                            plan.updates_sh ? plan.sh_degree : 0, descent(plan, watch),
@@ -294,13 +321,13 @@ class device_engine final : public engine {
     }
 
     /// A picture of the whole model, whatever room it takes. Neither timed nor counted: it is no step.
-    void draw(const camera& camera, const std::array<float, 3>& background) {
+    void draw(const camera& camera, const std::array<float, 3>& background, int sh_degree) {
         const std::uint64_t before = all_pairs();
         device_.pause_times(true);
-        renderer_.forward(trained_.values.read(), count_, camera, sh_degree_, background);
+        renderer_.forward(trained_.values.read(), count_, camera, sh_degree, background);
         if (const std::uint64_t needed = renderer_.instances(); needed > renderer_.reserved_instances()) {
             renderer_.reserve_instances(needed, needed / 4);
-            renderer_.forward(trained_.values.read(), count_, camera, sh_degree_, background);
+            renderer_.forward(trained_.values.read(), count_, camera, sh_degree, background);
         }
         device_.pause_times(false);
         drawn_pairs_ += all_pairs() - before;
@@ -315,6 +342,7 @@ class device_engine final : public engine {
     Device device_;
     raster::renderer<Device, float> renderer_;
     photometric<Device, float> photometric_;
+    train::exposures<Device> exposures_;
     buffer<std::uint8_t> photos_;
     std::vector<std::vector<photo>> train_;  ///< by how often they were shrunk
     std::vector<photo> test_;
@@ -325,6 +353,7 @@ class device_engine final : public engine {
     std::vector<std::size_t> lengths_of_;  // and of how many Gaussians; none if it was not
 
     int sh_degree_ = 0;
+    effect_set effects_;
     std::size_t count_ = 0;
     std::uint32_t steps_ = 0;
     std::uint64_t drawn_pairs_ = 0;

@@ -28,8 +28,13 @@ struct step_plan {
     gradient_policy gradient = gradient_policy::split;
     std::array<float, 8> rates{};  ///< of Adam, by `parameter`
     double ssim_weight = 0.2;
-    bool watch = false;  ///< note what `densify` and `prune` want to know
+    bool watch = false;       ///< note what `densify` and `prune` want to know
+    float exposure_rate = 0;  ///< of Adam; 0: photos are as the scene is, and all of this costs nothing
 };
+
+/// See `exposure_kernels.hpp`.
+using exposure = std::array<float, 12>;
+inline constexpr exposure unexposed{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 /// A model in training on a device, and all that happens to it. The host says what is done; nothing comes
 /// back to it but what it asks for.
@@ -59,6 +64,13 @@ class engine {
     /// the last `densify` together.
     virtual void prune(double share) = 0;
     virtual void reset_opacity(float most) = 0;
+    /// Of the training photos: what `step`s have found, what they are to begin from, and moving them all so
+    /// that their mean changes nothing. After `set_model` none changes anything.
+    /// @{
+    virtual std::vector<exposure> exposures() = 0;
+    virtual void set_exposures(const std::vector<exposure>& all) = 0;
+    virtual void centre_exposures() = 0;
+    /// @}
     /// Hides Gaussians nearer to a training camera than the near plane, by an opacity of zero. That camera
     /// does not draw them, so its photo cannot speak against them, and other views' pictures suffer.
     virtual void clear_cameras() = 0;
@@ -73,8 +85,11 @@ class engine {
     /// What was not finite in the `step`s since the last call. No parameter ever is: see `adam`.
     virtual findings take_findings() = 0;
 
-    /// Three planes, not clamped.
-    virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background) = 0;
+    /// Three planes, not clamped; without the colours of directions above a degree.
+    virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
+                                      int sh_degree = 3) = 0;
+    /// Drops the colours of directions above a degree, and their memory.
+    virtual void lower_sh_degree(int degree) = 0;
     /// A test view against its photo, clamped to [0, 1]. `picture`, where there is one, becomes what `render`
     /// draws of the view.
     virtual quality measure(std::size_t test_view, const std::array<float, 3>& background,

@@ -31,6 +31,11 @@ std::array<float, 8> schedule::rates_at(int iteration) const {
     return rates;
 }
 
+float schedule::exposure_rate_at(int iteration, int views) const {
+    const double first = std::min(0.05, 1.5 * views / iterations);
+    return static_cast<float>(first * std::pow(0.1, static_cast<double>(iteration) / iterations));
+}
+
 int schedule::densify_until() const {
     return std::min(densify_until_iter.value_or(std::min(15000, iterations / 2)), iterations);
 }

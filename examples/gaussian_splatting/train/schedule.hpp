@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -45,6 +46,10 @@ struct schedule {
 
     int sh_degree_at(int iteration) const;
     bool updates_sh(int iteration) const { return iteration % sh_update_interval == 0; }
+    /// The iteration after which it shows which bands are needed: half-way, but each has had its interval.
+    int bands_are_known_after() const {
+        return std::max(iterations / 2, (sh_degree + 1) * sh_degree_interval);
+    }
     int downscales_at(int iteration) const;
     /// A fifth of the iterations for one shrinking, less for more, where it is not said. 0, which is for
     /// whole photos at once, where there are too few of them.
@@ -52,6 +57,9 @@ struct schedule {
     double sh_rate() const { return sh_lr.value_or(feature_lr / 10); }
     /// Adam's rates by `parameter`.
     std::array<float, 8> rates_at(int iteration) const;
+    /// Adam's rate of exposures, which falls to a tenth: each can come as far as 0.6, however few steps show
+    /// its photo, unless those are fewer than 30. In Kerbl et al. 2024's implementation it falls from 0.01.
+    float exposure_rate_at(int iteration, int views) const;
     int densify_until() const;
     /// A Gaussian grows from this mean gradient of its centre, in halves of the picture. Where it is not
     /// said, it is 8e-5 if densification lasts 15,000 iterations, and more, by the fourth root, if it is

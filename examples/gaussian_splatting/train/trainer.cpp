@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -63,6 +64,35 @@ densify_rule rule_at(int iteration, const schedule& schedule, const train_option
     rule.seed = options.seed;
     rule.step = static_cast<std::uint64_t>(iteration);
     return rule;
+}
+
+/// By what the pictures of some training views change, as a root mean square, if colours have only bands up
+/// to this degree.
+double change_above(int degree, engine& engine, const scene& scene, const std::array<float, 3>& background) {
+    const std::size_t views = std::min<std::size_t>(scene.train.size(), 8);
+    const auto shown = [](float x) { return static_cast<double>(std::clamp(x, 0.0f, 1.0f)); };
+    double sum = 0, values = 0;
+    for (std::size_t i = 0; i < views; ++i) {
+        const camera& camera = scene.train[i * scene.train.size() / views].camera;
+        const auto all = engine.render(camera, background), some = engine.render(camera, background, degree);
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const double d = shown(all[k]) - shown(some[k]);
+            sum += d * d;
+        }
+        values += static_cast<double>(all.size());
+    }
+    return std::sqrt(sum / values);
+}
+
+/// Drops the bands that pictures do not need: see `train_result`.
+void drop_bands(engine& engine, const scene& scene, const std::array<float, 3>& background,
+                schedule& schedule, train_result& result) {
+    for (int degree = schedule.sh_degree; degree > 0; --degree) {
+        result.band_change = change_above(degree - 1, engine, scene, background);
+        if (result.band_change >= band_change_limit) break;
+        schedule.sh_degree = degree - 1;
+    }
+    engine.lower_sh_degree(schedule.sh_degree);
 }
 
 /// What an engine found not to be finite, with the view it was found in.
@@ -127,6 +157,8 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     finite_watch watch;
     train_result result;
     const int views = static_cast<int>(scene.train.size());
+    const bool exposes = !options.exposures.empty();
+    if (exposes) engine.set_exposures(options.exposures);
     engine.take_findings();  // of steps that are not ours
     int downscales = schedule.downscales_at(1);
     engine.set_downscales(downscales);
@@ -151,11 +183,13 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
         plan.ssim_weight = schedule::ssim_weight;
         plan.watch = schedule.watches(iteration, views);
         plan.iteration = iteration;
+        if (exposes) plan.exposure_rate = schedule.exposure_rate_at(iteration, views);
         engine.step(plan);
         watch.shows(plan.view);
 
         const bool prunes = iteration == schedule.prune_after(views);
-        if (schedule.densifies(iteration) || prunes || iteration % reserve_every == 0) {
+        const bool checks_bands = options.drops_bands && iteration == schedule.bands_are_known_after();
+        if (schedule.densifies(iteration) || prunes || checks_bands || iteration % reserve_every == 0) {
             engine.wait();
             const auto from = clock::now();
             if (schedule.densifies(iteration))
@@ -163,12 +197,14 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
                     std::max(result.silent_gaussians,
                              engine.densify(rule_at(iteration, schedule, options, engine.count())));
             if (prunes) engine.prune(schedule.share_to_prune());
+            if (checks_bands) drop_bands(engine, scene, options.background.colour, schedule, result);
             engine.reserve();
             result.densify_seconds += seconds_since(from);
         }
         if (schedule.resets_opacity(iteration)) engine.reset_opacity(schedule::reset_opacity);
 
         const bool last = iteration == schedule.iterations;
+        if (exposes && (iteration % views == 0 || last)) engine.centre_exposures();
         if (iteration % schedule.densification_interval == 0 || last) engine.clear_cameras();
         const bool tests = options.test_iterations.contains(iteration);
         const bool saves = options.save_iterations.contains(iteration);
@@ -190,6 +226,8 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     engine.wait();
     result.seconds = seconds_since(start) - outside;
     result.skipped_steps = engine.skipped_steps();
+    result.sh_degree = schedule.sh_degree;
+    if (exposes) result.exposures = engine.exposures();
     return result;
 }
 

@@ -29,6 +29,9 @@ struct train_options {
     std::uint64_t seed = 0;
     gradient_policy gradient = gradient_policy::split;
     background_choice background;
+    /// Of the training photos, to begin from; none: photos are as the scene is. See exposure_kernels.hpp.
+    std::vector<train::exposure> exposures;
+    bool drops_bands = false;  ///< that pictures do not need: see `train_result::sh_degree`
     std::set<int> save_iterations;
     std::set<int> test_iterations;
 };
@@ -48,6 +51,11 @@ struct train_result {
     std::uint64_t left_out_gradients = 0;  ///< elements that were not finite
     std::uint64_t left_out_sums = 0;       ///< steps where one did not fit in fixed point
     std::uint64_t silent_gaussians = 0;    ///< the most at any densification: see `engine::densify`
+    /// Up to which colours depend on direction: the schedule's, unless pictures of eight training views
+    /// change by a root mean square of less than `band_change_limit` without the bands above.
+    int sh_degree = 0;
+    double band_change = 0;           ///< by which they would change without the highest that is left
+    std::vector<exposure> exposures;  ///< of the training photos, if they have any
 };
 
 /// What the loop calls back for.
@@ -66,6 +74,9 @@ struct train_events {
 /// saved before stays.
 train_result train(engine& engine, const scene& scene, const train_options& options,
                    const train_events& events);
+
+/// Of values in [0, 1]: a picture at 35 dB loses 0.014 dB by it.
+inline constexpr double band_change_limit = 0.001;
 
 /// As many Gaussians as the photos can tell apart: one for 32 pixels of all training views together, and no
 /// fewer than 10,000.

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "../scene/scene.hpp"
+
+namespace gs::effects {
+
+/// What a training can simulate or leave. docs/effects.md says what another one needs.
+enum class effect { direction, exposure, antialiasing, count };
+
+inline constexpr std::array<std::string_view, static_cast<std::size_t>(effect::count)> effect_names{
+    "direction", "exposure", "antialiasing"};
+
+/// What --effects says.
+struct selection {
+    enum class base {
+        found,  ///< what the scene calls for
+        all,
+        none
+    };
+    base from = base::found;
+    std::array<std::optional<bool>, effect_names.size()> said;  ///< of single effects
+
+    const std::optional<bool>& of(effect e) const { return said[static_cast<std::size_t>(e)]; }
+};
+
+/// From "auto", "all", "none", a list of effects, or any of the first three with what is to be added or left
+/// out: "auto,+exposure,-direction", or "+exposure" for short. Throws `error` for what is none of these.
+selection parse_selection(const std::string& text);
+
+/// What training simulates.
+struct simulation {
+    struct outcome {
+        std::string name;
+        bool on;
+        std::string reason;
+    };
+
+    int sh_degree = 0;
+    bool drops_bands = false;  ///< above a degree that pictures do not need: nobody has said which
+    bool antialiasing = false;
+    /// By training photo, how much brighter than others it has the same points, as a factor; ones where
+    /// nobody has looked, and none without the effect.
+    std::vector<float> exposures;
+    std::vector<outcome> outcomes;  ///< one an effect
+};
+
+/// `sh_degree`: the one that was said. Looks at the photos only if something depends on them.
+simulation simulate(const scene& scene, const selection& selection, const std::optional<int>& sh_degree);
+
+}  // namespace gs::effects

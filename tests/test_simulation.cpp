@@ -1,0 +1,223 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../examples/gaussian_splatting/device/cpu.hpp"
+#include "../examples/gaussian_splatting/effects/simulate.hpp"
+#include "../examples/gaussian_splatting/error.hpp"
+#include "../examples/gaussian_splatting/evaluate/fit_exposure.hpp"
+#include "../examples/gaussian_splatting/model/initialise.hpp"
+#include "../examples/gaussian_splatting/train/exposures.hpp"
+#include "../examples/gaussian_splatting/train/trainer.hpp"
+#include "engines.hpp"
+
+using namespace gs::effects;
+
+namespace {
+
+simulation simulated(const std::string& scene, const std::string& selection, std::optional<int> degree = {}) {
+    gs::load_options o;
+    o.data = "synthetic:" + scene;
+    return simulate(gs::load_scene(o, {}), parse_selection(selection), degree);
+}
+
+std::string refusal(const std::string& text) {
+    try {
+        parse_selection(text);
+    } catch (const gs::error& e) {
+        return e.what();
+    }
+    return "";
+}
+
+std::vector<float> random_picture(std::mt19937& random, std::size_t values) {
+    std::vector<float> picture(values);
+    for (float& x : picture) x = static_cast<float>(random() % 1000) / 999;
+    return picture;
+}
+
+}  // namespace
+
+TEST_CASE("what is simulated is what the scene calls for, or what was said") {
+    const simulation matte = simulated("spheres", "auto");
+    CHECK(matte.sh_degree == 0);
+    CHECK(matte.exposures.empty());
+    CHECK_FALSE(matte.antialiasing);
+    REQUIRE(matte.outcomes.size() == 3);
+    for (const auto& o : matte.outcomes) CHECK_FALSE(o.on);
+    CHECK(matte.outcomes[1].reason.find("brighter or darker") != std::string::npos);
+
+    const simulation much = simulated("spheres,gloss=0.6,exposure=0.3", "auto,-exposure,+antialiasing");
+    CHECK(much.sh_degree > 0);
+    CHECK(much.drops_bands);
+    CHECK(much.exposures.empty());
+    CHECK(much.outcomes[1].reason == "--effects -exposure");
+    CHECK(much.antialiasing);
+
+    CHECK(simulated("spheres", "all").sh_degree == 3);
+    CHECK(simulated("spheres", "all").exposures == std::vector<float>(48, 1.0f));
+    CHECK_FALSE(simulated("spheres", "all").drops_bands);
+    CHECK(simulated("spheres,gloss=1", "none").sh_degree == 0);
+    CHECK(simulated("spheres", "+direction").sh_degree == 3);
+    const simulation listed = simulated("spheres,scales=4", "exposure,direction");
+    CHECK_FALSE(listed.exposures.empty());
+    CHECK(listed.sh_degree == 3);
+    CHECK_FALSE(listed.antialiasing);
+    CHECK(simulated("spheres,gloss=1", "auto", 1).sh_degree == 1);
+    CHECK_FALSE(simulated("spheres,gloss=1", "auto", 1).drops_bands);
+    CHECK(simulated("spheres,gloss=1", "auto", 0).outcomes[0].on == false);
+}
+
+TEST_CASE("a selection of effects that is none is refused") {
+    for (const char* text : {"auto", "all", "none", "direction", "exposure,antialiasing", "+direction",
+                             "auto,-exposure", "none,+exposure", "all,-direction"}) {
+        CAPTURE(text);
+        CHECK(refusal(text) == "");
+    }
+    CHECK(refusal("glare") ==
+          "--effects: there is no effect 'glare'; there are direction, exposure, antialiasing");
+    for (const char* text : {"auto,exposure", "exposure,+direction", "exposure,auto", ""}) {
+        CAPTURE(text);
+        CHECK(refusal(text).starts_with("--effects"));
+    }
+}
+
+TEST_CASE("gradients by the picture and by the exposure are those of central differences") {
+    using device_type = gs::device::cpu;
+    device_type device;
+    std::mt19937 random(1);
+    for (const std::size_t pixels : {1, 31, 700}) {
+        CAPTURE(pixels);
+        const auto picture = random_picture(random, 3 * pixels), weights = random_picture(random, 3 * pixels);
+        // Of the sum of weights and exposed values, by an exposure that was learnt.
+        gs::train::exposures<device_type> exposures(device);
+        exposures.set({gs::train::unexposed, gs::train::unexposed});
+        const auto show = [&](const std::vector<float>& of) {
+            const float* shown = exposures.show(1, of.data(), pixels);
+            return std::vector<float>(shown, shown + 3 * pixels);
+        };
+        CHECK(show(picture) == picture);
+        for (int i = 0; i < 30; ++i) exposures.learn(1, picture.data(), weights.data(), pixels, 0.02f, {});
+        const auto values = exposures.get();
+        CHECK(values[0] == gs::train::unexposed);
+        for (const float x : {values[1][0], values[1][5], values[1][10]})
+            CHECK(x == doctest::Approx(0.4).epsilon(
+                           1e-3));  // each step is of the rate: all gradients are positive
+        const auto loss = [&](const std::vector<float>& of) {
+            double sum = 0;
+            const auto shown = show(of);
+            for (std::size_t i = 0; i < shown.size(); ++i)
+                sum += static_cast<double>(weights[i]) * static_cast<double>(shown[i]);
+            return sum;
+        };
+        const float* by = exposures.learn(1, picture.data(), weights.data(), pixels, 0, {});
+        for (const std::size_t i : {std::size_t{0}, pixels - 1, 2 * pixels}) {
+            auto more = picture;
+            more[i] += 0.5f;
+            CHECK((loss(more) - loss(picture)) * 2 ==
+                  doctest::Approx(static_cast<double>(by[i])).epsilon(1e-4));
+        }
+        exposures.centre();
+        const auto centred = exposures.get();
+        for (std::size_t k = 0; k < 12; ++k)
+            CHECK(0.5f * (centred[0][k] + centred[1][k]) ==
+                  doctest::Approx(k % 5 == 0 ? 1 : 0).epsilon(1e-6));
+        CHECK(centred[1][0] - centred[0][0] == doctest::Approx(values[1][0] - values[0][0]).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("a step without room, or whose gradient is not finite, leaves the exposure") {
+    gs::device::cpu device;
+    gs::train::exposures<gs::device::cpu> exposures(device);
+    exposures.set({gs::train::unexposed});
+    const auto before = exposures.get();
+    const std::vector<float> picture(3, 0.5f), nothing(3, std::nanf(""));
+    const std::uint64_t needed = 2;
+    exposures.learn(0, picture.data(), picture.data(), 1, 0.1f, {&needed, 1});
+    CHECK(exposures.get() == before);
+    exposures.learn(0, picture.data(), nothing.data(), 1, 0.1f, {});
+    CHECK(exposures.get() == before);
+    exposures.learn(0, picture.data(), picture.data(), 1, 0.1f, {&needed, 2});
+    CHECK(exposures.get() != before);
+}
+
+TEST_CASE("photos of different exposures are fitted, and their mean stays") {
+    const gs::scene scene = small_scene("synthetic:spheres,exposure=0.4");
+    std::array<double, 2> psnr{};
+    for (const auto make : engines())
+        for (const bool exposes : {false, true}) {
+            const auto e = make();
+            gs::train::train_options o;
+            o.schedule.iterations = 400;
+            o.schedule.sh_degree = 0;
+            o.max_cap = 4000;
+            if (exposes) o.exposures.assign(scene.train.size(), gs::train::unexposed);
+            e->set_views(scene.train, {}, o.schedule.num_downscales);
+            e->set_model(gs::from_points(scene.points, 0, 3000, 1));
+            gs::train::train_events events{[&](const gs::train::progress& p) { psnr[exposes] = p.psnr; },
+                                           [](int) {}, [](int) {}};
+            const auto result = gs::train::train(*e, scene, o, events);
+            CHECK(result.exposures.size() == (exposes ? scene.train.size() : 0));
+            if (!exposes) continue;
+            CHECK(psnr[1] > psnr[0] + 3);
+            double mean = 0, square = 0;
+            for (const auto& x : result.exposures) {
+                mean += static_cast<double>(x[5]);
+                square += static_cast<double>(x[5] * x[5]);
+            }
+            mean /= static_cast<double>(scene.train.size());
+            CHECK(mean == doctest::Approx(1).epsilon(1e-4));
+            CHECK(std::sqrt(square / static_cast<double>(scene.train.size()) - mean * mean) > 0.1);
+        }
+}
+
+TEST_CASE("bands that pictures do not need are dropped, with their memory, and others stay") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines())
+        for (const float band : {0.0f, 0.05f}) {
+            const auto e = make();
+            gs::train::train_options o;
+            o.schedule.iterations = 40;
+            o.schedule.sh_degree = 2;
+            o.schedule.sh_degree_interval = 5;
+            o.schedule.sh_lr = 1e-9;
+            o.max_cap = 4000;
+            o.drops_bands = true;
+            e->set_views(scene.train, {}, o.schedule.num_downscales);
+            gs::gaussians model = gs::from_points(scene.points, 2, 3000, 1);
+            // Bands of degree 1: three of the eight coefficients.
+            for (std::size_t i = 0; i < model.sh_rest.size(); ++i)
+                if (i % 24 < 9) model.sh_rest[i] = band;
+            e->set_model(model);
+            const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
+            const auto result = gs::train::train(*e, scene, o, quiet);
+            CHECK(result.sh_degree == (band > 0 ? 1 : 0));
+            CHECK((result.band_change < gs::train::band_change_limit) == (band == 0));
+            CHECK(e->get_model().sh_degree == result.sh_degree);
+            CHECK(e->get_model().sh_rest.size() == (band > 0 ? 9 * e->count() : 0));
+        }
+}
+
+TEST_CASE("a fit finds what an exposure did, on pixels that it is not measured by") {
+    std::mt19937 random(2);
+    constexpr int width = 20, height = 9;
+    const auto picture = random_picture(random, 3 * width * height);
+    std::vector<float> photo(picture.size());
+    for (std::size_t i = 0; i < picture.size(); ++i) photo[i] = 0.6f * picture[i] + 0.1f;
+    CHECK(gs::evaluate::psnr_after_fit(picture, photo, width, height) > 60);
+    auto spoilt = photo;
+    for (std::size_t i = 0; i < spoilt.size(); ++i)
+        if (i % width >= width / 2) spoilt[i] = 0.5f;
+    CHECK(gs::evaluate::psnr_after_fit(picture, spoilt, width, height) < 20);
+    // Without a left half nothing changes.
+    CHECK(gs::evaluate::psnr_after_fit({0.5f, 0.5f, 0.5f}, {0.6f, 0.5f, 0.5f}, 1, 1) ==
+          doctest::Approx(-10 * std::log10(0.01 / 3)).epsilon(1e-5));
+}
