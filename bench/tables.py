@@ -15,6 +15,7 @@ import statistics
 import sys
 
 import paper
+from decisions import tables as decisions_tables
 from environment import markdown
 from scenes import where
 from tradeoff import table as tradeoff_table
@@ -264,6 +265,10 @@ def tradeoff():
     return tradeoff_table(results("tradeoff_lego"))
 
 
+def decisions():
+    return decisions_tables(results("decisions"))
+
+
 def accuracy_of(name):
     """Each way of keeping a sum: errors by condition, of its bound, bit patterns, and cost beside native's."""
     f = results(name)
@@ -350,7 +355,8 @@ EXAMPLES = {
 }
 
 TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability, hard_cases,
-                                 against_double, backward_ladder, backward_contenders, roofline, schedules, tradeoff, accuracy, accuracy_gpu, accuracy_active, accumulations)}
+                                 against_double, backward_ladder, backward_contenders, roofline, schedules, tradeoff, decisions, accuracy, accuracy_gpu,
+                                 accuracy_active, accumulations)}
 TABLES.update({name: lambda name=name: paper.tables(results(name)) for name in ("paper_cpu", "paper_h200")})
 TABLES.update({f"{name}_{m}": example(m, title) for name, title in EXAMPLES.items() for m in ("emulator", "gpu")})
 

@@ -1,0 +1,178 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The warpagg authors
+# SPDX-License-Identifier: MIT
+"""How often `inspect` decides right what a scene calls for: on synthetic scenes of known truth, and what it says of photos.
+
+    bench/decisions.py run --program build/.../gaussian_splatting --data ../shared/data --scenes lego truck \\
+        --output bench/results/decisions.json
+    bench/decisions.py table bench/results/decisions.json
+
+Pure scenes have one effect or noise; mixtures have each effect or not, by the seed, and each mixture comes with each noise.
+"""
+import argparse
+import json
+import pathlib
+import random
+import subprocess
+import tempfile
+import time
+
+from environment import environment, markdown
+from scenes import by
+
+WORLDS = ["spheres", "alpha"]
+BACKGROUND = "background"
+CAUSES = {"view-dependent colour": "gloss", "exposure by photo": "exposure", "antialiasing": "scales"}
+EFFECTS = [*CAUSES, BACKGROUND]
+PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"noise": 0.03}]
+MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8)}
+
+
+def synthetic(kind, world, parameters):
+    """A scene and which effects it has by how it is made."""
+    given = [f"{name}={value:g}" for name, value in parameters.items() if value]
+    truth = {effect: bool(parameters.get(cause)) for effect, cause in CAUSES.items()}
+    return {"kind": kind, "scene": "synthetic:" + ",".join([world, *given]), "noise": parameters.get("noise", 0),
+            "truth": {**truth, BACKGROUND: world == "alpha"}}
+
+
+def pure():
+    return [synthetic("pure", world, parameters) for world in WORLDS for parameters in PURE]
+
+
+def mixtures(count, seed, noises):
+    drawn = random.Random(seed)
+    cases = []
+    for _ in range(count):
+        world = drawn.choice(WORLDS)
+        parameters = {name: round(drawn.uniform(*ends), 2) for name, ends in MIXED.items() if drawn.random() < 0.5}
+        cases += [synthetic("mixture", world, {**parameters, "noise": noise}) for noise in noises]
+    return cases
+
+
+def inspect(program, scene):
+    """By effect, whether it is called for (None: no telling) and the evidence; and the seconds of the whole process."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "effects.json"
+        start = time.monotonic()
+        try:
+            done = subprocess.run([program, "inspect", "-d", scene, "-o", file], capture_output=True, text=True)
+        except OSError as problem:
+            raise SystemExit(f"'{program}' does not run: {problem.strerror}") from None
+        seconds = time.monotonic() - start
+        if done.returncode:
+            raise SystemExit(f"{scene} could not be inspected: {done.stderr.strip()}")
+        found = json.loads(file.read_text())["effects"]
+    return {"effects": {e["name"]: {key: e[key] for key in ("called_for", "evidence")} for e in found}, "seconds": seconds}
+
+
+def run(arguments):
+    output = pathlib.Path(arguments.output)
+    real = [pathlib.Path(arguments.data or "") / scene for scene in arguments.scenes]
+    if bool(arguments.data) != bool(real):
+        raise SystemExit("--data is the folder of the --scenes: one is not without the other")
+    if arguments.mixtures < 0:
+        raise SystemExit(f"--mixtures is a number of scenes, not {arguments.mixtures}")
+    for folder in [output.parent, *real]:
+        if not folder.is_dir():
+            raise SystemExit(f"there is no folder '{folder}'")
+    runs = []
+    for case in [*pure(), *mixtures(arguments.mixtures, arguments.seed, arguments.noises)]:
+        runs.append({**case, **inspect(arguments.program, case["scene"])})
+        print(case["scene"], "wrong: " + (", ".join(wrong(runs[-1])) or "none"), flush=True)
+    for folder in real:
+        runs.append({"kind": "real", "scene": folder.name, **inspect(arguments.program, str(folder))})
+        print(folder.name, f"{runs[-1]['seconds']:.2f} s", flush=True)
+    result = {"bench": "decisions", **environment(arguments.commit), "seed": arguments.seed, "runs": runs}
+    aside = output.with_name(output.name + ".part")
+    aside.write_text(json.dumps(result, indent=1) + "\n")
+    aside.replace(output)
+
+
+def called_for(one, effect):
+    return one["effects"][effect]["called_for"] or False
+
+
+def wrong(one):
+    return [effect for effect, has in one["truth"].items() if called_for(one, effect) != has]
+
+
+def counts(runs, effect):
+    """How many runs have the effect and are said to, are only said to, and only have it."""
+    pairs = [(called_for(r, effect), r["truth"][effect]) for r in runs]
+    return tuple(pairs.count(pair) for pair in ((True, True), (True, False), (False, True)))
+
+
+def share(part, whole):
+    return f"{100 * part / whole:.0f} %" if whole else "none"
+
+
+def said(one, effect):
+    return {True: "yes", False: "no", None: "no telling"}[one["effects"][effect]["called_for"]]
+
+
+def evidence(one, effect):
+    return one["effects"][effect]["evidence"].removeprefix("no telling: ")
+
+
+def tables(result):
+    kinds = by("kind", result["runs"])
+    mixed = kinds.get("mixture", [])
+    name = lambda one: f"`{one['scene'].removeprefix('synthetic:')}`"
+    rows = []
+    for effect in EFFECTS:
+        for noise, runs in by("noise", mixed).items():
+            both, only_said, only_true = counts(runs, effect)
+            rows.append([effect, f"{noise:g}", share(both, both + only_said), share(both, both + only_true), str(both),
+                         str(only_said), str(only_true)])
+    head = ["effect", "noise", "precision", "recall", "true positives", "false positives", "false negatives"]
+    text = [f"{len(mixed)} scenes, random mixtures of effects by seed {result['seed']}, each with each noise; no telling "
+            "counts as not called for:\n", markdown(head, rows)]
+
+    verdict = lambda one, effect: "**wrong**" if effect in wrong(one) else "right"
+    rows = [[name(r), *(f"{verdict(r, effect)}: {said(r, effect)}" for effect in EFFECTS)] for r in kinds["pure"]]
+    text += ["Scenes with one effect or noise:\n", markdown(["scene", *EFFECTS], rows)]
+
+    rows = [[name(r), effect, said(r, effect), evidence(r, effect)]
+            for r in [*kinds["pure"], *mixed] for effect in wrong(r)]
+    text += ["What is decided wrong:\n", markdown(["scene", "effect", "called for", "evidence"], rows)]
+
+    rows = [[r["scene"], *(f"{said(r, effect)}: {evidence(r, effect)}" for effect in EFFECTS), f"{r['seconds']:.2f}"]
+            for r in kinds.get("real", [])]
+    if rows:
+        text += ["Photos, of which no truth is known:\n", markdown(["scene", *EFFECTS, "seconds, with loading"], rows)]
+    return "\n".join([*text, f"{result['processor'].strip()}, {result['compiler']}, commit {result['commit']}.\n"])
+
+
+def table(arguments):
+    try:
+        result = json.loads(pathlib.Path(arguments.file).read_text())
+        if result["bench"] == "decisions":
+            return print(tables(result), end="")
+    except (OSError, ValueError, KeyError, TypeError):
+        pass
+    raise SystemExit(f"'{arguments.file}' holds no result of bench/decisions.py")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(required=True)
+    runner = commands.add_parser("run")
+    runner.add_argument("--program", required=True)
+    runner.add_argument("--data", help="the folder of the scenes")
+    runner.add_argument("--scenes", nargs="+", default=[])
+    runner.add_argument("--mixtures", type=int, default=20)
+    runner.add_argument("--noises", nargs="+", type=float, default=[0, 0.01, 0.03])
+    runner.add_argument("--seed", type=int, default=0)
+    runner.add_argument("--commit", help="where the sources are no git checkout")
+    runner.add_argument("--output", required=True)
+    runner.set_defaults(action=run)
+    shower = commands.add_parser("table")
+    shower.add_argument("file")
+    shower.set_defaults(action=table)
+    arguments = parser.parse_args()
+    arguments.action(arguments)
+
+
+if __name__ == "__main__":
+    main()
