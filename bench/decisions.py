@@ -22,7 +22,7 @@ from scenes import by
 
 WORLDS = ["spheres", "alpha"]
 BACKGROUND = "background"
-CAUSES = {"view-dependent colour": "gloss", "exposure by photo": "exposure", "antialiasing": "scales"}
+CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales"}
 EFFECTS = [*CAUSES, BACKGROUND]
 PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"noise": 0.03}]
 MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8)}

@@ -15,7 +15,7 @@ SCRIPT = [sys.executable, BENCH / "decisions.py"]
 sys.path.insert(0, str(BENCH))
 import decisions  # noqa: E402
 
-COLOUR = "view-dependent colour"
+COLOUR = "direction"
 
 
 def told(case, **colour):

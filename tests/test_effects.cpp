@@ -44,8 +44,8 @@ TEST_CASE("a scene calls for what it was made with, and for nothing else") {
     for (const auto& c : cases) {
         INFO(c.scene);
         const auto found = decide(gather(made(c.scene)));
-        CHECK(calls_for(found, "view-dependent colour") == c.direction);
-        CHECK(calls_for(found, "exposure by photo") == c.exposure);
+        CHECK(calls_for(found, "direction") == c.direction);
+        CHECK(calls_for(found, "exposure") == c.exposure);
         CHECK(calls_for(found, "antialiasing") == c.antialiasing);
         CHECK(calls_for(found, "background") == c.background);
     }

@@ -122,7 +122,7 @@ ordered_json effects_json(const settings& s, const scene& scene, const train::ba
     direction["sh_degree"] = result.sh_degree;
     if (simulated.drops_bands) {
         direction["sh_degree_at_first"] = simulated.sh_degree;
-        direction["change_without_highest_band"] = result.band_change;
+        if (result.band_change) direction["change_without_highest_band"] = *result.band_change;
     }
     all.push_back(
         {{"name", "background"},

@@ -33,12 +33,9 @@ decision view_dependent_colour(const evidence& e) {
     const int degree = sh_degree(e);
     const std::string choice = "--sh-degree " + std::to_string(degree);
     if (e.direction_points < limits.points)
-        return {"view-dependent colour",
-                {},
-                too_few(e.direction_points, "about as large in smooth parts"),
-                choice};
+        return {"direction", {}, too_few(e.direction_points, "about as large in smooth parts"), choice};
     const auto up_to = static_cast<std::size_t>(degree == 0 ? 3 : degree);
-    return {"view-dependent colour", degree > 0,
+    return {"direction", degree > 0,
             text("degree %zu brings what photos of a point differ by from %.2f %% down to %.2f %%", up_to,
                  100 * std::sqrt(e.unexplained[0]), 100 * std::sqrt(e.unexplained[up_to])),
             choice};
@@ -46,11 +43,11 @@ decision view_dependent_colour(const evidence& e) {
 
 decision exposure(const evidence& e) {
     if (e.exposure_points < limits.points)
-        return {"exposure by photo", {}, too_few(e.exposure_points, "in smooth parts"), "off"};
+        return {"exposure", {}, too_few(e.exposure_points, "in smooth parts"), "off"};
     const bool varies = e.exposure_spread >= limits.exposure &&
                         e.exposure_spread >= limits.exposure_errors * e.exposure_error;
     const auto percent = [](double log2) { return 100 * (std::exp2(log2) - 1); };
-    return {"exposure by photo", varies,
+    return {"exposure", varies,
             text("photos have the same points %.1f %% brighter or darker, measured to %.1f %%",
                  percent(e.exposure_spread), percent(e.exposure_error)),
             varies ? "on" : "off"};

@@ -89,7 +89,7 @@ void drop_bands(engine& engine, const scene& scene, const std::array<float, 3>& 
                 schedule& schedule, train_result& result) {
     for (int degree = schedule.sh_degree; degree > 0; --degree) {
         result.band_change = change_above(degree - 1, engine, scene, background);
-        if (result.band_change >= band_change_limit) break;
+        if (*result.band_change >= band_change_limit) break;
         schedule.sh_degree = degree - 1;
     }
     engine.lower_sh_degree(schedule.sh_degree);

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -54,7 +55,8 @@ struct train_result {
     /// Up to which colours depend on direction: the schedule's, unless pictures of eight training views
     /// change by a root mean square of less than `band_change_limit` without the bands above.
     int sh_degree = 0;
-    double band_change = 0;           ///< by which they would change without the highest that is left
+    std::optional<double>
+        band_change;  ///< by which they would change without the highest that is left; none: not known
     std::vector<exposure> exposures;  ///< of the training photos, if they have any
 };
 
