@@ -825,9 +825,10 @@ TEST_CASE("train simulates what the scene calls for, or what it is told, and say
     CHECK(effects("auto", varied, {}) ==
           set{{"direction", false}, {"exposure", true}, {"antialiasing", true}, {"background", false}});
     const json found = read_json(folder / "auto/exposures.json");
-    CHECK(found.size() == 40);
-    CHECK(found.at("view_00.png").size() == 3);
-    CHECK(found.at("view_00.png")[2].size() == 4);
+    CHECK(found.at("train").size() == 40);
+    CHECK(found.at("train").at("view_00.png").size() == 3);
+    CHECK(found.at("train").at("view_00.png")[2].size() == 4);
+    CHECK(found.at("test").size() == 8);
     const json metrics = read_json(folder / "auto/metrics.json");
     CHECK(metrics.at("fitted_psnr").is_number());
     CHECK(metrics.at("views")[0].at("fitted_psnr").is_number());

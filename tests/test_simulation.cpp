@@ -14,6 +14,7 @@
 #include "../examples/gaussian_splatting/effects/simulate.hpp"
 #include "../examples/gaussian_splatting/error.hpp"
 #include "../examples/gaussian_splatting/evaluate/fit_exposure.hpp"
+#include "../examples/gaussian_splatting/evaluate/test_exposures.hpp"
 #include "../examples/gaussian_splatting/model/initialise.hpp"
 #include "../examples/gaussian_splatting/train/exposures.hpp"
 #include "../examples/gaussian_splatting/train/trainer.hpp"
@@ -205,6 +206,38 @@ TEST_CASE("bands that pictures do not need are dropped, with their memory, and o
             CHECK(e->get_model().sh_degree == result.sh_degree);
             CHECK(e->get_model().sh_rest.size() == (band > 0 ? 9 * e->count() : 0));
         }
+}
+
+TEST_CASE("test photos are exposed as their neighbours, if training photos are") {
+    gs::scene scene;
+    for (const char* name : {"e", "a", "c", "g"}) scene.train.emplace_back().name = name;
+    for (const char* name : {"0", "b", "d", "z"}) scene.test.emplace_back().name = name;
+    const auto gain = [](float x) { return gs::train::exposure{x, 0, 0, 0, 0, x, 0, 0, 0, 0, x, 0}; };
+    const std::vector walk{gain(1.2f), gain(0.8f), gain(1), gain(1.4f)};
+    CHECK(gs::evaluate::test_exposures(scene, walk) ==
+          std::vector{gain(0.8f), gain(0.5f * (0.8f + 1)), gain(0.5f * (1 + 1.2f)), gain(1.4f)});
+    const std::vector jumps{gain(0.6f), gain(0.8f), gain(1.4f), gain(1.2f)};
+    CHECK(gs::evaluate::test_exposures(scene, jumps) == std::vector(4, gs::train::unexposed));
+}
+
+TEST_CASE("what test views are shown with is what they are measured with") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(gs::from_points(scene.points, 0, 1000, 1));
+        std::vector<float> plain, darker;
+        const double before = e->measure(1, {}, &plain).psnr();
+        auto half = std::vector(scene.test.size(), gs::train::unexposed);
+        half[1] = {0.5f, 0, 0, 0.1f, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0};
+        e->set_test_exposures(half);
+        CHECK(e->measure(1, {}, &darker).psnr() < before);
+        for (std::size_t i = 0; i < plain.size(); ++i)
+            CHECK(darker[i] == doctest::Approx(0.5f * plain[i] + (i < plain.size() / 3 ? 0.1f : 0.0f)));
+        CHECK(e->measure(0, {}, &darker).psnr() != before);
+        e->set_test_exposures({});
+        CHECK(e->measure(1, {}).psnr() == before);
+    }
 }
 
 TEST_CASE("a fit finds what an exposure did, on pixels that it is not measured by") {

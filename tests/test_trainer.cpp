@@ -54,6 +54,7 @@ class recorder final : public gs::train::engine {
     void reset_opacity(float) override {}
     std::vector<gs::train::exposure> exposures() override { return {}; }
     void set_exposures(const std::vector<gs::train::exposure>&) override {}
+    void set_test_exposures(const std::vector<gs::train::exposure>&) override {}
     void centre_exposures() override {}
     std::vector<std::size_t> cleared_after;  ///< so many steps
     void clear_cameras() override { cleared_after.push_back(steps.size()); }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "../evaluate/test_exposures.hpp"
 #include "../model/initialise.hpp"
 #include "../model/ply.hpp"
 #include "progress_bar.hpp"
@@ -132,12 +133,12 @@ ordered_json effects_json(const settings& s, const scene& scene, const train::ba
 }
 
 /// By photo, three rows of four numbers: as the implementation of Kerbl et al. 2024 writes them.
-ordered_json exposures_json(const scene& scene, const std::vector<train::exposure>& exposures) {
+ordered_json exposures_json(const std::vector<view>& views, const std::vector<train::exposure>& exposures) {
     ordered_json all = ordered_json::object();
     for (std::size_t v = 0; v < exposures.size(); ++v) {
         const train::exposure& e = exposures[v];
         for (std::size_t row = 0; row < 3; ++row)
-            all[scene.train[v].name].push_back({e[4 * row], e[4 * row + 1], e[4 * row + 2], e[4 * row + 3]});
+            all[views[v].name].push_back({e[4 * row], e[4 * row + 1], e[4 * row + 2], e[4 * row + 3]});
     }
     return all;
 }
@@ -201,7 +202,11 @@ void train(const settings& s) {
         std::filesystem::create_directories(file.parent_path());
         write_ply(file, out_of(scene.frame, engine->get_model()));
     };
+    const auto expose_tests = [&](const std::vector<train::exposure>& of_training) {
+        if (!of_training.empty()) engine->set_test_exposures(evaluate::test_exposures(scene, of_training));
+    };
     events.test = [&](int iteration) {
+        if (!options.exposures.empty()) expose_tests(engine->exposures());
         const auto report = evaluate::measure_test_views(*engine, scene, background.colour, {});
         tested.push_back({{"iteration", iteration},
                           {"seconds", last.seconds},
@@ -222,6 +227,7 @@ void train(const settings& s) {
     const stopwatch evaluating;
     // What is measured is what the file holds, which float has rounded in the scene's own frame.
     engine->set_model(into(scene.frame, out_of(scene.frame, engine->get_model())));
+    expose_tests(result.exposures);
     const auto pictures = pictures_of(output.path(), options.schedule.iterations);
     const auto report = evaluate::measure_test_views(*engine, scene, background.colour, pictures,
                                                      s.fit_exposure || !simulated.exposures.empty());
@@ -250,8 +256,12 @@ void train(const settings& s) {
     metrics["effects"] = effects_json(s, scene, background, simulated, result);
     metrics["seed"] = s.seed;
     write_json(output.path() / "settings.json", settings_json(s, options, simulated));
-    if (!result.exposures.empty())
-        write_json(output.path() / "exposures.json", exposures_json(scene, result.exposures));
+    if (!result.exposures.empty()) {
+        const auto of_tests = evaluate::test_exposures(scene, result.exposures);
+        write_json(output.path() / "exposures.json",
+                   {{"train", exposures_json(scene.train, result.exposures)},
+                    {"test", exposures_json(scene.test, of_tests)}});
+    }
     write_json(output.path() / "metrics.json", metrics);
 
     if (report.views.empty()) {

@@ -64,7 +64,11 @@ class device_engine final : public engine {
 
   public:
     device_engine()
-        : renderer_(device_), photometric_(device_), exposures_(device_), densification_(device_) {
+        : renderer_(device_),
+          photometric_(device_),
+          exposures_(device_),
+          test_exposures_(device_),
+          densification_(device_) {
         skipped_.resize(1);
         device_.zero(skipped_.data(), 1);
         found_.resize(1);
@@ -109,6 +113,7 @@ class device_engine final : public engine {
         lengths_.resize(train.size());
         set_downscales(0);
         exposures_.set(std::vector<exposure>(train.size(), unexposed));
+        test_exposures_.set({});
         device_.wait();
     }
 
@@ -174,6 +179,7 @@ class device_engine final : public engine {
 
     std::vector<exposure> exposures() override { return exposures_.get(); }
     void set_exposures(const std::vector<exposure>& all) override { exposures_.set(all); }
+    void set_test_exposures(const std::vector<exposure>& all) override { test_exposures_.set(all); }
     void centre_exposures() override { exposures_.centre(); }
 
     void clear_cameras() override {
@@ -226,7 +232,7 @@ class device_engine final : public engine {
     std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
                               int sh_degree) override {
         draw(camera, background, std::min(sh_degree, sh_degree_));
-        return drawn(camera);
+        return downloaded(renderer_.picture(), camera);
     }
 
     void lower_sh_degree(int degree) override {
@@ -241,12 +247,15 @@ class device_engine final : public engine {
         photometric_.take();  // what steps added
         draw(shot.camera, background, sh_degree_);
         const std::size_t n = values_of(shot.camera);
+        const float* exposed = test_exposures_.count() > 0
+                                   ? test_exposures_.show(test_view, renderer_.picture(), n / 3)
+                                   : renderer_.picture();
         shown_.resize(n);
-        device_.for_each_index(n, clamp_picture{renderer_.picture(), shown_.data()});
+        device_.for_each_index(n, clamp_picture{exposed, shown_.data()});
         photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
                                background);
         photometric_.compare(shown_.data());
-        if (picture != nullptr) *picture = drawn(shot.camera);
+        if (picture != nullptr) *picture = downloaded(exposed, shot.camera);
         return photometric_.take();
     }
 
@@ -333,16 +342,16 @@ class device_engine final : public engine {
         drawn_pairs_ += all_pairs() - before;
     }
 
-    std::vector<float> drawn(const camera& camera) {
+    std::vector<float> downloaded(const float* from, const camera& camera) {
         std::vector<float> picture(values_of(camera));
-        device_.download(picture.data(), renderer_.picture(), picture.size());
+        device_.download(picture.data(), from, picture.size());
         return picture;
     }
 
     Device device_;
     raster::renderer<Device, float> renderer_;
     photometric<Device, float> photometric_;
-    train::exposures<Device> exposures_;
+    train::exposures<Device> exposures_, test_exposures_;
     buffer<std::uint8_t> photos_;
     std::vector<std::vector<photo>> train_;  ///< by how often they were shrunk
     std::vector<photo> test_;

@@ -90,8 +90,11 @@ class engine {
                                       int sh_degree = 3) = 0;
     /// Drops the colours of directions above a degree, and their memory.
     virtual void lower_sh_degree(int degree) = 0;
-    /// A test view against its photo, clamped to [0, 1]. `picture`, where there is one, becomes what `render`
-    /// draws of the view.
+    /// What test views are shown with from now on, one each; none: as `render` draws them, as after
+    /// `set_views`.
+    virtual void set_test_exposures(const std::vector<exposure>& all) = 0;
+    /// A test view against its photo, clamped to [0, 1]. `picture`, where there is one, becomes what is
+    /// measured, not clamped.
     virtual quality measure(std::size_t test_view, const std::array<float, 3>& background,
                             std::vector<float>* picture = nullptr) = 0;
 

@@ -10,7 +10,7 @@
 
 namespace gs::train {
 
-/// The exposures of the training photos, in training: by Adam, each by the steps that show its photo.
+/// The exposures of photos, on the device. They can learn: by Adam, each by the steps that show its photo.
 template <class Device>
 class exposures {
     template <class T>
@@ -32,6 +32,8 @@ class exposures {
         device_.wait();
         steps_.assign(all.size(), 0);
     }
+
+    std::size_t count() const { return steps_.size(); }
 
     /// The picture of a view, on the device, as its photo would have it.
     const float* show(std::size_t view, const float* picture, std::size_t pixels) {

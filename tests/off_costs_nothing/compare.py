@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The warpagg authors
+# SPDX-License-Identifier: MIT
+"""An effect that is off costs nothing: kernels are, instruction by instruction, what sources without the effect make them.
+
+    compare.py CXX [NVCC]
+
+What stands behind `if constexpr (Effects...` is cut out of a copy of the sources. With the effect off both must come to
+the same assembly (and, with NVCC, PTX), and with it on to another.
+"""
+import pathlib
+import platform
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+SOURCES = HERE.parent.parent / "examples" / "gaussian_splatting"
+STATEMENT = re.compile(r"^ *if constexpr \(Effects\.\w+\)\s[^;]*;\n", re.MULTILINE)
+
+
+def compiled(command, sources, antialiasing):
+    done = subprocess.run([*command, f"-DANTIALIASING={antialiasing}", f"-I{sources}", f"-I{HERE.parent.parent / 'include'}",
+                           HERE / "kernels.cpp", "-o", "-"], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise SystemExit(done.stderr)
+    # Mangled names hold the parameter's value.
+    return re.sub(r"\S*effect_set\S*", "", done.stdout)
+
+
+def without_effects(folder):
+    """A copy of the sources. Returns it, and how many statements were cut out of it."""
+    copy = pathlib.Path(shutil.copytree(SOURCES, pathlib.Path(folder) / "sources"))
+    cut = 0
+    for header in (copy / "raster").glob("*.hpp"):
+        text, n = STATEMENT.subn("", header.read_text())
+        header.write_text(text)
+        cut += n
+    return copy, cut
+
+
+def main():
+    cxx, *nvcc = sys.argv[1:]
+    level = ["-march=x86-64-v3"] if platform.machine() == "x86_64" else []
+    commands = {"assembly": [cxx, "-std=c++20", "-O3", *level, "-ffp-contract=off", "-S"]}
+    if nvcc:
+        commands["PTX"] = [nvcc[0], "-x", "cu", "-std=c++20", "-O3", "-arch=sm_90", "-diag-suppress", "20012", "-ptx"]
+    wrong = []
+    with tempfile.TemporaryDirectory() as folder:
+        bare, cut = without_effects(folder)
+        if cut != 2:
+            wrong.append(f"{cut} statements of effects were found instead of 2")
+        for what, command in commands.items():
+            off, on, none = compiled(command, SOURCES, "false"), compiled(command, SOURCES, "true"), compiled(command, bare, "false")
+            lines = len(off.splitlines())
+            print(f"{what}: {lines} lines with effects off, {len(on.splitlines())} with antialiasing")
+            if off != none:
+                wrong.append(f"{what} with effects off is not that of sources without them")
+            if on == off:
+                wrong.append(f"{what} with antialiasing is that without")
+    for line in wrong:
+        print(line)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+
+// The kernels that have effects as a template parameter, for compare.py to compile: with g++ on the
+// emulator's warps, with nvcc -x cu on those of a GPU.
+#if defined(__CUDACC__)
+#include <warpagg/simt/cuda.hpp>
+#else
+#include <warpagg/simt/lanes.hpp>
+#endif
+
+#include "raster/project.hpp"
+#include "raster/project_backward.hpp"
+#include "train/adam.hpp"
+
+constexpr gs::effect_set effects{.antialiasing = ANTIALIASING};
+
+#if defined(__CUDACC__)
+using warp = warpagg::cuda::warp;
+
+extern "C" __global__ void forward(gs::raster::project<warp, float, effects> kernel) {
+    kernel(warp{}, blockIdx.x);
+}
+extern "C" __global__ void backward(
+    gs::raster::project_backward<warp, float, gs::train::adam<float>, effects> kernel) {
+    kernel(warp{}, blockIdx.x);
+}
+#else
+using warp = warpagg::emulator::narrow_lanes<8>;
+
+extern "C" void forward(const gs::raster::project<warp, float, effects>& kernel, unsigned index) {
+    kernel(warp{}, index);
+}
+extern "C" void backward(
+    const gs::raster::project_backward<warp, float, gs::train::adam<float>, effects>& kernel,
+    unsigned index) {
+    kernel(warp{}, index);
+}
+#endif
