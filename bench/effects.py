@@ -116,7 +116,7 @@ def table(result):
     head = ["scene", "auto simulates", "time of all to auto's", "of none to auto's", "held-out PSNR: none / auto / all, dB",
             "after fitting exposures"]
     own = " ".join(result["options"])
-    return f"{text}\n{markdown(head, rows)}\n`{own}`, {where(result)}; medians\n"
+    return f"{text}\n{markdown(head, rows)}\n`{own}`, {where(result)}\n"
 
 
 def main():

@@ -16,6 +16,7 @@ import sys
 
 import paper
 from decisions import tables as decisions_tables
+from effects import table as effects_table
 from environment import markdown
 from scenes import where
 from tradeoff import table as tradeoff_table
@@ -269,6 +270,19 @@ def decisions():
     return decisions_tables(results("decisions"))
 
 
+def effects():
+    return effects_table(results("effects"))
+
+
+def effects_photos():
+    """Held-out PSNR of photos without and with what they call for."""
+    none, auto = (results(f"effects_cpu_{selection}") for selection in ("none", "auto"))
+    rows = [[a["scene"], f"{n['psnr']:.2f}", f"{a['psnr']:.2f} ({a['psnr'] - n['psnr']:+.2f})"]
+            for n, a in zip(none["runs"], auto["runs"], strict=True)]
+    head = ["scene", "`--effects none`: held-out PSNR, dB", "`auto`"]
+    return f"{markdown(head, rows)}\n`{' '.join(auto['options'])}`, {where(auto)}\n"
+
+
 def accuracy_of(name):
     """Each way of keeping a sum: errors by condition, of its bound, bit patterns, and cost beside native's."""
     f = results(name)
@@ -355,7 +369,7 @@ EXAMPLES = {
 }
 
 TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability, hard_cases,
-                                 against_double, backward_ladder, backward_contenders, roofline, schedules, tradeoff, decisions, accuracy, accuracy_gpu,
+                                 against_double, backward_ladder, backward_contenders, roofline, schedules, tradeoff, decisions, effects, effects_photos, accuracy, accuracy_gpu,
                                  accuracy_active, accumulations)}
 TABLES.update({name: lambda name=name: paper.tables(results(name)) for name in ("paper_cpu", "paper_h200")})
 TABLES.update({f"{name}_{m}": example(m, title) for name, title in EXAMPLES.items() for m in ("emulator", "gpu")})

@@ -488,7 +488,8 @@ TEST_CASE("inspect says what a scene calls for, and writes it") {
     for (const auto& effect : json.at("effects")) {
         const auto name = effect.at("name").get<std::string>();
         CHECK(effect.at("called_for").get<bool>() == (name == "direction" || name == "exposure"));
-        CHECK(says(o.out, {name, effect.at("evidence").get<std::string>()}));
+        CHECK(says(o.out, {name, effect.at("evidence").get<std::string>(),
+                           effect.at("expected").get<std::string>()}));
     }
     check_refusal({"inspect", "-d", "synthetic:spheres,shine=1"}, {"'shine'", "gloss"});
     check_refusal({"inspect", "-d", "synthetic:spheres", "-o", (folder / "none/effects.json").string()},

@@ -13,15 +13,16 @@ void inspect(const settings& s) {
     const effects::evidence evidence = effects::gather(scene);
     nlohmann::ordered_json found = nlohmann::ordered_json::array();
     for (const effects::decision& d : effects::decide(evidence)) {
-        std::printf("%-22s %-4s %s\n%27s -> %s\n", d.name.c_str(),
+        std::printf("%-14s %-4s %s\n%19s -> %s; costs and gains: %s\n", d.name.c_str(),
                     !d.called_for   ? "?"
                     : *d.called_for ? "yes"
                                     : "no",
-                    d.evidence.c_str(), "", d.choice.c_str());
+                    d.evidence.c_str(), "", d.choice.c_str(), d.expected.c_str());
         found.push_back({{"name", d.name},
                          {"called_for", d.called_for ? nlohmann::ordered_json(*d.called_for) : nullptr},
                          {"evidence", d.evidence},
-                         {"choice", d.choice}});
+                         {"choice", d.choice},
+                         {"expected", d.expected}});
     }
     if (!s.output.empty()) write_json(s.output, {{"data", s.scene.data}, {"effects", found}});
 }

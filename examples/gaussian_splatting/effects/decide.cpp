@@ -29,42 +29,57 @@ std::string too_few(std::size_t points, const char* where) {
     return text("no telling: %zu points lie %s of 5 photos or more", points, where);
 }
 
-decision view_dependent_colour(const evidence& e) {
+/// What each costs and gains: docs/effects.md.
+namespace expected {
+constexpr const char* direction =
+    "5 % of an iteration and 45 floats a Gaussian for degree 3; 1 dB on glossy scenes, -0.2 dB on noisy "
+    "matte ones";
+constexpr const char* exposure =
+    "5 to 20 % of an iteration; several dB where photos differ by a third, after fitting";
+constexpr const char* antialiasing = "no time; 1 to 7 dB from other distances, -0.7 dB where all are alike";
+constexpr const char* background = "nothing";
+}  // namespace expected
+
+decision direction(const evidence& e) {
     const int degree = sh_degree(e);
     const std::string choice = "--sh-degree " + std::to_string(degree);
     if (e.direction_points < limits.points)
-        return {"direction", {}, too_few(e.direction_points, "about as large in smooth parts"), choice};
+        return {"direction",
+                {},
+                too_few(e.direction_points, "about as large in smooth parts"),
+                choice,
+                expected::direction};
     const auto up_to = static_cast<std::size_t>(degree == 0 ? 3 : degree);
     return {"direction", degree > 0,
             text("degree %zu brings what photos of a point differ by from %.2f %% down to %.2f %%", up_to,
                  100 * std::sqrt(e.unexplained[0]), 100 * std::sqrt(e.unexplained[up_to])),
-            choice};
+            choice, expected::direction};
 }
 
 decision exposure(const evidence& e) {
     if (e.exposure_points < limits.points)
-        return {"exposure", {}, too_few(e.exposure_points, "in smooth parts"), "off"};
+        return {"exposure", {}, too_few(e.exposure_points, "in smooth parts"), "off", expected::exposure};
     const bool varies = e.exposure_spread >= limits.exposure &&
                         e.exposure_spread >= limits.exposure_errors * e.exposure_error;
     const auto percent = [](double log2) { return 100 * (std::exp2(log2) - 1); };
     return {"exposure", varies,
             text("photos have the same points %.1f %% brighter or darker, measured to %.1f %%",
                  percent(e.exposure_spread), percent(e.exposure_error)),
-            varies ? "on" : "off"};
+            varies ? "on" : "off", expected::exposure};
 }
 
 decision antialiasing(const evidence& e) {
     if (e.scale_points < limits.points)
-        return {"antialiasing", {}, too_few(e.scale_points, "in sight"), "off"};
+        return {"antialiasing", {}, too_few(e.scale_points, "in sight"), "off", expected::antialiasing};
     const bool spreads = e.scale_ratio >= limits.scale_ratio;
     return {"antialiasing", spreads,
             text("the median point is %.1f times as large in one photo as in another", e.scale_ratio),
-            spreads ? "on" : "off"};
+            spreads ? "on" : "off", expected::antialiasing};
 }
 
 decision background(const evidence& e) {
     return {"background", e.alpha, e.alpha ? "photos have transparent parts" : "all photos are opaque",
-            e.alpha ? "white" : "black"};
+            e.alpha ? "white" : "black", expected::background};
 }
 
 }  // namespace
@@ -81,7 +96,7 @@ int sh_degree(const evidence& e) {
 }
 
 std::vector<decision> decide(const evidence& e) {
-    return {view_dependent_colour(e), exposure(e), antialiasing(e), background(e)};
+    return {direction(e), exposure(e), antialiasing(e), background(e)};
 }
 
 }  // namespace gs::effects

@@ -16,6 +16,7 @@ struct decision {
     std::optional<bool> called_for;  ///< none where too little tells
     std::string evidence;            ///< with its numbers
     std::string choice;              ///< what to do about it
+    std::string expected;            ///< what it costs and gains: see docs/effects.md
 };
 
 /// The degree of spherical harmonics that colours need: 0 to 3. Where too few points tell, 3.
