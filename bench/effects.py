@@ -29,6 +29,7 @@ LITTLE = ["spheres,noise=0.03", "alpha,noise=0.03"]
 MUCH = ["spheres,gloss=0.7,exposure=0.3,scales=4", "alpha,gloss=0.7,exposure=0.3,scales=4"]
 SELECTIONS = ["none", "auto", "all"]
 DISTANCES = [0.5, 4]
+TAKEN = {"exposure", "scales", "noise"}  # what is of the photos, not of the world
 SIDE = "256"
 
 
@@ -52,7 +53,7 @@ def train(arguments, scene, effects, seed):
         if not is_folder:
             ply = next(pathlib.Path(folder).glob("point_cloud/*/point_cloud.ply"))
             device = metrics["device"].split(",")[0]
-            world = scene.split(",")[0]
+            world = ",".join(word for word in scene.split(",") if word.split("=")[0] not in TAKEN)
             one["from_distance"] = {str(d): evaluated(arguments.program, ply, world, d, device, folder) for d in DISTANCES}
     print(scene, effects, seed, f"{one['psnr']:.2f} dB, fitted {one['fitted_psnr']:.2f}",
           f"{one['iterations_per_second']:.0f} it/s", flush=True)
@@ -65,7 +66,9 @@ def run(arguments):
     runs = [train(arguments, *one, seed) for seed in arguments.seeds for one in {**pairs, **chosen}]
     result = {"bench": "effects", "scenes": arguments.scenes, "options": arguments.options, **environment(arguments.commit),
               "runs": runs}
-    pathlib.Path(arguments.output).write_text(json.dumps(result, indent=1) + "\n")
+    aside = pathlib.Path(f"{arguments.output}.part")
+    aside.write_text(json.dumps(result, indent=1) + "\n")
+    aside.replace(arguments.output)
     print(table(result))
 
 
@@ -89,7 +92,7 @@ def figures(off, on):
     row = [f"{ms[1] / ms[0]:.2f}", f"{mib[0]:.0f}, {mib[1]:.0f}", pair(both(lambda r: r["psnr"])),
            pair(both(lambda r: r["fitted_psnr"]))]
     for distance in map(str, DISTANCES):
-        row.append(pair(both(lambda r: r["from_distance"][distance])))
+        row.append(pair(both(lambda r: r["from_distance"][distance])) if "from_distance" in off[0] else "")
     return row
 
 

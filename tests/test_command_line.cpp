@@ -457,7 +457,8 @@ TEST_CASE("a number that makes no sense is refused") {
                                                         {"--sh-lr", "0", ""},
                                                         {"--budget", "0", ""},
                                                         {"--prune-share", "1", ""},
-                                                        {"--prune-share", "nan", ""},
+                                                        {"--prune-share", "nan", "below 1"},
+                                                        {"--prune-share", ".", "below 1"},
                                                         {"--num-downscales", "9", ""},
                                                         {"--resolution-schedule", "0", ""},
                                                         {"--sh-update-interval", "0", ""},
@@ -800,7 +801,8 @@ TEST_CASE("--quality best takes its time, and what was said") {
 TEST_CASE("a fifth of what grew is pruned, but not of a budget, nor if it is said") {
     const temporary_folder folder;
     const auto share = [&](const char* name, const words& options) {
-        check_success(small_training(folder / name) + words{"-q", "--densify-from-iter", "10"} + options);
+        check_success(small_training(folder / name) +
+                      words{"-q", "--densify-from-iter", "10", "--densification-interval", "5"} + options);
         return read_json(folder / name / "settings.json").at("prune_share");
     };
     CHECK(share("default", {}) == 0.2);

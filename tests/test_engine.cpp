@@ -151,6 +151,16 @@ TEST_CASE("gradients of centres, in halves of the picture, are alike on photos o
     }
 }
 
+TEST_CASE("views that were not shrunk are not to be had") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, {}, 1);
+        e->set_downscales(1);
+        CHECK_THROWS_WITH_AS(e->set_downscales(2), "views were set for 1 shrinkings, not 2", gs::error);
+    }
+}
+
 TEST_CASE("colours that depend on direction stay as they are when they are not to learn") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {

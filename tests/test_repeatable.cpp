@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "device/cpu.hpp"
+#include "effects/review_bands.hpp"
 #include "engines.hpp"
 #include "error.hpp"
 #include "hard_cases/effort.hpp"
@@ -28,7 +29,11 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene, gs::gradient
     o.max_cap = 4000;
     o.gradient = how;
     e.set_views(scene.train, {}, o.schedule.num_downscales);
-    e.set_model(gs::from_points(scene.points, o.schedule.sh_degree, 500, 1));
+    gs::gaussians model = gs::from_points(scene.points, o.schedule.sh_degree, 500, 1);
+    model.antialiased = true;
+    o.exposures.assign(scene.train.size(), gs::train::unexposed);
+    o.review_bands = [&](int degree) { return gs::effects::review_bands(e, scene, {}, degree).sh_degree; };
+    e.set_model(model);
     gs::train::train(e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
     return e.get_model();
 }

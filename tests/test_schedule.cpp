@@ -112,6 +112,7 @@ TEST_CASE("pruning follows densification, half-way to the end at the latest") {
     schedule s;
     s.iterations = 1000;
     s.densify_until_iter = 600;
+    s.densify_from_iter = 400;
     CHECK(s.share_to_prune() == 0.2);
     s.prune_share = 0;
     CHECK(s.prune_after(50) == 0);
@@ -126,6 +127,11 @@ TEST_CASE("where nothing grows, or until the end, nothing is pruned, unless it i
     schedule s;
     s.iterations = 1000;
     CHECK(s.prune_after(50) == 0);  // densification would begin as it ends
+    s.iterations = 1100;            // and here, before its first time
+    CHECK(s.prune_after(50) == 0);
+    s.iterations = 1300;
+    CHECK(s.prune_after(50) == 700);
+    s.iterations = 1000;
     s.densify_from_iter = 100;
     CHECK(s.prune_after(50) == 550);
     s.densify_until_iter = 1000;

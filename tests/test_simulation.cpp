@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../examples/gaussian_splatting/device/cpu.hpp"
+#include "../examples/gaussian_splatting/effects/review_bands.hpp"
 #include "../examples/gaussian_splatting/effects/simulate.hpp"
 #include "../examples/gaussian_splatting/error.hpp"
 #include "../examples/gaussian_splatting/evaluate/fit_exposure.hpp"
@@ -58,14 +59,14 @@ TEST_CASE("what is simulated is what the scene calls for, or what was said") {
 
     const simulation much = simulated("spheres,gloss=0.6,exposure=0.3", "auto,-exposure,+antialiasing");
     CHECK(much.sh_degree > 0);
-    CHECK(much.drops_bands);
+    CHECK(much.reviews_bands);
     CHECK(much.exposures.empty());
-    CHECK(much.outcomes[1].reason == "--effects -exposure");
+    CHECK(much.outcomes[1].reason == "--effects auto,-exposure,+antialiasing");
     CHECK(much.antialiasing);
 
     CHECK(simulated("spheres", "all").sh_degree == 3);
     CHECK(simulated("spheres", "all").exposures == std::vector<float>(48, 1.0f));
-    CHECK_FALSE(simulated("spheres", "all").drops_bands);
+    CHECK_FALSE(simulated("spheres", "all").reviews_bands);
     CHECK(simulated("spheres,gloss=1", "none").sh_degree == 0);
     CHECK(simulated("spheres", "+direction").sh_degree == 3);
     const simulation listed = simulated("spheres,scales=4", "exposure,direction");
@@ -73,8 +74,13 @@ TEST_CASE("what is simulated is what the scene calls for, or what was said") {
     CHECK(listed.sh_degree == 3);
     CHECK_FALSE(listed.antialiasing);
     CHECK(simulated("spheres,gloss=1", "auto", 1).sh_degree == 1);
-    CHECK_FALSE(simulated("spheres,gloss=1", "auto", 1).drops_bands);
+    CHECK_FALSE(simulated("spheres,gloss=1", "auto", 1).reviews_bands);
+    CHECK_FALSE(simulated("spheres", "auto,-direction").reviews_bands);
     CHECK(simulated("spheres,gloss=1", "auto", 0).outcomes[0].on == false);
+    const simulation settled =
+        simulated("spheres", "auto,-exposure,-antialiasing", 2);  // nothing to look for
+    CHECK(settled.sh_degree == 2);
+    CHECK(settled.outcomes[0].reason == "--sh-degree 2");
 }
 
 TEST_CASE("a selection of effects that is none is refused") {
@@ -180,10 +186,11 @@ TEST_CASE("photos of different exposures are fitted, and their mean stays") {
         }
 }
 
-TEST_CASE("bands that pictures do not need are dropped, with their memory, and others stay") {
+TEST_CASE("bands go, with their memory, where training is told so, and come as zeros") {
     const gs::scene scene = small_scene();
     for (const auto make : engines())
-        for (const float band : {0.0f, 0.05f}) {
+        for (const int degree : {0, 1, 2, 3}) {
+            CAPTURE(degree);
             const auto e = make();
             gs::train::train_options o;
             o.schedule.iterations = 40;
@@ -191,20 +198,55 @@ TEST_CASE("bands that pictures do not need are dropped, with their memory, and o
             o.schedule.sh_degree_interval = 5;
             o.schedule.sh_lr = 1e-9;
             o.max_cap = 4000;
-            o.drops_bands = true;
+            o.review_bands = [&](int sh_degree) {
+                CHECK(sh_degree == 2);
+                return degree;
+            };
             e->set_views(scene.train, {}, o.schedule.num_downscales);
             gs::gaussians model = gs::from_points(scene.points, 2, 3000, 1);
-            // Bands of degree 1: three of the eight coefficients.
-            for (std::size_t i = 0; i < model.sh_rest.size(); ++i)
-                if (i % 24 < 9) model.sh_rest[i] = band;
+            std::ranges::fill(model.sh_rest, 0.01f);
             e->set_model(model);
             const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
-            const auto result = gs::train::train(*e, scene, o, quiet);
-            CHECK(result.sh_degree == (band > 0 ? 1 : 0));
-            REQUIRE(result.band_change);
-            CHECK((*result.band_change < gs::train::band_change_limit) == (band == 0));
-            CHECK(e->get_model().sh_degree == result.sh_degree);
-            CHECK(e->get_model().sh_rest.size() == (band > 0 ? 9 * e->count() : 0));
+            CHECK(gs::train::train(*e, scene, o, quiet).sh_degree == degree);
+            const gs::gaussians after = e->get_model();
+            CHECK(after.sh_degree == degree);
+            const auto rest = static_cast<std::size_t>(after.rest_width());
+            REQUIRE(after.sh_rest.size() == rest * e->count());
+            for (std::size_t i = 0; i < after.sh_rest.size(); ++i)
+                CHECK(after.sh_rest[i] == doctest::Approx(i % rest < 24 ? 0.01 : 0).epsilon(1e-3));
+        }
+}
+
+TEST_CASE("a review adds bands that what is left of photos calls for, and drops those that do not show") {
+    for (const auto make : engines())
+        for (const char* name : {"synthetic:spheres,gloss=0.8", "synthetic:spheres,noise=0.1"}) {
+            CAPTURE(name);
+            const bool glossy = std::string(name).find("gloss") != std::string::npos;
+            const gs::scene scene = small_scene(name, 96);
+            const auto e = make();
+            gs::train::train_options o;
+            o.schedule.iterations = 600;
+            o.schedule.sh_degree = 0;
+            o.max_cap = 4000;
+            e->set_views(scene.train, {}, o.schedule.num_downscales);
+            e->set_model(gs::from_points(scene.points, 0, 3000, 1));
+            const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
+            gs::train::train(*e, scene, o, quiet);
+            const band_review left = review_bands(*e, scene, {}, 0);
+            CHECK(left.sh_degree == (glossy ? 3 : 0));
+            CHECK_FALSE(left.change);
+            CHECK(left.unexplained[0] > 0);
+            if (glossy) continue;
+            e->set_sh_degree(2);
+            CHECK(review_bands(*e, scene, {}, 2).sh_degree == 0);
+            gs::gaussians model = e->get_model();
+            for (std::size_t i = 0; i < model.sh_rest.size(); ++i)
+                if (i % 24 < 9) model.sh_rest[i] = 0.02f;  // the band of degree 1
+            e->set_model(model);
+            const band_review kept = review_bands(*e, scene, {}, 2);
+            CHECK(kept.sh_degree == 1);
+            REQUIRE(kept.change);
+            CHECK(*kept.change > band_change_limit);
         }
 }
 

@@ -63,7 +63,7 @@ class recorder final : public gs::train::engine {
     std::uint64_t skipped_steps() override { return 0; }
     gs::train::findings take_findings() override { return {}; }
     std::vector<float> render(const gs::camera&, const std::array<float, 3>&, int) override { return {}; }
-    void lower_sh_degree(int) override {}
+    void set_sh_degree(int) override {}
     gs::train::quality measure(std::size_t, const std::array<float, 3>&, std::vector<float>*) override {
         return {};
     }

@@ -97,13 +97,15 @@ CLI::Validator positive_number(std::optional<int> below = {}) {
     return {refusal, "positive"};
 }
 
-/// CLI11's own check lets nan pass.
 CLI::Validator share() {
     const auto refusal = [](const std::string& text) {
-        const bool none = !text.empty() && text.find_first_not_of("0.") == std::string::npos;
-        return none ? std::string() : positive_number(1)(text);
+        float value = -1;
+        const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool number = problem == std::errc() && end == text.data() + text.size();
+        return number && value >= 0 && value < 1 ? std::string()
+                                                 : "must be a number from 0 to below 1, not '" + text + "'";
     };
-    return {refusal, "0 to 1"};
+    return {refusal, "0 to below 1"};
 }
 
 void add_scene(CLI::App& app, settings& s, bool required) {
@@ -181,9 +183,10 @@ void add_schedule(CLI::App& app, train::schedule& s) {
         ->check(share());
 }
 
-void add_fit_exposure(CLI::App& app, settings& s) {
-    app.add_flag("--fit-exposure", s.fit_exposure,
-                 "Measure the right halves of test photos, too, after fitting the exposure on the left ones");
+CLI::Option* add_fit_exposure(CLI::App& app, settings& s) {
+    return app.add_flag(
+        "--fit-exposure", s.fit_exposure,
+        "Measure the right halves of test photos, too, after fitting the exposure on the left ones");
 }
 
 CLI::App* add_train(CLI::App& app, settings& s) {
@@ -245,7 +248,7 @@ CLI::App* add_train(CLI::App& app, settings& s) {
                    "The same bits in the .ply from the same seed, run after run, with any number of threads: "
                    "by --accumulate fixed, unless that says binned or exact")
         ->excludes(gradient);
-    add_fit_exposure(*train, s);
+    add_fit_exposure(*train, s)->needs(train->get_option("--eval"));
     train->add_option("--save-iterations", s.save_iterations, "Save the model then, too");
     train->add_option("--test-iterations", s.test_iterations, "Measure the test views then, too")
         ->needs(train->get_option("--eval"));

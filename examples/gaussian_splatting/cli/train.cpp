@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <numeric>
 
+#include "../effects/review_bands.hpp"
+#include "../error.hpp"
 #include "../evaluate/test_exposures.hpp"
 #include "../model/initialise.hpp"
 #include "../model/ply.hpp"
@@ -29,7 +31,6 @@ train::train_options options_of(const settings& s, const scene& scene,
     train::train_options o;
     o.schedule = s.schedule;
     o.schedule.sh_degree = simulated.sh_degree;
-    o.drops_bands = simulated.drops_bands;
     for (const float gain : simulated.exposures)
         o.exposures.push_back({gain, 0, 0, 0, 0, gain, 0, 0, 0, 0, gain, 0});
     o.max_cap = s.max_cap > 0 ? s.max_cap : std::max(train::default_cap(scene), s.budget);
@@ -82,6 +83,8 @@ ordered_json settings_json(const settings& s, const train::train_options& o,
             {"quality", s.quality},
             {"iterations", plan.iterations},
             {"effects", effects_on(simulated)},
+            {"reviews_bands", simulated.reviews_bands},
+            {"fit_exposure", s.fit_exposure},
             {"sh_degree", plan.sh_degree},
             {"sh_degree_interval", plan.sh_degree_interval},
             {"position_lr_init", plan.position_lr_init},
@@ -115,20 +118,26 @@ ordered_json settings_json(const settings& s, const train::train_options& o,
 
 /// What was simulated of a scene, why, and what training made of it.
 ordered_json effects_json(const settings& s, const scene& scene, const train::background_choice& background,
-                          const effects::simulation& simulated, const train::train_result& result) {
+                          const effects::simulation& simulated,
+                          const std::optional<effects::band_review>& review,
+                          const train::train_result& result) {
     ordered_json all = ordered_json::array();
     for (const auto& o : simulated.outcomes)
         all.push_back({{"name", o.name}, {"on", o.on}, {"reason", o.reason}});
     ordered_json& direction = all[static_cast<std::size_t>(effects::effect::direction)];
     direction["sh_degree"] = result.sh_degree;
-    if (simulated.drops_bands) {
+    if (review) {
+        direction["on"] = result.sh_degree > 0;
         direction["sh_degree_at_first"] = simulated.sh_degree;
-        if (result.band_change) direction["change_without_highest_band"] = *result.band_change;
+        direction["unexplained_half_way"] = review->unexplained;
+        if (review->change) direction["change_without_highest_band"] = *review->change;
     }
-    all.push_back(
-        {{"name", "background"},
-         {"on", scene.has_alpha || background.random},
-         {"reason", scene.has_alpha ? "the photos have transparent parts" : "--background " + s.background}});
+    all.push_back({{"name", "background"},
+                   {"on", scene.has_alpha || background.random},
+                   {"reason", !scene.has_alpha ? "--background " + s.background
+                              : simulated.exposures.empty()
+                                  ? "the photos have transparent parts"
+                                  : "the photos have transparent parts; black, since they have exposures"}});
     return all;
 }
 
@@ -176,9 +185,19 @@ void train(const settings& s) {
     const scene scene = session.load();
     const effects::simulation simulated = effects::simulate(scene, s.effects, s.sh_degree);
     for (const auto& o : simulated.outcomes) session.say(o.name + (o.on ? " on: " : " off: ") + o.reason);
+    if (!simulated.exposures.empty() && (s.background == "white" || s.background == "random"))
+        throw error(
+            "--background " + s.background +
+            ": exposures would change it with the photos; it has to be black, or --effects -exposure");
     const train::background_choice background =
         session.background(scene.has_alpha && simulated.exposures.empty());
-    const train::train_options options = options_of(s, scene, background, simulated);
+    train::train_options options = options_of(s, scene, background, simulated);
+    std::optional<effects::band_review> review;
+    if (simulated.reviews_bands)
+        options.review_bands = [&](int sh_degree) {
+            review = effects::review_bands(*engine, scene, background.colour, sh_degree);
+            return review->sh_degree;
+        };
     gaussians model = first_model(scene, options);
     model.antialiased = simulated.antialiasing;
     const output_folder output(s.output);
@@ -253,7 +272,7 @@ void train(const settings& s) {
     metrics["gradient"] = s.gradient;
     metrics["accumulate"] = accumulation_of(s.policy);
     metrics["deterministic"] = s.deterministic;
-    metrics["effects"] = effects_json(s, scene, background, simulated, result);
+    metrics["effects"] = effects_json(s, scene, background, simulated, review, result);
     metrics["seed"] = s.seed;
     write_json(output.path() / "settings.json", settings_json(s, options, simulated));
     if (!result.exposures.empty()) {
@@ -261,6 +280,8 @@ void train(const settings& s) {
         write_json(output.path() / "exposures.json",
                    {{"train", exposures_json(scene.train, result.exposures)},
                     {"test", exposures_json(scene.test, of_tests)}});
+    } else {
+        std::filesystem::remove(output.path() / "exposures.json");  // of a training before
     }
     write_json(output.path() / "metrics.json", metrics);
 

@@ -14,7 +14,7 @@ inline constexpr std::array stage_names{"project",         "bin", "blend_forward
                                         "project_backward"};
 
 /// What decides how much memory an iteration needs: equal numbers, equal needs.
-using iteration_shape = std::array<std::size_t, 5>;
+using iteration_shape = std::array<std::size_t, 6>;
 
 /// Milliseconds per stage, summed over the `sampled` iterations that were timed.
 struct stage_times {

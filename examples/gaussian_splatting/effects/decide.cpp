@@ -35,7 +35,7 @@ constexpr const char* direction =
     "5 % of an iteration and 45 floats a Gaussian for degree 3; 1 dB on glossy scenes, -0.2 dB on noisy "
     "matte ones";
 constexpr const char* exposure =
-    "5 to 20 % of an iteration; several dB where photos differ by a third, after fitting";
+    "4 to 15 % of an iteration; 7 dB where photos differ by a fifth, after fitting";
 constexpr const char* antialiasing = "no time; 1 to 7 dB from other distances, -0.7 dB where all are alike";
 constexpr const char* background = "nothing";
 }  // namespace expected
@@ -43,7 +43,7 @@ constexpr const char* background = "nothing";
 decision direction(const evidence& e) {
     const int degree = sh_degree(e);
     const std::string choice = "--sh-degree " + std::to_string(degree);
-    if (e.direction_points < limits.points)
+    if (!direction_is_known(e))
         return {"direction",
                 {},
                 too_few(e.direction_points, "about as large in smooth parts"),
@@ -84,8 +84,10 @@ decision background(const evidence& e) {
 
 }  // namespace
 
+bool direction_is_known(const evidence& e) { return e.direction_points >= limits.points; }
+
 int sh_degree(const evidence& e) {
-    if (e.direction_points < limits.points) return 3;
+    if (!direction_is_known(e)) return 3;
     std::size_t degree = 0;
     for (std::size_t d = 1; d < e.unexplained.size(); ++d) {
         const double gone = e.unexplained[degree] - e.unexplained[d];

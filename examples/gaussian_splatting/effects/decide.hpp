@@ -22,6 +22,9 @@ struct decision {
 /// The degree of spherical harmonics that colours need: 0 to 3. Where too few points tell, 3.
 int sh_degree(const evidence& e);
 
+/// Whether enough points tell of it.
+bool direction_is_known(const evidence& e);
+
 /// All effects that are looked for.
 std::vector<decision> decide(const evidence& e);
 

@@ -25,17 +25,11 @@ std::size_t effect_called(const std::string& name) {
     return static_cast<std::size_t>(found - effect_names.begin());
 }
 
-std::string written(const selection& s, effect e) {
-    const char* base = s.from == selection::base::all ? "all" : "none";
-    return "--effects " +
-           (s.of(e) ? (*s.of(e) ? "+" : "-") + std::string(effect_names[static_cast<std::size_t>(e)])
-                    : std::string(base));
-}
-
 }  // namespace
 
 selection parse_selection(const std::string& text) {
     selection s;
+    s.text = text;
     std::istringstream words(text);
     std::string word;
     bool first = true, is_list = false;
@@ -64,17 +58,21 @@ selection parse_selection(const std::string& text) {
 
 simulation simulate(const scene& scene, const selection& selection, const std::optional<int>& sh_degree) {
     using base = selection::base;
-    const bool looks = selection.from == base::found;
+    const bool open = selection.from == base::found;  // what nobody has settled
+    const bool asks_direction = open && !selection.of(effect::direction) && !sh_degree;
+    const bool looks =
+        asks_direction ||
+        (open && (selection.of(effect::exposure).value_or(true) || !selection.of(effect::antialiasing)));
     const evidence found = looks ? gather(scene) : evidence{};
     const std::vector<decision> decisions = looks ? decide(found) : std::vector<decision>{};
     simulation s;
     const auto settle = [&](effect e) {
         simulation::outcome o{std::string(effect_names[static_cast<std::size_t>(e)]),
                               selection.from == base::all, ""};
-        if (const auto& said = selection.of(e); said || !looks) {
+        if (const auto& said = selection.of(e); said || !open) {
             if (said) o.on = *said;
-            o.reason = written(selection, e);
-        } else {
+            o.reason = "--effects " + selection.text;
+        } else if (looks) {  // else --sh-degree says
             const decision& d = decisions[static_cast<std::size_t>(e)];
             o.on = d.called_for.value_or(e == effect::direction);
             o.reason = d.evidence;
@@ -90,8 +88,8 @@ simulation simulate(const scene& scene, const selection& selection, const std::o
     }
     s.antialiasing = settle(effect::antialiasing);
 
-    s.drops_bands = direction && looks && !selection.of(effect::direction) && !sh_degree;
-    s.sh_degree = direction ? (looks && !selection.of(effect::direction) ? effects::sh_degree(found) : 3) : 0;
+    s.reviews_bands = asks_direction;
+    s.sh_degree = !direction ? 0 : asks_direction ? effects::sh_degree(found) : 3;
     if (sh_degree) {
         s.sh_degree = *sh_degree;
         s.outcomes[0].on = *sh_degree > 0;

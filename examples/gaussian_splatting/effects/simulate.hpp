@@ -25,6 +25,7 @@ struct selection {
         all,
         none
     };
+    std::string text = "auto";  ///< as it was said
     base from = base::found;
     std::array<std::optional<bool>, effect_names.size()> said;  ///< of single effects
 
@@ -44,7 +45,7 @@ struct simulation {
     };
 
     int sh_degree = 0;
-    bool drops_bands = false;  ///< above a degree that pictures do not need: nobody has said which
+    bool reviews_bands = false;  ///< in training: nobody has said which degree
     bool antialiasing = false;
     /// By training photo, how much brighter than others it has the same points, as a factor; ones where
     /// nobody has looked, and none without the effect.

@@ -25,10 +25,16 @@ class parameter_memory {
                                   ? in_whole_blocks(count) * width_of(static_cast<parameter>(p))
                                   : 0);
     }
-    /// Keeps the contents, but for bands above the degree, which have no memory from now on.
-    void lower_sh_degree(int degree) {
-        for (std::size_t p = 0; p < parameter_count; ++p)
-            if (!has_parameter(p, degree)) arrays_[p] = buffer();
+    /// Keeps the contents, but for bands above the degree `to`, which have no memory from now on. Those above
+    /// `from` are zero.
+    void change_sh_degree(Device& device, std::size_t count, int from, int to) {
+        for (std::size_t p = 0; p < parameter_count; ++p) {
+            if (has_parameter(p, from) == has_parameter(p, to)) continue;
+            arrays_[p] = buffer();
+            if (!has_parameter(p, to)) continue;
+            arrays_[p].resize(in_whole_blocks(count) * width_of(static_cast<parameter>(p)));
+            device.zero(arrays_[p].data(), arrays_[p].size());
+        }
     }
     buffer& operator[](std::size_t p) { return arrays_[p]; }
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "../error.hpp"
 #include "../parallel.hpp"
 #include "../raster/renderer.hpp"
 #include "../scene/views.hpp"
@@ -145,14 +147,20 @@ class device_engine final : public engine {
 
     void set_downscales(int times) override {
         downscales_ = static_cast<std::size_t>(times);
+        if (downscales_ >= train_.size())
+            throw error("views were set for " + std::to_string(train_.size() - 1) + " shrinkings, not " +
+                        std::to_string(times));
         lengths_of_.assign(train_[downscales_].size(), 0);
     }
 
     void step(const step_plan& plan) override {
         const gs::camera& camera = train_[downscales_][plan.view].camera;
-        const device::iteration_shape shape{
-            count_, renderer_.reserved_instances(), static_cast<std::size_t>(camera.width),
-            static_cast<std::size_t>(camera.height), static_cast<std::size_t>(plan.gradient)};
+        const device::iteration_shape shape{count_,
+                                            renderer_.reserved_instances(),
+                                            static_cast<std::size_t>(camera.width),
+                                            static_cast<std::size_t>(camera.height),
+                                            static_cast<std::size_t>(plan.gradient),
+                                            plan.exposure_rate > 0 ? std::size_t{1} : 0};
         device_.iteration(shape, [&] { iterate(plan); });
         lengths_of_[plan.view] = count_;
     }
@@ -235,10 +243,10 @@ class device_engine final : public engine {
         return downloaded(renderer_.picture(), camera);
     }
 
-    void lower_sh_degree(int degree) override {
-        sh_degree_ = std::min(sh_degree_, degree);
+    void set_sh_degree(int degree) override {
         for (auto* all : {&trained_.values, &trained_.first, &trained_.second})
-            all->lower_sh_degree(sh_degree_);
+            all->change_sh_degree(device_, count_, sh_degree_, degree);
+        sh_degree_ = degree;
     }
 
     quality measure(std::size_t test_view, const std::array<float, 3>& background,
@@ -353,7 +361,7 @@ class device_engine final : public engine {
     photometric<Device, float> photometric_;
     train::exposures<Device> exposures_, test_exposures_;
     buffer<std::uint8_t> photos_;
-    std::vector<std::vector<photo>> train_;  ///< by how often they were shrunk
+    std::vector<std::vector<photo>> train_{1};  ///< by how often they were shrunk
     std::vector<photo> test_;
     buffer<glm::vec3> cameras_;  ///< where those to learn from were taken
     std::size_t downscales_ = 0;

@@ -54,7 +54,7 @@ class engine {
     virtual std::size_t count() const = 0;
 
     /// Steps from now on learn from photos that were shrunk by two this many times: none after `set_views`.
-    /// Precondition: `set_views` has been asked for that many. To be followed by `reserve`.
+    /// To be followed by `reserve`. Throws `error` if `set_views` was not asked for that many.
     virtual void set_downscales(int times) = 0;
     virtual void step(const step_plan& plan) = 0;
     /// Copies, splits and drops Gaussians by what `step`s have seen since the last call. Returns how many
@@ -88,8 +88,9 @@ class engine {
     /// Three planes, not clamped; without the colours of directions above a degree.
     virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
                                       int sh_degree = 3) = 0;
-    /// Drops the colours of directions above a degree, and their memory.
-    virtual void lower_sh_degree(int degree) = 0;
+    /// Colours depend on direction up to this degree from now on: bands above it go, with their memory, and
+    /// new ones are zero.
+    virtual void set_sh_degree(int degree) = 0;
     /// What test views are shown with from now on, one each; none: as `render` draws them, as after
     /// `set_views`.
     virtual void set_test_exposures(const std::vector<exposure>& all) = 0;

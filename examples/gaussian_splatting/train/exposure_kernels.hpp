@@ -29,7 +29,7 @@ struct expose {
         for (unsigned c = 0; c < 3; ++c) {
             float sum = exposure[exposure_at(c, 3)];
             for (unsigned k = 0; k < 3; ++k)
-                sum = fmaf(exposure[exposure_at(c, k)], picture[k * pixels + i], sum);
+                sum = warpagg::math::fma(exposure[exposure_at(c, k)], picture[k * pixels + i], sum);
             exposed[c * pixels + i] = sum;
         }
     }
@@ -75,11 +75,12 @@ struct expose_backward {
             for (unsigned c = 0; c < 3; ++c) {
                 WARPAGG_UNROLL
                 for (unsigned k = 0; k < 3; ++k)
-                    total[exposure_at(c, k)] = fma(g[c], colour[k], total[exposure_at(c, k)]);
+                    total[exposure_at(c, k)] = warpagg::math::fma(g[c], colour[k], total[exposure_at(c, k)]);
                 total[exposure_at(c, 3)] += g[c];
                 real by(0);
                 WARPAGG_UNROLL
-                for (unsigned k = 0; k < 3; ++k) by = fma(g[k], real(exposure[exposure_at(k, c)]), by);
+                for (unsigned k = 0; k < 3; ++k)
+                    by = warpagg::math::fma(g[k], real(exposure[exposure_at(k, c)]), by);
                 w.store_row(by_picture, static_cast<std::ptrdiff_t>(c * pixels + first), by, inside);
             }
         }
@@ -103,7 +104,7 @@ struct learn_exposure {
         if (room.exceeded() || !(g > -1e18f && g < 1e18f)) return;
         first[i] = beta1 * first[i] + (1 - beta1) * g;
         second[i] = beta2 * second[i] + (1 - beta2) * g * g;
-        exposure[i] -= rate * first[i] / (correction * sqrtf(second[i]) + epsilon);
+        exposure[i] -= rate * first[i] / (correction * warpagg::math::sqrt(second[i]) + epsilon);
     }
 };
 

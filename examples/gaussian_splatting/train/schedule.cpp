@@ -51,7 +51,8 @@ bool schedule::densifies(int iteration) const {
 }
 
 double schedule::share_to_prune() const {
-    const bool grows = densify_from_iter < densify_until() && densify_until() < iterations;
+    const int first = (densify_from_iter / densification_interval + 1) * densification_interval;
+    const bool grows = first < densify_until() && densify_until() < iterations;
     return prune_share.value_or(grows ? 0.2 : 0.0);
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -64,35 +63,6 @@ densify_rule rule_at(int iteration, const schedule& schedule, const train_option
     rule.seed = options.seed;
     rule.step = static_cast<std::uint64_t>(iteration);
     return rule;
-}
-
-/// By what the pictures of some training views change, as a root mean square, if colours have only bands up
-/// to this degree.
-double change_above(int degree, engine& engine, const scene& scene, const std::array<float, 3>& background) {
-    const std::size_t views = std::min<std::size_t>(scene.train.size(), 8);
-    const auto shown = [](float x) { return static_cast<double>(std::clamp(x, 0.0f, 1.0f)); };
-    double sum = 0, values = 0;
-    for (std::size_t i = 0; i < views; ++i) {
-        const camera& camera = scene.train[i * scene.train.size() / views].camera;
-        const auto all = engine.render(camera, background), some = engine.render(camera, background, degree);
-        for (std::size_t k = 0; k < all.size(); ++k) {
-            const double d = shown(all[k]) - shown(some[k]);
-            sum += d * d;
-        }
-        values += static_cast<double>(all.size());
-    }
-    return std::sqrt(sum / values);
-}
-
-/// Drops the bands that pictures do not need: see `train_result`.
-void drop_bands(engine& engine, const scene& scene, const std::array<float, 3>& background,
-                schedule& schedule, train_result& result) {
-    for (int degree = schedule.sh_degree; degree > 0; --degree) {
-        result.band_change = change_above(degree - 1, engine, scene, background);
-        if (*result.band_change >= band_change_limit) break;
-        schedule.sh_degree = degree - 1;
-    }
-    engine.lower_sh_degree(schedule.sh_degree);
 }
 
 /// What an engine found not to be finite, with the view it was found in.
@@ -157,6 +127,7 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     finite_watch watch;
     train_result result;
     const int views = static_cast<int>(scene.train.size());
+    const int review_after = schedule.bands_are_known_after();  // once, whatever comes of it
     const bool exposes = !options.exposures.empty();
     if (exposes) engine.set_exposures(options.exposures);
     engine.take_findings();  // of steps that are not ours
@@ -188,8 +159,8 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
         watch.shows(plan.view);
 
         const bool prunes = iteration == schedule.prune_after(views);
-        const bool checks_bands = options.drops_bands && iteration == schedule.bands_are_known_after();
-        if (schedule.densifies(iteration) || prunes || checks_bands || iteration % reserve_every == 0) {
+        const bool reviews = options.review_bands && iteration == review_after;
+        if (schedule.densifies(iteration) || prunes || reviews || iteration % reserve_every == 0) {
             engine.wait();
             const auto from = clock::now();
             if (schedule.densifies(iteration))
@@ -197,7 +168,10 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
                     std::max(result.silent_gaussians,
                              engine.densify(rule_at(iteration, schedule, options, engine.count())));
             if (prunes) engine.prune(schedule.share_to_prune());
-            if (checks_bands) drop_bands(engine, scene, options.background.colour, schedule, result);
+            if (reviews) {
+                schedule.sh_degree = options.review_bands(schedule.sh_degree);
+                engine.set_sh_degree(schedule.sh_degree);
+            }
             engine.reserve();
             result.densify_seconds += seconds_since(from);
         }

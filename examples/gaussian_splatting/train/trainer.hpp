@@ -5,7 +5,6 @@
 #include <array>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -32,7 +31,9 @@ struct train_options {
     background_choice background;
     /// Of the training photos, to begin from; none: photos are as the scene is. See exposure_kernels.hpp.
     std::vector<train::exposure> exposures;
-    bool drops_bands = false;  ///< that pictures do not need: see `train_result::sh_degree`
+    /// Asked half-way, with the degree so far, up to which colours are to depend on direction from then on;
+    /// may be none, and the schedule's stays.
+    std::function<int(int sh_degree)> review_bands;
     std::set<int> save_iterations;
     std::set<int> test_iterations;
 };
@@ -52,12 +53,8 @@ struct train_result {
     std::uint64_t left_out_gradients = 0;  ///< elements that were not finite
     std::uint64_t left_out_sums = 0;       ///< steps where one did not fit in fixed point
     std::uint64_t silent_gaussians = 0;    ///< the most at any densification: see `engine::densify`
-    /// Up to which colours depend on direction: the schedule's, unless pictures of eight training views
-    /// change by a root mean square of less than `band_change_limit` without the bands above.
-    int sh_degree = 0;
-    std::optional<double>
-        band_change;  ///< by which they would change without the highest that is left; none: not known
-    std::vector<exposure> exposures;  ///< of the training photos, if they have any
+    int sh_degree = 0;                     ///< up to which colours depend on direction in the end
+    std::vector<exposure> exposures;       ///< of the training photos, if they have any
 };
 
 /// What the loop calls back for.
@@ -76,9 +73,6 @@ struct train_events {
 /// saved before stays.
 train_result train(engine& engine, const scene& scene, const train_options& options,
                    const train_events& events);
-
-/// Of values in [0, 1]: a picture at 35 dB loses 0.014 dB by it.
-inline constexpr double band_change_limit = 0.001;
 
 /// As many Gaussians as the photos can tell apart: one for 32 pixels of all training views together, and no
 /// fewer than 10,000.
