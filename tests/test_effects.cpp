@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -91,6 +92,33 @@ TEST_CASE("exposures are found to 0.7 %, on average") {
     REQUIRE(off.size() > 30);
     for (const double x : off) square += std::pow(x - mean / double(off.size()), 2);
     CHECK(std::sqrt(square / double(off.size())) < 0.01);
+}
+
+TEST_CASE(
+    "exposures along a walk of two thousand photos are found, where each shares points with its neighbours "
+    "alone") {
+    constexpr std::size_t views = 2000, at_once = 5, points_at_once = 5;
+    std::mt19937 random(1);
+    const auto noise = [&](double size) { return size * (static_cast<double>(random()) / 2147483648.0 - 1); };
+    std::vector<double> truth(views);
+    for (std::size_t v = 1; v < views; ++v) truth[v] = 0.98 * truth[v - 1] + noise(0.1);
+    double mean = 0;
+    for (const double x : truth) mean += x / views;
+    std::vector<std::vector<observation>> points;
+    for (std::size_t v = 0; v + at_once <= views; ++v)
+        for (std::size_t k = 0; k < points_at_once; ++k) {
+            points.emplace_back();
+            for (std::size_t i = v; i < v + at_once; ++i) {
+                observation& o = points.back().emplace_back();
+                o.view = static_cast<std::uint32_t>(i);
+                o.colour = glm::vec3(static_cast<float>(0.3 * std::exp2(truth[i] - mean + noise(0.0003))));
+            }
+        }
+    const exposure_estimate found = exposures(points, views);
+    double square = 0;
+    for (std::size_t v = at_once; v < views - at_once; ++v)  // the first and the last share too little
+        square += std::pow(found.brighter[v] - (truth[v] - mean), 2) / views;
+    CHECK(std::sqrt(square) < 0.01);
 }
 
 TEST_CASE("a parameter of a synthetic scene that is wrong is named") {

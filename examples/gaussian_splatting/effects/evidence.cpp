@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "../model/spherical_harmonics.hpp"
 #include "../parallel.hpp"
@@ -28,26 +29,86 @@ double quantile(std::vector<double>& values, double share) {
 }
 double median(std::vector<double>& values) { return quantile(values, 0.5); }
 
-/// Of a symmetric positive definite matrix, row by row, by Cholesky's factors.
-std::vector<double> solve(std::vector<double> matrix, std::vector<double> right) {
-    const std::size_t n = right.size();
-    const auto at = [&](std::size_t i, std::size_t k) -> double& { return matrix[i * n + k]; };
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t k = 0; k <= i; ++k) {
-            double sum = at(i, k);
-            for (std::size_t j = 0; j < k; ++j) sum -= at(i, j) * at(k, j);
-            at(i, k) = i == k ? std::sqrt(sum) : sum / at(k, k);
+/// Least squares of log2(brightness) = point + photo, the points eliminated, with a weight each. It is not
+/// written out: photos may be thousands.
+class photo_equations {
+  public:
+    explicit photo_equations(std::size_t views)
+        : right_(views, 0.0), information_(views, 0.0), diagonal_(views, held) {}
+
+    /// The observations of one point.
+    void add(const std::vector<observation>& seen, const std::vector<double>& logs,
+             const std::vector<double>& weights) {
+        double sum = 0, mean = 0;
+        for (std::size_t i = 0; i < seen.size(); ++i) {
+            sum += weights[i];
+            mean += weights[i] * logs[i];
         }
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t k = 0; k < i; ++k) right[i] -= at(i, k) * right[k];
-        right[i] /= at(i, i);
+        std::vector<term> terms;
+        for (std::size_t i = 0; i < seen.size(); ++i) {
+            const std::size_t v = seen[i].view;
+            terms.push_back({v, weights[i]});
+            right_[v] += weights[i] * (logs[i] - mean / sum);
+            information_[v] += weights[i] * (1 - weights[i] / sum);
+            diagonal_[v] += weights[i] * (1 - weights[i] / sum);
+        }
+        points_.push_back({std::move(terms), sum});
     }
-    for (std::size_t i = n; i-- > 0;) {
-        for (std::size_t k = i + 1; k < n; ++k) right[i] -= at(k, i) * right[k];
-        right[i] /= at(i, i);
+
+    /// By conjugate gradients with Jacobi's preconditioner, to twelve digits, from x on.
+    std::vector<double> solve(std::vector<double> x) const {
+        const std::size_t n = x.size();
+        const auto dot = [&](const std::vector<double>& a, const std::vector<double>& b) {
+            return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+        };
+        std::vector<double> left = right_, along(n, 0.0), scaled(n);
+        const std::vector<double> first = times(x);
+        for (std::size_t v = 0; v < n; ++v) left[v] -= first[v];
+        const double enough = 1e-24 * dot(right_, right_);
+        double before = 0;
+        for (std::size_t step = 0; step < 10 * n && dot(left, left) > enough; ++step) {
+            for (std::size_t v = 0; v < n; ++v) scaled[v] = left[v] / diagonal_[v];
+            const double now = dot(left, scaled), keep = step > 0 ? now / before : 0;
+            for (std::size_t v = 0; v < n; ++v) along[v] = scaled[v] + keep * along[v];
+            const std::vector<double> image = times(along);
+            const double far = now / dot(along, image);
+            for (std::size_t v = 0; v < n; ++v) {
+                x[v] += far * along[v];
+                left[v] -= far * image[v];
+            }
+            before = now;
+        }
+        return x;
     }
-    return right;
-}
+    const std::vector<double>& information() const { return information_; }
+
+  private:
+    /// To zero, in observations: all photos together are of no exposure. So little that it does not hold back
+    /// what drifts along a walk of thousands.
+    static constexpr double held = 1e-9;
+    struct term {
+        std::size_t view;
+        double weight;
+    };
+    struct point {
+        std::vector<term> terms;
+        double weight;
+    };
+
+    std::vector<double> times(const std::vector<double>& x) const {
+        std::vector<double> product(x.size());
+        for (std::size_t v = 0; v < x.size(); ++v) product[v] = held * x[v];
+        for (const point& p : points_) {
+            double mean = 0;
+            for (const term& t : p.terms) mean += t.weight * x[t.view] / p.weight;
+            for (const term& t : p.terms) product[t.view] += t.weight * (x[t.view] - mean);
+        }
+        return product;
+    }
+
+    std::vector<point> points_;
+    std::vector<double> right_, information_, diagonal_;
+};
 
 double brightness(const observation& o) { return (o.colour.r + o.colour.g + o.colour.b) / 3.0; }
 
@@ -161,41 +222,26 @@ exposure_estimate exposures(const points_seen& points, std::size_t views) {
     std::vector<double> brighter(views, 0.0), information(views, 0.0), off;
     double deviation = 0;
     for (int round = 0; round < rounds; ++round) {
-        // Normal equations of log2(brightness) = point + photo, the points eliminated.
-        std::vector<double> matrix(views * views, 0.0), right(views, 0.0);
+        photo_equations equations(views);
         off.clear();
         for (const auto& seen : points) {
-            std::vector<double> logs, weights(seen.size(), 1.0);
-            std::vector<double> own;
+            std::vector<double> logs, own, weights(seen.size(), 1.0);
             for (const observation& o : seen) {
                 logs.push_back(std::log2(brightness(o)));
                 own.push_back(logs.back() - brighter[o.view]);
             }
             const std::vector<double> all = own;
             const double of_point = median(own);
-            double sum = 0, mean = 0;
             for (std::size_t i = 0; i < seen.size(); ++i) {
                 const double apart = std::abs(all[i] - of_point);
                 off.push_back(apart);
                 if (deviation > 0 && apart > huber * deviation) weights[i] = huber * deviation / apart;
-                sum += weights[i];
-                mean += weights[i] * logs[i];
             }
-            for (std::size_t i = 0; i < seen.size(); ++i) {
-                double* row = &matrix[seen[i].view * views];
-                row[seen[i].view] += weights[i];
-                right[seen[i].view] += weights[i] * (logs[i] - mean / sum);
-                for (std::size_t k = 0; k < seen.size(); ++k)
-                    row[seen[k].view] -= weights[i] * weights[k] / sum;
-            }
+            equations.add(seen, logs, weights);
         }
         deviation = 1.4826 * median(off);
-        constexpr double held = 1e-3;  // to zero, in observations: all photos together are of no exposure
-        for (std::size_t v = 0; v < views; ++v) {
-            information[v] = matrix[v * views + v];
-            matrix[v * views + v] += held;
-        }
-        brighter = solve(std::move(matrix), std::move(right));
+        brighter = equations.solve(std::move(brighter));
+        information = equations.information();
     }
     std::vector<std::size_t> seen_by(views);
     for (const auto& seen : points)

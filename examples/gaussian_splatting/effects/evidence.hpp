@@ -40,7 +40,7 @@ evidence gather(const scene& of);
 /// @{
 /// Of each photo, see `evidence`; those of all photos that share points have a mean of zero. Photos that
 /// share too little with others have zero, and no error. Least squares over points and photos, with Huber's
-/// weights, in 10 rounds of V^3 / 3 operations for V photos.
+/// weights, in 10 rounds of conjugate gradients.
 struct exposure_estimate {
     std::vector<double> brighter, error;
 };
