@@ -35,18 +35,29 @@ struct expose {
     }
 };
 
+/// The sums over a picture that an exposure's gradient is, each in as many parts as warps add pixels up. The
+/// parts are added up in their order: whichever warp ends first, the bits are the same. Zeros before a
+/// picture.
+struct exposure_sums {
+    float* parts;
+    std::size_t warps;
+
+    WARPAGG_HD float* operator()(unsigned number, std::size_t warp) const {
+        return parts + number * warps + warp;
+    }
+};
+
 /// The gradients by the picture and by the exposure, from that by the exposed picture. A warp for as many
-/// pixels as its lanes have, `rounds` times. Warps are added up exactly: any order gives the same bits.
+/// pixels as its lanes have, `rounds` times.
 struct expose_backward {
-    static constexpr unsigned rounds = 16;
-    using sum = warpagg::cell<warpagg::accumulate::exact>;
+    static constexpr unsigned rounds = 8;
 
     const float* picture;  ///< three planes, as all here
     const float* exposure;
     const float* by_exposed;
     std::size_t pixels;
     float* by_picture;
-    sum* sums;  ///< `exposure_width`, added to
+    exposure_sums sums;  ///< of `warps(pixels)`
 
     template <class W>
     static std::size_t warps(std::size_t pixels) {
@@ -84,27 +95,42 @@ struct expose_backward {
                 w.store_row(by_picture, static_cast<std::ptrdiff_t>(c * pixels + first), by, inside);
             }
         }
-        warpagg::warp_reduce_atomic(w, sums, total, warpagg::mask_t<W>(true),
-                                    warpagg::policy{warpagg::between_warps(warpagg::exact)});
+        const auto part = [&, index](unsigned i) { return sums(i, index); };
+        warpagg::warp_reduce_atomic(w, part, total, warpagg::mask_t<W>(true));
     }
 };
 
-/// Adam's step (see `adam`) of one photo's exposure: one index a number of it. A gradient that is not finite
-/// is left out, and so is a step without room for the view's lists.
+/// Adam's step (see `adam`) of one photo's exposure: a warp for each number of it. Leaves zeros in its sum. A
+/// gradient that is not finite is left out, and so is a step without room for the view's lists.
 struct learn_exposure {
-    const expose_backward::sum* sums;
+    exposure_sums sums;
     float *exposure, *first, *second;  ///< and the moments
     float rate, correction;            ///< alpha / (1 - beta1^t), 1 / sqrt(1 - beta2^t)
     raster::list_room room;
 
     static constexpr float beta1 = 0.9f, beta2 = 0.999f, epsilon = 1e-15f;
 
-    WARPAGG_HD void operator()(std::size_t i) const {
-        const float g = sums[i].value();
-        if (room.exceeded() || !(g > -1e18f && g < 1e18f)) return;
-        first[i] = beta1 * first[i] + (1 - beta1) * g;
-        second[i] = beta2 * second[i] + (1 - beta2) * g * g;
-        exposure[i] -= rate * first[i] / (correction * warpagg::math::sqrt(second[i]) + epsilon);
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned number) const {
+        using real = warpagg::value_t<W, float>;
+        using mask = warpagg::mask_t<W>;
+        real g(0);
+        for (std::size_t warp = 0; warp < sums.warps; warp += W::size) {
+            const std::size_t left = sums.warps - warp;
+            const mask inside = w.lane() < static_cast<unsigned>(left < W::size ? left : W::size);
+            g += w.load_row(sums(number, warp), 0, inside);
+            w.store_row(sums(number, warp), 0, real(0), inside);
+        }
+        for (unsigned distance = W::size / 2; distance > 0; distance /= 2) g += w.shfl_xor(g, distance);
+        if (room.exceeded()) return;
+        const mask learns = w.lane() == 0u && g > real(-1e18f) && g < real(1e18f);
+        const real m = real(beta1) * w.load_row(first, number, learns) + real(1 - beta1) * g;
+        const real v = real(beta2) * w.load_row(second, number, learns) + real(1 - beta2) * g * g;
+        const real step = real(rate) * m / (real(correction) * warpagg::math::sqrt(v) + real(epsilon));
+        w.store_row(first, number, m, learns);
+        w.store_row(second, number, v, learns);
+        w.store_row(exposure, number, w.load_row(exposure, number, learns) - step, learns);
     }
 };
 

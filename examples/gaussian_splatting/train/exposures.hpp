@@ -25,7 +25,6 @@ class exposures {
         std::vector<float> values;
         for (const exposure& e : all) values.insert(values.end(), e.begin(), e.end());
         for (auto* memory : {&values_, &first_, &second_}) memory->resize(values.size());
-        sums_.resize(exposure_width);
         device_.upload(values_.data(), values.data(), values.size());
         device_.zero(first_.data(), values.size());
         device_.zero(second_.data(), values.size());
@@ -47,17 +46,16 @@ class exposures {
     const float* learn(std::size_t view, const float* picture, const float* by_exposed, std::size_t pixels,
                        float rate, const raster::list_room& room) {
         by_picture_.resize(3 * pixels);
-        device_.zero(sums_.data(), exposure_width);
         float* const own = values_.data() + view * exposure_width;
-        device_.for_each_warp(
-            expose_backward::warps<warp>(pixels),
-            expose_backward{picture, own, by_exposed, pixels, by_picture_.data(), sums_.data()});
+        const exposure_sums sums = sums_over(pixels);
+        device_.for_each_warp(sums.warps,
+                              expose_backward{picture, own, by_exposed, pixels, by_picture_.data(), sums});
         const int t = ++steps_[view];
         const double by_first = 1 - std::pow(static_cast<double>(learn_exposure::beta1), t);
         const double by_second = 1 - std::pow(static_cast<double>(learn_exposure::beta2), t);
-        device_.for_each_index(
+        device_.for_each_warp(
             exposure_width,
-            learn_exposure{sums_.data(), own, first_.data() + view * exposure_width,
+            learn_exposure{sums, own, first_.data() + view * exposure_width,
                            second_.data() + view * exposure_width, static_cast<float>(rate / by_first),
                            static_cast<float>(1 / std::sqrt(by_second)), room});
         return by_picture_.data();
@@ -76,9 +74,18 @@ class exposures {
     }
 
   private:
+    exposure_sums sums_over(std::size_t pixels) {
+        const std::size_t warps = expose_backward::warps<warp>(pixels), before = sums_.size();
+        if (exposure_width * warps > before) {
+            sums_.resize(exposure_width * warps);
+            device_.zero(sums_.data(), sums_.size());
+        }
+        return {sums_.data(), warps};
+    }
+
     Device& device_;
     buffer<float> values_, first_, second_, exposed_, by_picture_;
-    buffer<expose_backward::sum> sums_;
+    buffer<float> sums_;      ///< zeros between steps
     std::vector<int> steps_;  ///< that showed each photo
 };
 
