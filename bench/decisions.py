@@ -22,10 +22,10 @@ from scenes import by
 
 WORLDS = ["spheres", "alpha"]
 BACKGROUND = "background"
-CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales"}
+CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales", "masks": "passers"}
 EFFECTS = [*CAUSES, BACKGROUND]
-PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"noise": 0.03}]
-MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8)}
+PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"passers": 0.1}, {"noise": 0.03}]
+MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "passers": (0.05, 0.2)}
 
 
 def synthetic(kind, world, parameters):

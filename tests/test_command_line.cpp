@@ -485,7 +485,7 @@ TEST_CASE("inspect says what a scene calls for, and writes it") {
     CAPTURE(o.err);
     CHECK(o.code == 0);
     const auto json = nlohmann::json::parse(read_file(file));
-    REQUIRE(json.at("effects").size() == 4);
+    REQUIRE(json.at("effects").size() == 5);
     for (const auto& effect : json.at("effects")) {
         const auto name = effect.at("name").get<std::string>();
         CHECK(effect.at("called_for").get<bool>() == (name == "direction" || name == "exposure"));
@@ -825,8 +825,11 @@ TEST_CASE("train simulates what the scene calls for, or what it is told, and say
     };
     using set = std::map<std::string, bool>;
     const std::string varied = "synthetic:spheres,exposure=0.5,scales=4";
-    CHECK(effects("auto", varied, {}) ==
-          set{{"direction", false}, {"exposure", true}, {"antialiasing", true}, {"background", false}});
+    CHECK(effects("auto", varied, {}) == set{{"direction", false},
+                                             {"exposure", true},
+                                             {"antialiasing", true},
+                                             {"masks", false},
+                                             {"background", false}});
     const json found = read_json(folder / "auto/exposures.json");
     CHECK(found.at("train").size() == 40);
     CHECK(found.at("train").at("view_00.png").size() == 3);
@@ -838,8 +841,11 @@ TEST_CASE("train simulates what the scene calls for, or what it is told, and say
     const std::string model = (folder / "auto/point_cloud/iteration_20/point_cloud.ply").string();
     CHECK(says(read_file(model).substr(0, 100), {"comment SplatRenderMode: mip\n"}));
 
-    CHECK(effects("some", varied, {"--effects=-exposure,+direction"}) ==
-          set{{"direction", true}, {"exposure", false}, {"antialiasing", true}, {"background", false}});
+    CHECK(effects("some", varied, {"--effects=-exposure,+direction"}) == set{{"direction", true},
+                                                                             {"exposure", false},
+                                                                             {"antialiasing", true},
+                                                                             {"masks", false},
+                                                                             {"background", false}});
     CHECK(!fs::exists(folder / "some/exposures.json"));
     CHECK(!read_json(folder / "some/metrics.json").contains("fitted_psnr"));
     CHECK(effects("degree", varied, {"--effects", "none", "--sh-degree", "2"}).at("direction"));

@@ -34,20 +34,22 @@ bool calls_for(const std::vector<decision>& found, const std::string& name) {
 TEST_CASE("a scene calls for what it was made with, and for nothing else") {
     const struct {
         const char* scene;
-        bool direction, exposure, antialiasing, background;
-    } cases[] = {{"spheres", false, false, false, false},
-                 {"spheres,noise=0.03", false, false, false, false},
-                 {"spheres,gloss=0.6", true, false, false, false},
-                 {"spheres,exposure=0.3,noise=0.01", false, true, false, false},
-                 {"spheres,scales=4", false, false, true, false},
-                 {"alpha", false, false, false, true},
-                 {"alpha,gloss=0.6,exposure=0.3,noise=0.01", true, true, false, true}};
+        bool direction, exposure, antialiasing, masks, background;
+    } cases[] = {{"spheres", false, false, false, false, false},
+                 {"spheres,noise=0.03", false, false, false, false, false},
+                 {"spheres,gloss=0.6", true, false, false, false, false},
+                 {"spheres,exposure=0.3,noise=0.01", false, true, false, false, false},
+                 {"spheres,scales=4", false, false, true, false, false},
+                 {"spheres,passers=0.1", false, false, false, true, false},
+                 {"alpha", false, false, false, false, true},
+                 {"alpha,gloss=0.6,exposure=0.3,passers=0.1", true, true, false, true, true}};
     for (const auto& c : cases) {
         INFO(c.scene);
         const auto found = decide(gather(made(c.scene)));
         CHECK(calls_for(found, "direction") == c.direction);
         CHECK(calls_for(found, "exposure") == c.exposure);
         CHECK(calls_for(found, "antialiasing") == c.antialiasing);
+        CHECK(calls_for(found, "masks") == c.masks);
         CHECK(calls_for(found, "background") == c.background);
     }
 }
@@ -58,7 +60,7 @@ TEST_CASE("a scene without points is not told what it needs") {
     const auto found = decide(gather(scene));
     for (const decision& d : found) {
         INFO(d.name);
-        CHECK(d.called_for.has_value() == (d.name == "background"));
+        CHECK(d.called_for.has_value() == (d.name == "background" || d.name == "masks"));
     }
     CHECK(sh_degree(gather(scene)) == 3);
 }
@@ -132,11 +134,13 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
     };
     CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
     CHECK(refusal("spheres,glos=0.5") ==
-          "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, noise");
+          "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
+          "noise");
     CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
     CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
     CHECK(refusal("spheres,") ==
-          "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, noise");
+          "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
+          "noise");
     CHECK(refusal("spheres,gloss=nan") ==
           "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
     CHECK(refusal("spheres,gloss=0,gloss=1") ==

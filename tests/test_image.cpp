@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "scene/image.hpp"
+#include "scene/mask.hpp"
 #include "scene/views.hpp"
 #include "temporary_folder.hpp"
 
@@ -557,6 +558,46 @@ TEST_CASE("a shrunk view has the camera of its photo") {
     CHECK(half.pixels.rgba == gs::shrink(full.pixels, 18, 5).rgba);
     CHECK(gs::shrunk(full, 64).camera.height == 1);
     CHECK(gs::shrunk(full, 1).pixels.rgba == full.pixels.rgba);
+}
+
+TEST_CASE("a mask leaves pixels out, of averages too") {
+    image photo = random_image(6, 4, 3), mask = photo;
+    for (std::size_t i = 0; i < 24; ++i) {
+        photo.rgba[4 * i + 3] = 255;
+        mask.rgba[4 * i] = i % 6 < 3 ? 127 : 128;  // of rows of six the first three
+        if (i == 5) mask.rgba[4 * i] = 0;
+    }
+    const image whole = photo;
+    gs::apply_mask(mask, photo);
+    CHECK(photo.has_mask);
+    CHECK_FALSE(photo.has_alpha);
+    for (std::size_t i = 0; i < 24; ++i) {
+        CHECK(photo.leaves_out(i) == (i % 6 < 3 || i == 5));
+        if (!photo.leaves_out(i))
+            CHECK(std::equal(&photo.rgba[4 * i], &photo.rgba[4 * i] + 4, &whole.rgba[4 * i]));
+    }
+    const image half = gs::shrink(photo, 3, 2);
+    CHECK(half.has_mask);
+    CHECK_FALSE(half.has_alpha);
+    for (const std::size_t out : {0, 3}) CHECK(half.leaves_out(out));
+    for (const std::size_t kept : {1, 2, 4, 5}) CHECK_FALSE(half.leaves_out(kept));
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto value = [&](std::size_t i) { return whole.rgba[4 * i + c]; };
+        // Half of the second pixel counts, and three quarters of the third.
+        CHECK(std::abs(half.rgba[4 + c] - (value(3) + value(9)) / 2.0) <= 1.5);
+        CHECK(std::abs(half.rgba[8 + c] - (value(4) + value(10) + value(11)) / 3.0) <= 1.5);
+        CHECK(std::abs(half.rgba[20 + c] - (value(16) + value(17) + value(22) + value(23)) / 4.0) <= 0.5);
+    }
+    const float background[3] = {1.0F, 0.5F, 0.25F};
+    const std::vector<float> over = gs::over_background(photo, background);
+    CHECK(over[0] == 1.0F);
+    CHECK(over[24] == 0.5F);
+
+    image clear = whole;
+    clear.rgba[15] = clear.rgba[14] = clear.rgba[13] = clear.rgba[12] = 0;  // transparent, not left out
+    gs::apply_mask(mask, clear);
+    CHECK(clear.has_alpha);
+    CHECK_FALSE(clear.leaves_out(3));
 }
 
 TEST_CASE("over_background lays the image over a colour") {

@@ -109,6 +109,51 @@ TEST_CASE("measures and gradient do not depend on how many strips the picture is
     CHECK(all.ssim == doctest::Approx(parts.ssim).epsilon(1e-6));
 }
 
+TEST_CASE("what a mask leaves out takes no gradient and counts for nothing") {
+    constexpr int width = 37, height = 26;
+    constexpr std::size_t pixels = width * height;
+    std::mt19937 random(7);
+    std::vector<std::uint8_t> rgba(4 * pixels, 255);
+    std::vector<float> picture(3 * pixels);
+    for (std::size_t i = 0; i < rgba.size(); ++i)
+        if (i % 4 != 3) rgba[i] = static_cast<std::uint8_t>(random() % 256);
+    for (float& x : picture) x = static_cast<float>(random() % 1000) / 999;
+    // The same with black in both where the mask is.
+    std::vector<std::uint8_t> masked = rgba, black = rgba;
+    std::vector<float> blackened = picture;
+    std::size_t kept = 0;
+    const auto is_out = [](std::size_t i) { return i % width < 9 || i / width == 20 || i == 40; };
+    for (std::size_t i = 0; i < pixels; ++i) {
+        if (!is_out(i)) {
+            ++kept;
+            continue;
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            masked[4 * i + c] = 255;
+            black[4 * i + c] = 0;
+            blackened[c * pixels + i] = 0;
+        }
+        masked[4 * i + 3] = 0;
+    }
+    gs::device::cpu device;
+    gs::train::photometric<gs::device::cpu, float> photometric(device);
+    const auto learn = [&](const std::vector<std::uint8_t>& photo, const std::vector<float>& from,
+                           bool mask) {
+        photometric.set_photo(photo.data(), width, height, {}, mask);
+        const float* gradient = photometric.gradient(from.data(), 0.2);
+        return std::pair(std::vector<float>(gradient, gradient + from.size()), photometric.take());
+    };
+    const auto [expected, all] = learn(black, blackened, false);
+    const auto [gradient, counted] = learn(masked, picture, true);
+    for (std::size_t i = 0; i < gradient.size(); ++i)
+        CHECK(gradient[i] == (is_out(i % pixels) ? 0.0f : expected[i]));
+    const double share = static_cast<double>(kept) / pixels;
+    CHECK(counted.absolute == doctest::Approx(all.absolute / share).epsilon(1e-6));
+    CHECK(counted.square == doctest::Approx(all.square / share).epsilon(1e-6));
+    CHECK(counted.ssim < 0.5);  // of noise with noise, without that of black with black
+    CHECK(counted.ssim < all.ssim);
+}
+
 TEST_CASE_TEMPLATE("a picture is like itself", Real, float, double) {
     gs::device::cpu device;
     gs::train::photometric<gs::device::cpu, Real> photometric(device);

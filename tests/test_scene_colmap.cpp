@@ -617,6 +617,45 @@ TEST_CASE("smaller copies of the photos take their cameras along; other sizes ar
     CHECK(says(error_of_loading(options), {"b.png", "wrong size", "200x150", "40x30"}));
 }
 
+TEST_CASE("masks leave out what they have dark, in photos that were bent and shrunk as well") {
+    const distorted_case lens = radial(-0.1, 0.05);
+    const temporary_folder folder;
+    model_record model;
+    model.cameras = {lens.camera};
+    for (const char* name : {"a.png", "b.png", "c.png"})
+        model.images.push_back({{1, 0, 0, 0}, {0, 0, 0}, 1, name, {}});
+    model.points = {{{0, 0, 1}, {1, 2, 3}, 0}};
+    write_binary(folder / "sparse/0", model);
+    // The mask is the photo itself: what is left of that must be bright.
+    for (const char* name :
+         {"images/a.png", "images/b.png", "images/c.png", "masks/a.png.png", "masks/b.png"})
+        write_distorted_photo(folder / name, lens);
+    auto options = options_for(folder.path());
+    for (const int resolution : {1, 2}) {
+        CAPTURE(resolution);
+        options.resolution = resolution;
+        options.masks = true;
+        std::string said;
+        const gs::scene scene = gs::load_scene(options, [&](const std::string& line) { said += line; });
+        CHECK(says(said, {"2 photos of 3 have masks"}));
+        CHECK_FALSE(scene.has_alpha);
+        options.masks = false;
+        const gs::scene whole = gs::load_scene(options, ignore);
+        for (std::size_t v = 0; v < 3; ++v) {
+            const gs::image &pixels = scene.train[v].pixels, &all = whole.train[v].pixels;
+            CHECK(pixels.has_mask == (v < 2));
+            CHECK_FALSE(all.has_mask);
+            for (std::size_t i = 0; i < all.rgba.size() / 4; ++i)
+                CHECK(pixels.leaves_out(i) == (v < 2 && all.rgba[4 * i] < 128));
+        }
+    }
+    options.masks = true;
+    write_photo(folder / "masks/a.png.png", 30, 22);
+    CHECK(says(error_of_loading(options), {"a.png.png", "wrong size", "30x22"}));
+    gs_test::write_file(folder / "masks/a.png.png", "no mask");
+    CHECK(says(error_of_loading(options), {"a.png.png"}));
+}
+
 TEST_CASE("every n-th view by name is held out, from the first") {
     const temporary_folder folder;
     model_record model = plain_model();

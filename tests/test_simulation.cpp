@@ -16,6 +16,7 @@
 #include "../examples/gaussian_splatting/error.hpp"
 #include "../examples/gaussian_splatting/evaluate/fit_exposure.hpp"
 #include "../examples/gaussian_splatting/evaluate/test_exposures.hpp"
+#include "../examples/gaussian_splatting/evaluate/test_views.hpp"
 #include "../examples/gaussian_splatting/model/initialise.hpp"
 #include "../examples/gaussian_splatting/train/exposures.hpp"
 #include "../examples/gaussian_splatting/train/trainer.hpp"
@@ -58,7 +59,7 @@ TEST_CASE("what is simulated is what the scene calls for, or what was said") {
     CHECK(matte.reviews_bands);
     CHECK(matte.exposures.empty());
     CHECK_FALSE(matte.antialiasing);
-    REQUIRE(matte.outcomes.size() == 3);
+    REQUIRE(matte.outcomes.size() == 4);
     for (const auto& o : matte.outcomes) CHECK_FALSE(o.on);
     CHECK(matte.outcomes[1].reason.find("brighter or darker") != std::string::npos);
 
@@ -89,6 +90,11 @@ TEST_CASE("what is simulated is what the scene calls for, or what was said") {
     CHECK(settled.sh_degree == 2);
     CHECK_FALSE(settled.reviews_bands);
     CHECK(settled.outcomes[0].reason == "--sh-degree 2");
+
+    CHECK(simulated(spheres, "all").outcomes[3].reason == "no photo has a mask");
+    const simulation masked = simulated(made("spheres,passers=0.1"), "auto");
+    CHECK(masked.outcomes[3].on);
+    CHECK(masked.outcomes[3].reason.starts_with("48 of 48 photos have masks, which leave out "));
 }
 
 TEST_CASE("a selection of effects that is none is refused") {
@@ -98,7 +104,11 @@ TEST_CASE("a selection of effects that is none is refused") {
         CHECK(refusal(text) == "");
     }
     CHECK(refusal("glare") ==
-          "--effects: there is no effect 'glare'; there are direction, exposure, antialiasing");
+          "--effects: there is no effect 'glare'; there are direction, exposure, antialiasing, masks");
+    CHECK(parse_selection("auto").takes_masks());
+    CHECK(parse_selection("masks").takes_masks());
+    CHECK_FALSE(parse_selection("none").takes_masks());
+    CHECK_FALSE(parse_selection("all,-masks").takes_masks());
     for (const char* text : {"auto,exposure", "exposure,+direction", "exposure,auto", ""}) {
         CAPTURE(text);
         CHECK(refusal(text).starts_with("--effects"));
@@ -192,6 +202,35 @@ TEST_CASE("photos of different exposures are fitted, and their mean stays") {
             CHECK(mean == doctest::Approx(1).epsilon(1e-4));
             CHECK(std::sqrt(square / static_cast<double>(scene.train.size()) - mean * mean) > 0.1);
         }
+}
+
+TEST_CASE("what passed before photos leaves nothing behind if masks leave it out") {
+    const gs::scene truth = small_scene("synthetic:spheres", 48);
+    for (const auto make : engines()) {
+        const auto psnr_of = [&](const char* data, bool masks) {
+            gs::load_options from;
+            from.data = data;
+            from.resolution = 48;
+            from.eval = true;
+            from.masks = masks;
+            gs::scene scene = gs::load_scene(from, {});
+            scene.test = truth.test;
+            const auto e = make();
+            gs::train::train_options o;
+            o.schedule.iterations = 600;
+            o.schedule.sh_degree = 0;
+            o.max_cap = 4000;
+            e->set_views(scene.train, scene.test, o.schedule.num_downscales);
+            e->set_model(gs::from_points(scene.points, 0, 3000, 1));
+            gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
+            return gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr();
+        };
+        const double clean = psnr_of("synthetic:spheres", true);
+        const double masked = psnr_of("synthetic:spheres,passers=0.15", true);
+        const double spoilt = psnr_of("synthetic:spheres,passers=0.15", false);
+        CHECK(masked > clean - 1);
+        CHECK(masked > spoilt + 1);
+    }
 }
 
 TEST_CASE("bands go, with their memory, where training is told so, and come as zeros") {
@@ -296,14 +335,22 @@ TEST_CASE("a fit finds what an exposure did, on pixels that it is not measured b
     std::mt19937 random(2);
     constexpr int width = 20, height = 9;
     const auto picture = random_picture(random, 3 * width * height);
-    std::vector<float> photo(picture.size());
-    for (std::size_t i = 0; i < picture.size(); ++i) photo[i] = 0.6f * picture[i] + 0.1f;
-    CHECK(gs::evaluate::psnr_after_fit(picture, photo, width, height) > 60);
-    auto spoilt = photo;
-    for (std::size_t i = 0; i < spoilt.size(); ++i)
-        if (i % width >= width / 2) spoilt[i] = 0.5f;
-    CHECK(gs::evaluate::psnr_after_fit(picture, spoilt, width, height) < 20);
+    gs::image photo{width, height, std::vector<std::uint8_t>(4 * width * height, 255)};
+    for (std::size_t i = 0; i < picture.size(); ++i)
+        photo.rgba[4 * (i % (width * height)) + i / (width * height)] =
+            static_cast<std::uint8_t>(std::lround(255 * (0.6f * picture[i] + 0.1f)));
+    const auto psnr = [&](const gs::image& of) { return gs::evaluate::psnr_after_fit(picture, of, {}); };
+    const double by_rounding = -20 * std::log10(std::sqrt(1.0 / 12) / 255);
+    CHECK(psnr(photo) == doctest::Approx(by_rounding).epsilon(0.02));
+    // Half of what either half has is spoilt; a mask leaves that out.
+    gs::image spoilt = photo, masked = photo;
+    for (std::size_t i = 0; i < width * height; i += 2) {
+        for (std::size_t c = 0; c < 3; ++c) spoilt.rgba[4 * i + c] = 128;
+        masked.leave_out(i);
+    }
+    CHECK(psnr(spoilt) < 20);
+    CHECK(psnr(masked) == doctest::Approx(by_rounding).epsilon(0.02));
     // Without a left half nothing changes.
-    CHECK(gs::evaluate::psnr_after_fit({0.5f, 0.5f, 0.5f}, {0.6f, 0.5f, 0.5f}, 1, 1) ==
-          doctest::Approx(-10 * std::log10(0.01 / 3)).epsilon(1e-5));
+    CHECK(gs::evaluate::psnr_after_fit({0.5f, 0.5f, 0.5f}, gs::image{1, 1, {153, 128, 128, 255}}, {}) ==
+          doctest::Approx(-10 * std::log10((0.01 + 2 * std::pow(0.5 / 255, 2)) / 3)).epsilon(1e-4));
 }

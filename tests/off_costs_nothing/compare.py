@@ -5,8 +5,8 @@
 
     compare.py CXX [NVCC]
 
-What stands behind `if constexpr (Effects...` is cut out of a copy of the sources. With the effect off both must come to
-the same assembly (and, with NVCC, PTX), and with it on to another.
+What stands behind `if constexpr (Effects...` or `(Masked)` is cut out of a copy of the sources. With the effects off both
+must come to the same assembly (and, with NVCC, PTX), and with them on to another.
 """
 import pathlib
 import platform
@@ -18,23 +18,24 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCES = HERE.parent.parent / "examples" / "gaussian_splatting"
-STATEMENT = re.compile(r"^ *if constexpr \(Effects\.\w+\)\s[^;]*;\n", re.MULTILINE)
+EFFECT_STATEMENTS = 6
+STATEMENT = re.compile(r"^ *if constexpr \((?:Effects\.\w+|Masked)\)\s[^;]*;\n", re.MULTILINE)
 
 
-def compiled(command, sources, antialiasing):
-    done = subprocess.run([*command, f"-DANTIALIASING={antialiasing}", f"-I{sources}", f"-I{HERE.parent.parent / 'include'}",
+def compiled(command, sources, effects):
+    done = subprocess.run([*command, f"-DEFFECTS={effects}", f"-I{sources}", f"-I{HERE.parent.parent / 'include'}",
                            HERE / "kernels.cpp", "-o", "-"], capture_output=True, text=True)
     if done.returncode != 0:
         raise SystemExit(done.stderr)
-    # Mangled names hold the parameter's value.
-    return re.sub(r"\S*effect_set\S*", "", done.stdout)
+    # Mangled names hold the parameters' values.
+    return re.sub(r"\S*(effect_set|sum_and_difference|ssim_compare|loss_gradient)\S*", "", done.stdout)
 
 
 def without_effects(folder):
     """A copy of the sources. Returns it, and how many statements were cut out of it."""
     copy = pathlib.Path(shutil.copytree(SOURCES, pathlib.Path(folder) / "sources"))
     cut = 0
-    for header in (copy / "raster").glob("*.hpp"):
+    for header in [*(copy / "raster").glob("*.hpp"), *(copy / "train").glob("*.hpp")]:
         text, n = STATEMENT.subn("", header.read_text())
         header.write_text(text)
         cut += n
@@ -50,16 +51,16 @@ def main():
     wrong = []
     with tempfile.TemporaryDirectory() as folder:
         bare, cut = without_effects(folder)
-        if cut != 2:
-            wrong.append(f"{cut} statements of effects were found instead of 2")
+        if cut != EFFECT_STATEMENTS:
+            wrong.append(f"{cut} statements of effects were found instead of {EFFECT_STATEMENTS}")
         for what, command in commands.items():
             off, on, none = compiled(command, SOURCES, "false"), compiled(command, SOURCES, "true"), compiled(command, bare, "false")
             lines = len(off.splitlines())
-            print(f"{what}: {lines} lines with effects off, {len(on.splitlines())} with antialiasing")
+            print(f"{what}: {lines} lines with effects off, {len(on.splitlines())} with all on")
             if off != none:
                 wrong.append(f"{what} with effects off is not that of sources without them")
             if on == off:
-                wrong.append(f"{what} with antialiasing is that without")
+                wrong.append(f"{what} with effects on is that without")
     for line in wrong:
         print(line)
     return 1 if wrong else 0

@@ -12,8 +12,10 @@
 #include "raster/project.hpp"
 #include "raster/project_backward.hpp"
 #include "train/adam.hpp"
+#include "train/loss.hpp"
 
-constexpr gs::effect_set effects{.antialiasing = ANTIALIASING};
+constexpr gs::effect_set effects{.antialiasing = EFFECTS};
+constexpr bool masked = EFFECTS;
 
 #if defined(__CUDACC__)
 using warp = warpagg::cuda::warp;
@@ -25,6 +27,15 @@ extern "C" __global__ void backward(
     gs::raster::project_backward<warp, float, gs::train::adam<float>, effects> kernel) {
     kernel(warp{}, blockIdx.x);
 }
+extern "C" __global__ void first_pass(gs::train::sum_and_difference<float, masked> kernel) {
+    kernel(warp{}, blockIdx.x);
+}
+extern "C" __global__ void second_pass(gs::train::ssim_compare<float, masked> kernel) {
+    kernel(warp{}, blockIdx.x);
+}
+extern "C" __global__ void last_pass(gs::train::loss_gradient<float, masked> kernel) {
+    kernel(warp{}, blockIdx.x);
+}
 #else
 using warp = warpagg::emulator::narrow_lanes<8>;
 
@@ -34,6 +45,15 @@ extern "C" void forward(const gs::raster::project<warp, float, effects>& kernel,
 extern "C" void backward(
     const gs::raster::project_backward<warp, float, gs::train::adam<float>, effects>& kernel,
     unsigned index) {
+    kernel(warp{}, index);
+}
+extern "C" void first_pass(const gs::train::sum_and_difference<float, masked>& kernel, unsigned index) {
+    kernel(warp{}, index);
+}
+extern "C" void second_pass(const gs::train::ssim_compare<float, masked>& kernel, unsigned index) {
+    kernel(warp{}, index);
+}
+extern "C" void last_pass(const gs::train::loss_gradient<float, masked>& kernel, unsigned index) {
     kernel(warp{}, index);
 }
 #endif

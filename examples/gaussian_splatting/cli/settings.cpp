@@ -205,10 +205,13 @@ CLI::App* add_train(CLI::App& app, settings& s) {
         ->capture_default_str();
     train
         ->add_option_function<std::string>(
-            "--effects", [&s](const std::string& text) { s.effects = effects::parse_selection(text); },
+            "--effects",
+            [&s](const std::string& text) {
+                s.effects = effects::parse_selection(text);
+                s.scene.masks = s.effects.takes_masks();
+            },
             "What to simulate: auto is what the scene calls for (see inspect), all, none, or some of "
-            "direction, "
-            "exposure and antialiasing; auto,+exposure,-direction adds and leaves out")
+            "direction, exposure, antialiasing and masks; auto,+exposure,-direction adds and leaves out")
         ->default_str("auto");
     train->add_option("--sh-degree", s.sh_degree, "Of view-dependent colour; by default as --effects has it")
         ->check(whole_number(0, 3));

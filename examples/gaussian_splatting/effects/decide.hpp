@@ -25,6 +25,8 @@ int sh_degree(const evidence& e);
 /// Whether enough points tell of it.
 bool direction_is_known(const evidence& e);
 
+inline constexpr const char* no_masks = "no photo has a mask";
+
 /// All effects that are looked for.
 std::vector<decision> decide(const evidence& e);
 

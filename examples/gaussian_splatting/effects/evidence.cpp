@@ -214,6 +214,18 @@ std::array<double, 4> unexplained_with(const points_seen& points, double ridge) 
     return sum;
 }
 
+void count_masks(const scene& of, evidence& found) {
+    std::size_t out = 0, all = 0;
+    found.photos = of.train.size();
+    for (const view& v : of.train) {
+        found.masked_photos += v.pixels.has_mask ? 1 : 0;
+        const std::size_t pixels = v.pixels.rgba.size() / 4;
+        all += pixels;
+        for (std::size_t i = 0; v.pixels.has_mask && i < pixels; ++i) out += v.pixels.leaves_out(i) ? 1 : 0;
+    }
+    found.masked_share = static_cast<double>(out) / static_cast<double>(all);
+}
+
 }  // namespace
 
 exposure_estimate exposures(const points_seen& points, std::size_t views) {
@@ -269,6 +281,7 @@ std::array<double, 4> unexplained_by_direction(const points_seen& points) {
 evidence gather(const scene& of) {
     evidence found;
     found.alpha = of.has_alpha;
+    count_masks(of, found);
     points_seen points = observe_points(of);
     std::vector<double> ratios;
     for (const auto& seen : points) {

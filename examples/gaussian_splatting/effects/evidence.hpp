@@ -31,6 +31,9 @@ struct evidence {
     std::size_t scale_points = 0;
     double scale_ratio = 1;
 
+    std::size_t photos = 0, masked_photos = 0;  ///< and of those for training that have a mask
+    double masked_share = 0;                    ///< of all their pixels that masks leave out
+
     bool alpha = false;  ///< photos have transparent parts
 };
 

@@ -25,6 +25,10 @@ std::size_t effect_called(const std::string& name) {
     return static_cast<std::size_t>(found - effect_names.begin());
 }
 
+bool has_masks(const scene& scene) {
+    return std::ranges::any_of(scene.train, [](const view& v) { return v.pixels.has_mask; });
+}
+
 }  // namespace
 
 selection parse_selection(const std::string& text) {
@@ -61,8 +65,8 @@ simulation simulate(const scene& scene, const selection& selection, const std::o
     const bool open = selection.from == base::found;  // what nobody has settled
     const bool asks_direction = open && !selection.of(effect::direction) && !sh_degree;
     const bool looks =
-        asks_direction ||
-        (open && (selection.of(effect::exposure).value_or(true) || !selection.of(effect::antialiasing)));
+        asks_direction || (open && (selection.of(effect::exposure).value_or(true) ||
+                                    !selection.of(effect::antialiasing) || !selection.of(effect::masks)));
     const evidence found = looks ? gather(scene) : evidence{};
     const std::vector<decision> decisions = looks ? decide(found) : std::vector<decision>{};
     simulation s;
@@ -87,6 +91,7 @@ simulation simulate(const scene& scene, const selection& selection, const std::o
                                [](double log2) { return static_cast<float>(std::exp2(log2)); });
     }
     s.antialiasing = settle(effect::antialiasing);
+    if (settle(effect::masks) && !has_masks(scene)) s.outcomes.back() = {"masks", false, no_masks};
 
     s.reviews_bands = asks_direction;
     s.sh_degree = !direction ? 0 : asks_direction ? effects::sh_degree(found) : 3;

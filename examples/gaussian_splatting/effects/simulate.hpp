@@ -13,10 +13,10 @@
 namespace gs::effects {
 
 /// What a training can simulate or leave. docs/effects.md says what another one needs.
-enum class effect { direction, exposure, antialiasing, count };
+enum class effect { direction, exposure, antialiasing, masks, count };
 
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(effect::count)> effect_names{
-    "direction", "exposure", "antialiasing"};
+    "direction", "exposure", "antialiasing", "masks"};
 
 /// What --effects says.
 struct selection {
@@ -30,6 +30,8 @@ struct selection {
     std::array<std::optional<bool>, effect_names.size()> said;  ///< of single effects
 
     const std::optional<bool>& of(effect e) const { return said[static_cast<std::size_t>(e)]; }
+    /// Whether masks are to be read, if there are any.
+    bool takes_masks() const { return of(effect::masks).value_or(from != base::none); }
 };
 
 /// From "auto", "all", "none", a list of effects, or any of the first three with what is to be added or left
@@ -53,7 +55,8 @@ struct simulation {
     std::vector<outcome> outcomes;  ///< one an effect
 };
 
-/// `sh_degree`: the one that was said. Looks at the photos only if something depends on them.
+/// `scene`: with masks if they are to be taken. `sh_degree`: the one that was said. Looks at the photos only
+/// if something depends on them.
 simulation simulate(const scene& scene, const selection& selection, const std::optional<int>& sh_degree);
 
 }  // namespace gs::effects

@@ -11,8 +11,10 @@
 
 namespace gs::evaluate {
 
-double psnr_after_fit(const std::vector<float>& picture, const std::vector<float>& photo, int width,
-                      int height) {
+double psnr_after_fit(const std::vector<float>& picture, const image& shot,
+                      const std::array<float, 3>& background) {
+    const int width = shot.width, height = shot.height;
+    const std::vector<float> photo = over_background(shot, background.data());
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     const auto shown = [&](std::size_t pixel) {
         const auto value = [&](std::size_t c) {
@@ -22,12 +24,15 @@ double psnr_after_fit(const std::vector<float>& picture, const std::vector<float
     };
     const auto over = [&](int from, int to, const auto& f) {
         for (int y = 0; y < height; ++y)
-            for (int x = from; x < to; ++x)
-                f(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                  static_cast<std::size_t>(x));
+            for (int x = from; x < to; ++x) {
+                const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                          static_cast<std::size_t>(x);
+                if (!shot.leaves_out(pixel)) f(pixel);
+            }
     };
     // A little towards no change, where the half has too few colours to tell.
-    const double ridge = 1e-4 * static_cast<double>(pixels);
+    double ridge = 0;
+    over(0, width, [&](std::size_t) { ridge += 1e-4; });
     glm::dmat4 normal(ridge);
     std::array<glm::dvec4, 3> right{};
     for (int c = 0; c < 3; ++c) right[static_cast<std::size_t>(c)][c] = ridge;
@@ -40,7 +45,7 @@ double psnr_after_fit(const std::vector<float>& picture, const std::vector<float
     std::array<glm::dvec4, 3> map{};
     for (std::size_t c = 0; c < 3; ++c) map[c] = inverse * right[c];
 
-    double squares = 0;
+    double squares = 0, values = 0;
     over(width / 2, width, [&](std::size_t i) {
         const glm::dvec4 x = shown(i);
         for (std::size_t c = 0; c < 3; ++c) {
@@ -48,8 +53,8 @@ double psnr_after_fit(const std::vector<float>& picture, const std::vector<float
                 std::clamp(glm::dot(map[c], x), 0.0, 1.0) - static_cast<double>(photo[c * pixels + i]);
             squares += d * d;
         }
+        values += 3;
     });
-    const double values = 3.0 * static_cast<double>(width - width / 2) * static_cast<double>(height);
     return -10 * std::log10(squares / values);
 }
 

@@ -2,15 +2,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <vector>
+
+#include "../scene/image.hpp"
 
 namespace gs::evaluate {
 
 /// The PSNR in dB of a picture's right half, after the affine map of its colours that brings its left half
 /// nearest to the photo's, by least squares: what a photo's exposure was is not for a model to know, and no
 /// pixel is measured by which it was found (the protocol of Martin-Brualla et al. 2021, NeRF in the Wild).
-/// Both are three planes of values; the picture is clamped to [0, 1] before and after.
-double psnr_after_fit(const std::vector<float>& picture, const std::vector<float>& photo, int width,
-                      int height);
+/// The picture is three planes of values, clamped to [0, 1] before and after; what a mask leaves out of the
+/// photo does not count. Precondition: something of either half is not left out.
+double psnr_after_fit(const std::vector<float>& picture, const image& photo,
+                      const std::array<float, 3>& background);
 
 }  // namespace gs::evaluate

@@ -70,9 +70,7 @@ test_report measure_test_views(train::engine& engine, const scene& scene,
         if (fits)
             for_each_in_parallel(count, [&](std::size_t i) {
                 const view& v = scene.test[first + i];
-                report.views[first + i].fitted_psnr =
-                    psnr_after_fit(pictures[i], over_background(v.pixels, background.data()), v.camera.width,
-                                   v.camera.height);
+                report.views[first + i].fitted_psnr = psnr_after_fit(pictures[i], v.pixels, background);
             });
         if (!keeps) continue;
         for_each_in_parallel(2 * count, [&](std::size_t job) {

@@ -9,6 +9,7 @@
 #include "../clipped.hpp"
 #include "../error.hpp"
 #include "colmap_files.hpp"
+#include "mask.hpp"
 #include "views.hpp"
 
 namespace gs {
@@ -51,7 +52,8 @@ const colmap_camera& camera_of(const colmap_image& taken, const colmap_model& mo
     return *found;
 }
 
-std::vector<recorded_view> recorded_views(const colmap_model& model, const std::filesystem::path& photos) {
+std::vector<recorded_view> recorded_views(const colmap_model& model, const std::filesystem::path& photos,
+                                          const std::filesystem::path& masks) {
     std::vector<recorded_view> recorded;
     recorded.reserve(model.images.size());
     for (const colmap_image& taken : model.images) {
@@ -60,7 +62,8 @@ std::vector<recorded_view> recorded_views(const colmap_model& model, const std::
         if (name.size() > longest_path)
             throw error(model.images_file.string() + ": the name of the image " + clipped(name) +
                         " is too long");
-        recorded_view one{photos / name, std::string(name), by.pinhole(), by.distortion, by.model};
+        recorded_view one{photos / name, std::string(name), by.pinhole(), by.distortion, by.model, {}};
+        if (!masks.empty()) one.mask = mask_of(masks, one.name);
         one.camera.rotation = glm::mat3_cast(taken.rotation);
         one.camera.translation = taken.translation;
         recorded.push_back(std::move(one));
@@ -94,7 +97,8 @@ scene load_colmap_scene(const load_options& options, const log_function& log) {
         throw error("test_every must be at least 1, not " + std::to_string(options.test_every));
     const std::filesystem::path data = options.data, photos = data / options.images;
     colmap_model model = read_colmap_model(model_folder(data));
-    const auto recorded = recorded_views(model, photos);
+    const auto recorded =
+        recorded_views(model, photos, options.masks ? data / "masks" : std::filesystem::path());
     if (!std::filesystem::is_directory(photos))
         throw error("the folder of photos " + photos.string() + " does not exist");
     scene result;

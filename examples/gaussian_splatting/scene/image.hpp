@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -10,11 +11,19 @@ namespace gs {
 
 /// 8-bit RGBA, rows from the top, colour premultiplied by alpha: what lies over a background b is
 /// `colour + (1 - alpha) * b`, and an area average of premultiplied pixels is the average of what one sees.
+/// What a mask leaves out is `left_out` (left_out.hpp).
 struct image {
     int width = 0;
     int height = 0;
     std::vector<std::uint8_t> rgba;  ///< 4 * width * height
     bool has_alpha = false;          ///< some pixel is not opaque
+    bool has_mask = false;           ///< some pixel is left out
+
+    bool leaves_out(std::size_t pixel) const {
+        return has_mask && rgba[4 * pixel + 3] == 0 && rgba[4 * pixel] == 255;
+    }
+    void leave_out(std::size_t pixel);
+    bool has_transparent_pixel() const;  ///< that is not left out
 };
 
 /// Reads a PNG or JPEG, told apart by its first bytes; grey, palette, 16-bit and CMYK-free JPEGs included.
@@ -30,11 +39,12 @@ void read_image_size(const std::filesystem::path& file, int& width, int& height)
 /// rounded to nearest. Written aside and renamed: an existing file is never half replaced.
 void write_png(const std::filesystem::path& file, int width, int height, const std::vector<float>& planes);
 
-/// The area average: each output pixel is the mean of the input it covers, fractions of pixels included.
+/// The area average: each output pixel is the mean of the input it covers, fractions of pixels included. Of
+/// one with a mask, the mean of what is not left out; left out where that is less than half.
 /// Precondition: 1 <= width <= source.width, and likewise the height.
 image shrink(const image& source, int width, int height);
 
-/// The image over a constant background, as planar floats in [0, 1].
+/// The image over a constant background, as planar floats in [0, 1]. What is left out is the background.
 std::vector<float> over_background(const image& source, const float background[3]);
 
 }  // namespace gs

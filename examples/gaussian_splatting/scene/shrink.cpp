@@ -37,16 +37,7 @@ void average_row(const std::uint8_t* row, const std::vector<coverage>& columns,
                 sums[4 * x + channel] += columns[x].lengths[i] * row[4 * (columns[x].first + i) + channel];
 }
 
-bool has_transparent_pixel(const image& pixels) {
-    for (std::size_t i = 3; i < pixels.rgba.size(); i += 4)
-        if (pixels.rgba[i] != 255) return true;
-    return false;
-}
-
-}  // namespace
-
-image shrink(const image& source, int width, int height) {
-    if (width == source.width && height == source.height) return source;
+image average(const image& source, int width, int height) {
     const auto source_width = static_cast<std::size_t>(source.width);
     const auto source_height = static_cast<std::size_t>(source.height);
     const auto columns = coverages(source_width, static_cast<std::size_t>(width));
@@ -68,7 +59,40 @@ image shrink(const image& source, int width, int height) {
         for (const std::uint64_t sum : sums)
             result.rgba.push_back(static_cast<std::uint8_t>((sum + area / 2) / area));
     }
-    result.has_alpha = has_transparent_pixel(result);
+    return result;
+}
+
+/// The average of what is not left out: that of all of it, the rest being zero, over its share.
+image masked_average(const image& source, int width, int height) {
+    image kept = source, share = source;
+    for (std::size_t i = 0; i < source.rgba.size() / 4; ++i) {
+        const bool out = source.leaves_out(i);
+        for (std::size_t channel = 0; channel < 4; ++channel) {
+            if (out) kept.rgba[4 * i + channel] = 0;
+            share.rgba[4 * i + channel] = out ? 0 : 255;
+        }
+    }
+    image result = average(kept, width, height);
+    share = average(share, width, height);
+    for (std::size_t i = 0; i < result.rgba.size(); i += 4) {
+        const unsigned of = share.rgba[i];
+        if (of < 128) {
+            result.leave_out(i / 4);
+        } else {
+            for (std::size_t channel = 0; channel < 4; ++channel)
+                result.rgba[i + channel] = static_cast<std::uint8_t>(
+                    std::min((255u * result.rgba[i + channel] + of / 2) / of, 255u));
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+image shrink(const image& source, int width, int height) {
+    if (width == source.width && height == source.height) return source;
+    image result = (source.has_mask ? masked_average : average)(source, width, height);
+    result.has_alpha = result.has_transparent_pixel();
     return result;
 }
 

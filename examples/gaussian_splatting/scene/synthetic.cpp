@@ -300,6 +300,25 @@ void render_row(const world& w, const camera& c, std::size_t photo, int row, std
     }
 }
 
+/// Something that stands before one photo: a disc of one colour.
+void paint_passer(const world& w, std::size_t photo, bool masks, image& pixels) {
+    std::mt19937_64 random(photo + (std::uint64_t{1} << 63));  // none of exposures or noise
+    const double x = uniform(random) * pixels.width, y = uniform(random) * pixels.height;
+    const double square = w.how.passers * pixels.width * pixels.height / std::numbers::pi;
+    std::uint8_t colour[4] = {0, 0, 0, 255};
+    for (int c = 0; c < 3; ++c) colour[c] = to_byte(uniform(random));
+    std::size_t i = 0;
+    for (int row = 0; row < pixels.height; ++row)
+        for (int column = 0; column < pixels.width; ++column, ++i) {
+            const double dx = column + 0.5 - x, dy = row + 0.5 - y;
+            if (dx * dx + dy * dy > square) continue;
+            if (masks)
+                pixels.leave_out(i);
+            else
+                std::copy(colour, colour + 4, &pixels.rgba[4 * i]);
+        }
+}
+
 std::vector<view> spiral_views(int size, const synthetic_parameters& how) {
     std::vector<view> views(view_count);
     for (int i = 0; i < view_count; ++i) {
@@ -310,7 +329,7 @@ std::vector<view> spiral_views(int size, const synthetic_parameters& how) {
     return views;
 }
 
-void take_photos(const world& w, std::vector<view>& views) {
+void take_photos(const world& w, std::vector<view>& views, bool masks = true) {
     struct place {
         view* photo;
         std::size_t number;
@@ -319,7 +338,7 @@ void take_photos(const world& w, std::vector<view>& views) {
     std::vector<place> rows;
     for (view& v : views) {
         const int width = v.camera.width, height = v.camera.height;
-        v.pixels = {width, height, {}, w.transparent};
+        v.pixels = {width, height, {}, w.transparent, false};
         v.pixels.rgba.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
         for (int row = 0; row < height; ++row)
             rows.push_back({&v, static_cast<std::size_t>(&v - views.data()), row});
@@ -330,6 +349,8 @@ void take_photos(const world& w, std::vector<view>& views) {
         render_row(w, v->camera, number, row,
                    v->pixels.rgba.data() + bytes_per_row * static_cast<std::size_t>(row));
     }
+    if (w.how.passers > 0)
+        for (std::size_t i = 0; i < views.size(); ++i) paint_passer(w, i, masks, views[i].pixels);
 }
 
 /// Where rays through random places of random views meet a surface: seen by a camera by construction, and
@@ -374,7 +395,7 @@ scene make_synthetic_scene(const std::string& name, const load_options& options,
     const world w = world_of(name);
     const int size = size_at(options.resolution);
     std::vector<view> views = spiral_views(size, w.how);
-    take_photos(w, views);
+    take_photos(w, views, options.masks);
 
     scene result;
     result.source = "synthetic";

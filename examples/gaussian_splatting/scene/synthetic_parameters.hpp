@@ -14,6 +14,7 @@ struct synthetic_parameters {
     double exposure = 0;  ///< standard deviation of log2 of a photo's brightness, as displayed: 0 to 2
     double scales = 1;    ///< the farthest camera's distance over the nearest's: 1 to 16
     double distance = 1;  ///< of all cameras, in those of other scenes: 0.25 to 16
+    double passers = 0;   ///< share of a photo that a disc covers which no other photo has: 0 to 0.5. Masked
     double noise = 0;     ///< standard deviation of values in [0, 1] where a photo shows something: 0 to 0.5
 };
 

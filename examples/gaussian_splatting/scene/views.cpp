@@ -12,6 +12,7 @@
 
 #include "../error.hpp"
 #include "../parallel.hpp"
+#include "mask.hpp"
 
 namespace gs {
 namespace {
@@ -188,13 +189,21 @@ std::vector<view> load_views(const std::vector<recorded_view>& recorded, const l
     const std::vector<camera> scaled = scale_to_resolution(straight, recorded, options.resolution, log);
     std::vector<view> views(recorded.size());
     for_each_in_parallel(recorded.size(), [&](std::size_t i) {
-        image photo = read_image(recorded[i].file);
-        if (!recorded[i].distortion.is_straight())
-            photo = undistort(photo, fitted[i], recorded[i].distortion, straight[i]);
-        if (photo.width != scaled[i].width || photo.height != scaled[i].height)
-            photo = shrink(photo, scaled[i].width, scaled[i].height);
-        views[i] = {recorded[i].name, scaled[i], std::move(photo)};
+        const auto& [file, name, _, distortion, model, mask] = recorded[i];
+        image photo = read_image(file);
+        image counts = mask.empty() ? image() : read_mask(mask, photo);
+        for (image* one : {&photo, &counts}) {
+            if (one->width == 0) continue;
+            if (!distortion.is_straight()) *one = undistort(*one, fitted[i], distortion, straight[i]);
+            *one = shrink(*one, scaled[i].width, scaled[i].height);
+        }
+        apply_mask(counts, photo);
+        views[i] = {name, scaled[i], std::move(photo)};
     });
+    const auto masks = std::ranges::count_if(recorded, [](const auto& one) { return !one.mask.empty(); });
+    if (masks > 0)
+        log(count_text(static_cast<std::size_t>(masks), "photo") + " of " + std::to_string(recorded.size()) +
+            (masks == 1 ? " has a mask" : " have masks"));
     return views;
 }
 

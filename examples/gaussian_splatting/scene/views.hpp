@@ -20,7 +20,8 @@ struct recorded_view {
     std::string name;
     gs::camera camera;  ///< of the size that was recorded
     lens distortion;
-    std::string model;  ///< the camera model's name, for messages
+    std::string model;           ///< the camera model's name, for messages
+    std::filesystem::path mask;  ///< see `mask_of`; empty: all of it counts
 };
 
 /// Opens the photos, in parallel and shrinking each at once; the views come in the order of `recorded`.

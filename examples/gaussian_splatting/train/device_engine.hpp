@@ -100,7 +100,7 @@ class device_engine final : public engine {
             to.clear();
             for (const view& v : views) {
                 device_.upload(photos_.data() + bytes, v.pixels.rgba.data(), v.pixels.rgba.size());
-                to.push_back({v.camera, bytes});
+                to.push_back({v.camera, bytes, v.pixels.has_mask});
                 bytes += v.pixels.rgba.size();
             }
         };
@@ -260,8 +260,8 @@ class device_engine final : public engine {
                                    : renderer_.picture();
         shown_.resize(n);
         device_.for_each_index(n, clamp_picture{exposed, shown_.data()});
-        photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
-                               background);
+        photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height, background,
+                               shot.masked);
         photometric_.compare(shown_.data());
         if (picture != nullptr) *picture = downloaded(exposed, shot.camera);
         return photometric_.take();
@@ -277,6 +277,7 @@ class device_engine final : public engine {
     struct photo {
         gs::camera camera;
         std::size_t first;  ///< byte in `photos_`
+        bool masked;
     };
 
     static std::size_t values_of(const camera& c) {
@@ -296,7 +297,7 @@ class device_engine final : public engine {
         renderer_.forward(trained_.values.read(), count_, shot.camera, plan.sh_degree, plan.background);
         device_.begin(stage::loss);
         photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
-                               plan.background);
+                               plan.background, shot.masked);
         const bool exposes = plan.exposure_rate > 0;
         const std::size_t pixels = values_of(shot.camera) / 3;
         const float* shown =

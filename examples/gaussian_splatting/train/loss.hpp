@@ -7,6 +7,7 @@
 #include <warpagg/atomic.hpp>
 
 #include "../raster/list_room.hpp"
+#include "../scene/left_out.hpp"
 #include "picture_strip.hpp"
 
 namespace gs::train {
@@ -28,10 +29,17 @@ struct loss_maps {
     }
 };
 
+/// Of a photo with a mask: pixels that it leaves out.
+template <class W>
+WARPAGG_HD mask_t<W> is_left_out(const W& w, const std::uint32_t* photo, std::ptrdiff_t pixel,
+                                 const mask_t<W>& inside) {
+    return w.load_row(photo, pixel, inside) == value_t<W, unsigned>(left_out);
+}
+
 /// First pass: the sum of and the difference between the picture and the photo over a background, in which
-/// the similarity is simplest; and zeros into the frames of all maps. A warp for as many values of a line as
-/// it has lanes.
-template <class Real>
+/// the similarity is simplest; and zeros into the frames of all maps. Pixels that a mask leaves out are zero
+/// in both. A warp for as many values of a line as it has lanes.
+template <class Real, bool Masked>
 struct sum_and_difference {
     const std::uint32_t* photo;  ///< premultiplied RGBA bytes
     const Real* picture;
@@ -81,8 +89,10 @@ struct sum_and_difference {
         const real y = fraction((rgba >> shift) & 255u) + through * background[channel];
         const auto plane = static_cast<std::ptrdiff_t>(planes.width) * planes.height;
         const real x = w.load_row(picture, channel * plane + pixel, inside);
-        w.store_row(maps.sum, to, select(inside, x + y, zero), true);
-        w.store_row(maps.difference, to, select(inside, x - y, zero), true);
+        mask_t<W> counts = inside;
+        if constexpr (Masked) counts = counts && rgba != value_t<W, unsigned>(left_out);
+        w.store_row(maps.sum, to, select(counts, x + y, zero), true);
+        w.store_row(maps.difference, to, select(counts, x - y, zero), true);
     }
 };
 
@@ -90,9 +100,11 @@ struct sum_and_difference {
 enum loss_sum { sum_absolute, sum_square, sum_ssim, sum_values, loss_sum_count };
 
 /// Second pass: the similarity of each pixel, and its derivatives by the moments of its window. Adds the
-/// absolute and square errors, the similarity and the number of values to `totals`. A warp per strip.
-template <class Real>
+/// absolute and square errors, the similarity and the number of values to `totals`: of pixels that no mask
+/// leaves out. A warp per strip.
+template <class Real, bool Masked>
 struct ssim_compare {
+    const std::uint32_t* photo;
     loss_maps<Real> maps;
     ssim_window<Real> window;
     int rows;        ///< of a strip
@@ -110,6 +122,7 @@ struct ssim_compare {
         WARPAGG_UNROLL
         for (int k = 0; k < size; ++k) sums[k] = differences[k] = {real(0), real(0)};
         real absolute(0), square(0), likeness(0);
+        [[maybe_unused]] real without(0);
         std::ptrdiff_t at = planes.at(strip.channel, strip.first - radius) + strip.left;
         for (int below = strip.first - radius; below < strip.last + radius; ++below, at += planes.pitch()) {
             const Real* const values[] = {maps.sum + at, maps.difference + at};
@@ -138,21 +151,36 @@ struct ssim_compare {
             const real error = w.load_row(maps.difference, pixel, strip.inside);
             absolute += warpagg::math::max(error, -error);
             square = fma(error, error, square);
-            likeness = fma(like1, like2, likeness);
+            real weight = like2;
+            if constexpr (Masked) weight = counted(w, strip, below - radius, weight, without);
+            likeness = fma(like1, weight, likeness);
         }
         if (room.exceeded()) return;
         using warpagg::math::convert;
-        const value_t<W, double> found[loss_sum_count] = {
-            convert<double>(absolute), convert<double>(square), convert<double>(likeness),
-            value_t<W, double>(static_cast<double>(strip.last - strip.first))};
+        value_t<W, double> values(static_cast<double>(strip.last - strip.first));
+        if constexpr (Masked) values = values - convert<double>(without);
+        const value_t<W, double> found[loss_sum_count] = {convert<double>(absolute), convert<double>(square),
+                                                          convert<double>(likeness), values};
         warpagg::warp_reduce_atomic(w, totals, found, strip.inside);
+    }
+
+  private:
+    /// Zero where the row's pixel is left out, which is counted in `without`; else the value.
+    template <class W, class real>
+    WARPAGG_HD real counted(const W& w, const picture_strip<W>& strip, int row, const real& value,
+                            real& without) const {
+        const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(row) * maps.planes.width + strip.left;
+        const mask_t<W> out = is_left_out(w, photo, pixel, strip.inside);
+        without += select(out, real(1), real(0));
+        return select(out, real(0), value);
     }
 };
 
-/// Last pass: the gradient by x of `(1 - ssim_weight) mean|x - y| + ssim_weight (1 - mean SSIM)`. A warp per
-/// strip.
-template <class Real>
+/// Last pass: the gradient by x of `(1 - ssim_weight) mean|x - y| + ssim_weight (1 - mean SSIM)`, zero where
+/// a mask leaves out a pixel. A warp per strip.
+template <class Real, bool Masked>
 struct loss_gradient {
+    const std::uint32_t* photo;
     loss_maps<Real> maps;
     ssim_window<Real> window;
     int rows;
@@ -175,9 +203,9 @@ struct loss_gradient {
             for (int k = 0; k < size; ++k) spread[m][k] = real(0);
         }
         std::ptrdiff_t at = planes.at(strip.channel, strip.first - radius) + strip.left;
-        std::ptrdiff_t to =
-            (static_cast<std::ptrdiff_t>(strip.channel) * planes.height + strip.first) * planes.width +
-            strip.left;
+        const std::ptrdiff_t plane =
+            static_cast<std::ptrdiff_t>(strip.channel) * planes.height * planes.width;
+        std::ptrdiff_t to = plane + static_cast<std::ptrdiff_t>(strip.first) * planes.width + strip.left;
         for (int below = strip.first - radius; below < strip.last + radius; ++below, at += planes.pitch()) {
             const Real* const derivatives[] = {maps.constant + at, maps.by_sum + at, maps.by_difference + at};
             real mean[3];
@@ -192,7 +220,10 @@ struct loss_gradient {
             const real similarity =
                 fma(v, spread[2][size - 1], fma(u, spread[1][size - 1], spread[0][size - 1]));
             const real sign = select(v > Real(0), real(step), select(v < Real(0), real(-step), real(0)));
-            w.store_row(gradient, to, sign - similarity * slope, strip.inside);
+            real by_x = sign - similarity * slope;
+            if constexpr (Masked)
+                by_x = select(is_left_out(w, photo, to - plane, strip.inside), real(0), by_x);
+            w.store_row(gradient, to, by_x, strip.inside);
             to += planes.width;
         }
     }

@@ -26,11 +26,14 @@ class photometric {
     }
 
     /// The photo over a background that pictures are compared with next: premultiplied RGBA on the device, 4
-    /// bytes a pixel, aligned to 4, which must stay there meanwhile.
-    void set_photo(const std::uint8_t* rgba, int width, int height, const std::array<float, 3>& background) {
+    /// bytes a pixel, aligned to 4, which must stay there meanwhile. `masked`: some of its pixels are left
+    /// out.
+    void set_photo(const std::uint8_t* rgba, int width, int height, const std::array<float, 3>& background,
+                   bool masked = false) {
         static_assert(std::endian::native == std::endian::little);
         photo_ = reinterpret_cast<const std::uint32_t*>(rgba);
         background_ = {background[0], background[1], background[2]};
+        masked_ = masked;
         const framed_planes planes{width, height};
         memory_.resize(loss_maps<Real>::count * planes.size());
         maps_ = loss_maps<Real>::in(memory_.data(), planes);
@@ -40,17 +43,13 @@ class photometric {
     /// Adds the picture's measures to the running ones, if there was room for all of it. The first part of
     /// `gradient`.
     void compare(const Real* picture, const raster::list_room& room = {}) {
-        device_.for_each_warp(sum_and_difference<Real>::template count<warp>(maps_.planes),
-                              sum_and_difference<Real>{photo_, picture, background_, maps_});
-        device_.for_each_warp(strips(), ssim_compare<Real>{maps_, window_, rows(), totals_.data(), room});
+        masked_ ? compare_with<true>(picture, room) : compare_with<false>(picture, room);
     }
 
     /// dL/dpicture for L = (1 - ssim_weight) L1 + ssim_weight (1 - SSIM), on the device. Compares as well.
     const Real* gradient(const Real* picture, double ssim_weight, const raster::list_room& room = {}) {
         compare(picture, room);
-        device_.for_each_warp(
-            strips(),
-            loss_gradient<Real>{maps_, window_, rows(), static_cast<Real>(ssim_weight), gradient_.data()});
+        masked_ ? differentiate<true>(ssim_weight) : differentiate<false>(ssim_weight);
         return gradient_.data();
     }
 
@@ -71,6 +70,21 @@ class photometric {
     }
 
   private:
+    template <bool Masked>
+    void compare_with(const Real* picture, const raster::list_room& room) {
+        using first_pass = sum_and_difference<Real, Masked>;
+        device_.for_each_warp(first_pass::template count<warp>(maps_.planes),
+                              first_pass{photo_, picture, background_, maps_});
+        device_.for_each_warp(
+            strips(), ssim_compare<Real, Masked>{photo_, maps_, window_, rows(), totals_.data(), room});
+    }
+    template <bool Masked>
+    void differentiate(double ssim_weight) {
+        device_.for_each_warp(strips(),
+                              loss_gradient<Real, Masked>{photo_, maps_, window_, rows(),
+                                                          static_cast<Real>(ssim_weight), gradient_.data()});
+    }
+
     int rows() const {
         return strip::rows_for(maps_.planes.width, maps_.planes.height, device_.resident_warps() / 4);
     }
@@ -80,6 +94,7 @@ class photometric {
     ssim_window<Real> window_ = ssim_window<Real>::make();
     const std::uint32_t* photo_ = nullptr;
     glm::vec<3, Real> background_{};
+    bool masked_ = false;
     loss_maps<Real> maps_{};
     buffer<Real> memory_, gradient_;
     buffer<double> totals_;
