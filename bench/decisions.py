@@ -22,14 +22,16 @@ from scenes import by
 
 WORLDS = ["spheres", "alpha"]
 BACKGROUND = "background"
-CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales", "masks": "passers"}
+CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales", "sky": "sky", "masks": "passers"}
 EFFECTS = [*CAUSES, BACKGROUND]
-PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"passers": 0.1}, {"noise": 0.03}]
-MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "passers": (0.05, 0.2)}
+PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"passers": 0.1}, {"noise": 0.03}]
+SKYLESS = "alpha"  # what no surface hides is transparent there
+MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "sky": (0.3, 1), "passers": (0.05, 0.2)}
 
 
 def synthetic(kind, world, parameters):
     """A scene and which effects it has by how it is made."""
+    parameters = {name: value for name, value in parameters.items() if name != "sky" or world != SKYLESS}
     given = [f"{name}={value:g}" for name, value in parameters.items() if value]
     truth = {effect: bool(parameters.get(cause)) for effect, cause in CAUSES.items()}
     return {"kind": kind, "scene": "synthetic:" + ",".join([world, *given]), "noise": parameters.get("noise", 0),
@@ -37,7 +39,8 @@ def synthetic(kind, world, parameters):
 
 
 def pure():
-    return [synthetic("pure", world, parameters) for world in WORLDS for parameters in PURE]
+    return [synthetic("pure", world, parameters) for world in WORLDS for parameters in PURE
+            if "sky" not in parameters or world != SKYLESS]
 
 
 def mixtures(count, seed, noises):

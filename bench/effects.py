@@ -25,9 +25,10 @@ from scenes import by, where
 SCENES = {"direction": ("spheres,gloss=1,noise=0.01", "spheres,noise=0.03"),
           "exposure": ("spheres,exposure=0.3", "spheres"),
           "antialiasing": ("spheres,scales=4", "spheres"),
+          "sky": ("spheres,sky=0.8", "spheres"),
           "masks": ("spheres,passers=0.1", "spheres")}
 LITTLE = ["spheres,noise=0.03", "alpha,noise=0.03"]
-MUCH = ["spheres,gloss=0.7,exposure=0.3,scales=4", "alpha,gloss=0.7,exposure=0.3,scales=4"]
+MUCH = ["spheres,gloss=0.7,exposure=0.3,scales=4,sky=0.7", "alpha,gloss=0.7,exposure=0.3,scales=4"]
 SELECTIONS = ["none", "auto", "all"]
 DISTANCES = [1, 0.5, 4]
 TAKEN = {"exposure", "scales", "passers", "noise"}  # what is of the photos, not of the world
@@ -41,12 +42,14 @@ def evaluated(program, ply, world, distance, device, folder):
 
 
 def train(arguments, scene, effects, seed):
-    """A run, its model seen from elsewhere too if the scene is synthetic. On black, whatever the selection."""
+    """A run, its model seen from elsewhere too if the scene is synthetic. On black, whatever the selection: exposures change
+    any other background, and without transparent parts it is black anyway, or a sky."""
     is_folder = scene in arguments.scenes
     data = [str(pathlib.Path(arguments.data) / scene)] if is_folder else [f"synthetic:{scene}", "-r", SIDE]
+    background = ["--background", "black"] if scene.split(",")[0] == "alpha" else []
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([arguments.program, "train", "-d", *data, "-o", folder, "--eval", "--seed", str(seed), "-q",
-                        "--background", "black", "--fit-exposure", f"--effects={effects}", *arguments.options], check=True)
+                        *background, "--fit-exposure", f"--effects={effects}", *arguments.options], check=True)
         metrics = json.loads((pathlib.Path(folder) / "metrics.json").read_text())
         one = {"scene": scene, "options": effects, "seed": seed,
                **{name: metrics[name] for name in ("psnr", "fitted_psnr", "gaussians", "iterations_per_second", "device",

@@ -485,7 +485,7 @@ TEST_CASE("inspect says what a scene calls for, and writes it") {
     CAPTURE(o.err);
     CHECK(o.code == 0);
     const auto json = nlohmann::json::parse(read_file(file));
-    REQUIRE(json.at("effects").size() == 5);
+    REQUIRE(json.at("effects").size() == 6);
     for (const auto& effect : json.at("effects")) {
         const auto name = effect.at("name").get<std::string>();
         CHECK(effect.at("called_for").get<bool>() == (name == "direction" || name == "exposure"));
@@ -828,6 +828,7 @@ TEST_CASE("train simulates what the scene calls for, or what it is told, and say
     CHECK(effects("auto", varied, {}) == set{{"direction", false},
                                              {"exposure", true},
                                              {"antialiasing", true},
+                                             {"sky", false},
                                              {"masks", false},
                                              {"background", false}});
     const json found = read_json(folder / "auto/exposures.json");
@@ -844,6 +845,7 @@ TEST_CASE("train simulates what the scene calls for, or what it is told, and say
     CHECK(effects("some", varied, {"--effects=-exposure,+direction"}) == set{{"direction", true},
                                                                              {"exposure", false},
                                                                              {"antialiasing", true},
+                                                                             {"sky", false},
                                                                              {"masks", false},
                                                                              {"background", false}});
     CHECK(!fs::exists(folder / "some/exposures.json"));

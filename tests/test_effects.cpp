@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "../examples/gaussian_splatting/effects/decide.hpp"
 #include "../examples/gaussian_splatting/error.hpp"
+#include "../examples/gaussian_splatting/model/spherical_harmonics.hpp"
 #include "../examples/gaussian_splatting/scene/synthetic_parameters.hpp"
 
 namespace {
@@ -22,36 +26,63 @@ gs::scene made(const std::string& parameters) {
     return gs::load_scene(o, {});
 }
 
-bool calls_for(const std::vector<decision>& found, const std::string& name) {
-    const auto d = std::ranges::find(found, name, &decision::name);
-    REQUIRE(d != found.end());
-    REQUIRE(d->called_for);
-    return *d->called_for;
-}
-
 }  // namespace
 
 TEST_CASE("a scene calls for what it was made with, and for nothing else") {
     const struct {
         const char* scene;
-        bool direction, exposure, antialiasing, masks, background;
-    } cases[] = {{"spheres", false, false, false, false, false},
-                 {"spheres,noise=0.03", false, false, false, false, false},
-                 {"spheres,gloss=0.6", true, false, false, false, false},
-                 {"spheres,exposure=0.3,noise=0.01", false, true, false, false, false},
-                 {"spheres,scales=4", false, false, true, false, false},
-                 {"spheres,passers=0.1", false, false, false, true, false},
-                 {"alpha", false, false, false, false, true},
-                 {"alpha,gloss=0.6,exposure=0.3,passers=0.1", true, true, false, true, true}};
+        std::set<std::string> effects;
+    } cases[] = {
+        {"spheres", {}},
+        {"spheres,noise=0.03", {}},
+        {"spheres,gloss=0.6", {"direction"}},
+        {"spheres,exposure=0.3,noise=0.01", {"exposure"}},
+        {"spheres,scales=4", {"antialiasing"}},
+        {"spheres,sky=0.4,noise=0.03", {"sky"}},
+        {"spheres,sky=1,exposure=0.3,scales=4", {"sky", "exposure", "antialiasing"}},
+        {"spheres,passers=0.1", {"masks"}},
+        {"alpha", {"background"}},
+        {"alpha,gloss=0.6,exposure=0.3,passers=0.1", {"direction", "exposure", "masks", "background"}}};
     for (const auto& c : cases) {
         INFO(c.scene);
         const auto found = decide(gather(made(c.scene)));
-        CHECK(calls_for(found, "direction") == c.direction);
-        CHECK(calls_for(found, "exposure") == c.exposure);
-        CHECK(calls_for(found, "antialiasing") == c.antialiasing);
-        CHECK(calls_for(found, "masks") == c.masks);
-        CHECK(calls_for(found, "background") == c.background);
+        for (const decision& d : found) {
+            INFO(d.name);
+            REQUIRE(d.called_for);
+            CHECK(*d.called_for == c.effects.contains(d.name));
+        }
     }
+}
+
+TEST_CASE("a sky is what it was made of, and begins from that") {
+    const gs::scene scene = made("spheres,sky=0.8");
+    const sky_evidence found = find_sky(scene, {});
+    CHECK(found.share > 0.3);
+    CHECK(found.share > 0.99 * found.empty);
+    double square = 0, values = 0;
+    for (const gs::view& v : scene.train) {
+        // Three corners, which show no surface.
+        for (const auto& [x, y] : {std::pair{3, 3}, {v.camera.width - 4, 3}, {3, v.camera.height - 4}}) {
+            const auto i = static_cast<std::size_t>(y * v.camera.width + x);
+            const glm::dvec3 ray((x + 0.5 - v.camera.cx) / v.camera.fx, (y + 0.5 - v.camera.cy) / v.camera.fy,
+                                 1);
+            double basis[16];
+            gs::sh_basis<double>(3, glm::normalize(glm::transpose(v.camera.rotation) * ray), basis);
+            for (std::size_t c = 0; c < 3; ++c) {
+                double colour = 0.5;
+                for (std::size_t k = 0; k < 16; ++k)
+                    colour += basis[k] * static_cast<double>(found.coefficients[3 * k + c]);
+                square += std::pow(colour - v.pixels.rgba[4 * i + c] / 255.0, 2);
+                ++values;
+            }
+        }
+    }
+    CHECK(std::sqrt(square / values) < 0.02);
+    CHECK(find_sky(made("spheres,sky=0.04"), {}).brightness < 0.08);
+    gs::scene bare = scene;
+    bare.points.clear();
+    CHECK_FALSE(find_sky(bare, {}).is_asked);
+    CHECK_THROWS_WITH_AS(made("alpha,sky=1"), doctest::Contains("it has no sky"), gs::error);
 }
 
 TEST_CASE("a scene without points is not told what it needs") {
@@ -135,12 +166,12 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
     CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
     CHECK(refusal("spheres,glos=0.5") ==
           "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
-          "noise");
+          "sky, noise");
     CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
     CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
     CHECK(refusal("spheres,") ==
           "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
-          "noise");
+          "sky, noise");
     CHECK(refusal("spheres,gloss=nan") ==
           "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
     CHECK(refusal("spheres,gloss=0,gloss=1") ==

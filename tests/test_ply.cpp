@@ -232,6 +232,37 @@ TEST_CASE("ply: that Gaussians are antialiased is a comment, as Brush writes it"
     }
 }
 
+TEST_CASE("ply: a sky is a comment") {
+    const temporary_folder folder;
+    const auto file = folder.path / "model.ply";
+    gs::gaussians model = sample_model(1, 2);
+    gs::write_ply(file, model);
+    CHECK(gs::read_ply(file).sky.empty());
+    CHECK(read_text(file).find("Sky") == std::string::npos);
+    for (std::size_t i = 0; i < gs::sky_width; ++i)
+        model.sky.push_back(std::ldexp(1.0F / static_cast<float>(i + 3), static_cast<int>(i) - 40));
+    model.sky[5] = -0.0F;
+    model.antialiased = true;
+    gs::write_ply(file, model);
+    const gs::gaussians read = gs::read_ply(file);
+    CHECK(read.sky == model.sky);
+    CHECK(read.antialiased);
+    CHECK(read.mean == model.mean);
+
+    const std::string text = read_text(file);
+    const std::string first = text.substr(text.find("SkyHarmonics: "), 20);
+    const auto with = [&](const std::string& begin) {
+        return with_replaced(text, first, "SkyHarmonics: " + begin + " " + first.substr(14));
+    };
+    check_refused(with("1 2"), {"sky", "more than 48"});
+    check_refused(with("1e99"), {"sky", "'1e99'"});
+    check_refused(with("blue"), {"sky", "'blue'"});
+    check_refused(with("1\ncomment"), {"sky", "1 numbers instead of 48"});
+    model.sky[1] = std::numeric_limits<float>::infinity();
+    CHECK_THROWS_WITH_AS(gs::write_ply(file, model), doctest::Contains("its sky is not finite"), gs::error);
+    CHECK(read_text(file) == text);
+}
+
 TEST_CASE("ply: shuffled and further properties of any type, comments and Windows line ends are read") {
     const temporary_folder folder;
     const properties list = {

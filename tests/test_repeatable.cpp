@@ -31,6 +31,7 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene, gs::gradient
     e.set_views(scene.train, {}, o.schedule.num_downscales);
     gs::gaussians model = gs::from_points(scene.points, o.schedule.sh_degree, 500, 1);
     model.antialiased = true;
+    if (gs::knows_skies(how)) model.sky.assign(gs::sky_width, 0.0f);
     o.exposures.assign(scene.train.size(), gs::train::unexposed);
     o.review_bands = [&](int degree) { return gs::effects::review_bands(e, scene, {}, degree).sh_degree; };
     e.set_model(model);
@@ -40,7 +41,8 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene, gs::gradient
 
 bool are_the_same(const gs::gaussians& a, const gs::gaussians& b) {
     return a.mean == b.mean && a.log_scale == b.log_scale && a.quaternion == b.quaternion &&
-           a.opacity == b.opacity && a.sh_constant == b.sh_constant && a.sh_rest == b.sh_rest;
+           a.opacity == b.opacity && a.sh_constant == b.sh_constant && a.sh_rest == b.sh_rest &&
+           a.sky == b.sky;
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "../examples/gaussian_splatting/evaluate/test_views.hpp"
 #include "../examples/gaussian_splatting/model/initialise.hpp"
 #include "../examples/gaussian_splatting/train/exposures.hpp"
+#include "../examples/gaussian_splatting/train/sky.hpp"
 #include "../examples/gaussian_splatting/train/trainer.hpp"
 #include "engines.hpp"
 
@@ -59,7 +60,7 @@ TEST_CASE("what is simulated is what the scene calls for, or what was said") {
     CHECK(matte.reviews_bands);
     CHECK(matte.exposures.empty());
     CHECK_FALSE(matte.antialiasing);
-    REQUIRE(matte.outcomes.size() == 4);
+    REQUIRE(matte.outcomes.size() == 5);
     for (const auto& o : matte.outcomes) CHECK_FALSE(o.on);
     CHECK(matte.outcomes[1].reason.find("brighter or darker") != std::string::npos);
 
@@ -79,22 +80,31 @@ TEST_CASE("what is simulated is what the scene calls for, or what was said") {
     CHECK(simulated(spheres, "all").exposures == std::vector<float>(48, 1.0f));
     CHECK_FALSE(simulated(spheres, "all").reviews_bands);
     CHECK(simulated(glossy, "none").sh_degree == 0);
-    CHECK(simulated(spheres, "+direction,-exposure,-antialiasing").sh_degree == 3);
+    CHECK(simulated(spheres, "+direction,-exposure,-antialiasing,-sky,-masks").sh_degree == 3);
     const simulation listed = simulated(spheres, "exposure,direction");
     CHECK_FALSE(listed.exposures.empty());
     CHECK(listed.sh_degree == 3);
     CHECK_FALSE(listed.antialiasing);
     CHECK(simulated(glossy, "auto", 1).sh_degree == 1);
     CHECK_FALSE(simulated(glossy, "auto", 0).outcomes[0].on);
-    const simulation settled = simulated(spheres, "auto,-exposure,-antialiasing", 2);  // nothing to look for
+    const simulation settled =
+        simulated(spheres, "auto,-exposure,-antialiasing,-sky,-masks", 2);  // nothing to look for
     CHECK(settled.sh_degree == 2);
     CHECK_FALSE(settled.reviews_bands);
     CHECK(settled.outcomes[0].reason == "--sh-degree 2");
 
-    CHECK(simulated(spheres, "all").outcomes[3].reason == "no photo has a mask");
+    const simulation under_sky = simulated(made("spheres,sky=0.7"), "auto");
+    CHECK(under_sky.outcomes[3].on);
+    CHECK(under_sky.sky.size() == gs::sky_width);
+    CHECK(std::abs(under_sky.sky[0]) > 0.1f);
+    CHECK(matte.sky.empty());
+    CHECK(simulated(spheres, "all").sky == std::vector<float>(gs::sky_width, 0.0f));
+    CHECK(simulated(made("alpha"), "all").sky.empty());
+    CHECK(simulated(made("alpha"), "all").outcomes[3].reason == "photos have transparent parts");
+    CHECK(simulated(spheres, "all").outcomes[4].reason == "no photo has a mask");
     const simulation masked = simulated(made("spheres,passers=0.1"), "auto");
-    CHECK(masked.outcomes[3].on);
-    CHECK(masked.outcomes[3].reason.starts_with("48 of 48 photos have masks, which leave out "));
+    CHECK(masked.outcomes[4].on);
+    CHECK(masked.outcomes[4].reason.starts_with("48 of 48 photos have masks, which leave out "));
 }
 
 TEST_CASE("a selection of effects that is none is refused") {
@@ -104,7 +114,7 @@ TEST_CASE("a selection of effects that is none is refused") {
         CHECK(refusal(text) == "");
     }
     CHECK(refusal("glare") ==
-          "--effects: there is no effect 'glare'; there are direction, exposure, antialiasing, masks");
+          "--effects: there is no effect 'glare'; there are direction, exposure, antialiasing, sky, masks");
     CHECK(parse_selection("auto").takes_masks());
     CHECK(parse_selection("masks").takes_masks());
     CHECK_FALSE(parse_selection("none").takes_masks());
@@ -172,6 +182,92 @@ TEST_CASE("a step without room, or whose gradient is not finite, leaves the expo
     CHECK(exposures.get() == before);
     exposures.learn(0, picture.data(), picture.data(), 1, 0.1f, {&needed, 2});
     CHECK(exposures.get() != before);
+}
+
+TEST_CASE("a sky is drawn by direction, and its gradients are those of central differences") {
+    gs::device::cpu device;
+    using warp = gs::device::cpu::warp;
+    std::mt19937 random(3);
+    for (const auto& [width, height] : {std::pair{1, 1}, {37, 19}, {64, 8}}) {
+        CAPTURE(width);
+        const auto pixels = static_cast<std::size_t>(width * height);
+        gs::camera camera = small_scene("synthetic:spheres", 32).train[7].camera;
+        camera.width = width;
+        camera.height = height;
+        camera.cx = 0.4 * width;
+        std::vector<float> coefficients = random_picture(random, gs::sky_width);
+        const auto weights = random_picture(random, 3 * pixels), through = random_picture(random, pixels);
+        gs::train::sky<gs::device::cpu> sky(device);
+        CHECK(sky.draw(camera) == nullptr);
+        // Of the sum of weights and what comes through of the sky.
+        const auto loss = [&] {
+            sky.set(coefficients);
+            const float* planes = sky.draw(camera);
+            double sum = 0;
+            for (std::size_t i = 0; i < 3 * pixels; ++i)
+                sum += static_cast<double>(weights[i] * through[i % pixels] * planes[i]);
+            return sum;
+        };
+        gs::train::learned_numbers<gs::device::cpu, gs::sky_width> numbers(device);
+        const auto sums = numbers.sums(gs::train::sky_patch<warp>::count(width, height));
+        device.for_each_warp(sums.warps, gs::train::sky_backward<warp>{
+                                             gs::raster::for_device<warpagg::value_t<warp, float>>(camera),
+                                             through.data(), weights.data(), sums});
+        for (const unsigned k : {0u, 4u, 20u, 47u}) {
+            double by = 0;
+            for (std::size_t part = 0; part < sums.warps; ++part) by += static_cast<double>(*sums(k, part));
+            const float before = coefficients[k];
+            coefficients[k] = before + 0.5f;
+            const double more = loss();
+            coefficients[k] = before - 0.5f;
+            const double error = std::abs(more - loss() - by);
+            CHECK(error < 1e-5 * static_cast<double>(pixels));
+            coefficients[k] = before;
+        }
+        const double first = loss();
+        for (int i = 0; i < 5; ++i) sky.learn(camera, through.data(), weights.data(), 0.01f, {});
+        const auto learnt = sky.get();
+        for (std::size_t k = 0; k < 3; ++k)  // the constant's gradient is positive: steps are of the rate
+            CHECK(learnt[k] == doctest::Approx(coefficients[k] - 0.05f).epsilon(1e-3));
+        coefficients = learnt;
+        CHECK(loss() < first);
+    }
+}
+
+TEST_CASE("behind a scene a sky is learnt, where no surface is") {
+    const gs::scene scene = small_scene("synthetic:spheres,sky=0.9", 48);
+    gs::gaussians points = gs::from_points(scene.points, 0, 3000, 1);
+    for (const auto make : engines()) {
+        const auto psnr_with = [&](const std::vector<float>& sky) {
+            const auto e = make();
+            gs::train::train_options o;
+            o.schedule.iterations = 400;
+            o.schedule.sh_degree = 0;
+            o.max_cap = 4000;
+            gs::gaussians model = points;
+            model.sky = sky;
+            e->set_views(scene.train, scene.test, o.schedule.num_downscales);
+            e->set_model(model);
+            gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
+            const double psnr = gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr();
+            model = e->get_model();
+            CHECK(model.sky.size() == sky.size());
+            if (!sky.empty()) CHECK(model.sky != sky);
+            e->set_model(model);
+            CHECK(gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr() ==
+                  doctest::Approx(psnr).epsilon(1e-6));
+            return psnr;
+        };
+        CHECK(psnr_with(std::vector<float>(gs::sky_width, 0.0f)) > psnr_with({}) + 3);
+    }
+    const auto e = gs::train::make_cpu_engine();
+    points.sky.assign(gs::sky_width, 0.0f);
+    e->set_views(scene.train, {}, 0);
+    e->set_model(points);
+    e->reserve();
+    gs::train::step_plan plan = plan_for(0);
+    plan.gradient = gs::gradient_policy::reduce;
+    CHECK_THROWS_WITH_AS(e->step(plan), doctest::Contains("before a sky"), gs::error);
 }
 
 TEST_CASE("photos of different exposures are fitted, and their mean stays") {

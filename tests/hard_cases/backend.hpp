@@ -27,6 +27,7 @@ struct question {
     std::array<std::vector<double>, gs::parameter_count> parameters;
     gs::view view;
     std::array<float, 3> background{};
+    std::vector<double> backdrop;  ///< three planes behind all, in place of the background; or none
     gradient_policy policy = gradient_policy::split;
     std::vector<double> weights;  ///< of the loss's gradient, one a pixel; none for 1 everywhere
     /// The picture at which the loss's gradient is taken; none for the one that is drawn.

@@ -38,6 +38,7 @@ class pictures_on {
         gs::train::photometric<Device, Real> photometric{device};
         parameters values, gradients;
         buffer<std::uint8_t> photo;
+        buffer<Real> backdrop;
 
         void draw(const question& q) {
             for (std::size_t p = 0; p < gs::parameter_count; ++p) {
@@ -51,7 +52,9 @@ class pictures_on {
             renderer.measure(model, q.count(), camera, q.sh_degree);
             const std::uint64_t needed = renderer.instances();
             renderer.reserve_instances(needed, needed / 2 + 64);
-            renderer.forward(model, q.count(), camera, q.sh_degree, q.background);
+            if (!q.backdrop.empty()) on.put(backdrop, q.backdrop);
+            renderer.forward(model, q.count(), camera, q.sh_degree, q.background,
+                             q.backdrop.empty() ? nullptr : backdrop.data());
             on.put_bytes(photo, q.view.pixels.rgba);
             photometric.set_photo(photo.data(), camera.width, camera.height, q.background);
         }

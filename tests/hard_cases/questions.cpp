@@ -11,6 +11,12 @@
 
 namespace hard_cases {
 
+void add_backdrop(question& q, unsigned seed) {
+    std::mt19937 random(seed);
+    q.backdrop.resize(3 * q.pixels());
+    for (double& x : q.backdrop) x = static_cast<double>(random() % 1000) / 999;
+}
+
 question random_question(unsigned seed, std::size_t splats, int width, int height, int sh_degree) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;

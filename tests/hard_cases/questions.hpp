@@ -14,6 +14,9 @@ namespace hard_cases {
 /// A crowd of Gaussians before a camera, some of them half out of the picture, with a random photo behind.
 question random_question(unsigned seed, std::size_t splats, int width, int height, int sh_degree);
 
+/// Random colours, one a pixel, behind all.
+void add_backdrop(question& q, unsigned seed);
+
 /// No Gaussians yet, degree 0, black background and photo, before a camera at the origin that looks along z,
 /// with the focal length of the picture's width and its axis through the middle of the picture.
 question empty_question(int width, int height);

@@ -211,7 +211,7 @@ CLI::App* add_train(CLI::App& app, settings& s) {
                 s.scene.masks = s.effects.takes_masks();
             },
             "What to simulate: auto is what the scene calls for (see inspect), all, none, or some of "
-            "direction, exposure, antialiasing and masks; auto,+exposure,-direction adds and leaves out")
+            "direction, exposure, antialiasing, sky and masks; auto,+exposure,-direction adds and leaves out")
         ->default_str("auto");
     train->add_option("--sh-degree", s.sh_degree, "Of view-dependent colour; by default as --effects has it")
         ->check(whole_number(0, 3));

@@ -183,7 +183,12 @@ void train(const settings& s) {
     const auto engine = session.make_engine();
     const stopwatch loading;
     const scene scene = session.load();
-    const effects::simulation simulated = effects::simulate(scene, s.effects, s.sh_degree);
+    effects::simulation simulated = effects::simulate(scene, s.effects, s.sh_degree);
+    if (!simulated.sky.empty() && !knows_skies(s.policy))
+        simulated.leave_out(effects::effect::sky,
+                            "--gradient and --accumulate draw one only by split and fixed");
+    if (!simulated.sky.empty() && s.background != "auto")
+        simulated.leave_out(effects::effect::sky, "--background " + s.background);
     for (const auto& o : simulated.outcomes) session.say(o.name + (o.on ? " on: " : " off: ") + o.reason);
     if (!simulated.exposures.empty() && (s.background == "white" || s.background == "random"))
         throw error(
@@ -200,6 +205,7 @@ void train(const settings& s) {
         };
     gaussians model = first_model(scene, options);
     model.antialiased = simulated.antialiasing;
+    model.sky = simulated.sky;
     const output_folder output(s.output);
     engine->set_views(scene.train, scene.test, options.schedule.num_downscales);
     engine->set_model(model);

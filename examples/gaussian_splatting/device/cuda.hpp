@@ -53,9 +53,13 @@ __global__ void for_each_index(std::size_t n, F f) {
     if (i < n) f(i);
 }
 
-/// Kernels with scratch walk lists: they get few enough registers for half of an SM's warps.
+/// Kernels that walk lists say how many of their warps an SM is to have at once: they get few enough
+/// registers for it.
 template <class F>
-constexpr int least_blocks = has_scratch<F, warpagg::cuda::warp> ? 32 / warps_per_block : 1;
+constexpr int least_blocks = 1;
+template <class F>
+requires requires { F::warps_at_once; }
+constexpr int least_blocks<F> = F::warps_at_once / warps_per_block;
 
 template <class F>
 __global__ void __launch_bounds__(block_size, least_blocks<F>) for_each_warp(unsigned n, F f) {

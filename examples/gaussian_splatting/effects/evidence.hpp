@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "observations.hpp"
+#include "sky_evidence.hpp"
 
 namespace gs::effects {
 
@@ -33,6 +34,8 @@ struct evidence {
 
     std::size_t photos = 0, masked_photos = 0;  ///< and of those for training that have a mask
     double masked_share = 0;                    ///< of all their pixels that masks leave out
+
+    sky_evidence sky;
 
     bool alpha = false;  ///< photos have transparent parts
 };

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "../error.hpp"
+#include "../model/gaussians.hpp"
 #include "decide.hpp"
 
 namespace gs::effects {
@@ -60,13 +61,22 @@ selection parse_selection(const std::string& text) {
     return s;
 }
 
+void simulation::leave_out(effect e, const std::string& reason) {
+    if (e == effect::sky) sky.clear();
+    outcome& o = outcomes[static_cast<std::size_t>(e)];
+    o.on = false;
+    o.reason = reason;
+}
+
 simulation simulate(const scene& scene, const selection& selection, const std::optional<int>& sh_degree) {
     using base = selection::base;
     const bool open = selection.from == base::found;  // what nobody has settled
     const bool asks_direction = open && !selection.of(effect::direction) && !sh_degree;
-    const bool looks =
-        asks_direction || (open && (selection.of(effect::exposure).value_or(true) ||
-                                    !selection.of(effect::antialiasing) || !selection.of(effect::masks)));
+    const auto not_said = [&](effect e) { return open && !selection.of(e); };
+    const auto begins_from_photos = [&](effect e) { return open && selection.of(e).value_or(true); };
+    const bool looks = asks_direction || begins_from_photos(effect::exposure) ||
+                       begins_from_photos(effect::sky) || not_said(effect::antialiasing) ||
+                       not_said(effect::masks);
     const evidence found = looks ? gather(scene) : evidence{};
     const std::vector<decision> decisions = looks ? decide(found) : std::vector<decision>{};
     simulation s;
@@ -91,7 +101,12 @@ simulation simulate(const scene& scene, const selection& selection, const std::o
                                [](double log2) { return static_cast<float>(std::exp2(log2)); });
     }
     s.antialiasing = settle(effect::antialiasing);
-    if (settle(effect::masks) && !has_masks(scene)) s.outcomes.back() = {"masks", false, no_masks};
+    if (settle(effect::sky)) {
+        s.sky = found.sky.coefficients;
+        s.sky.resize(sky_width);
+        if (scene.has_alpha) s.leave_out(effect::sky, "photos have transparent parts");
+    }
+    if (settle(effect::masks) && !has_masks(scene)) s.leave_out(effect::masks, no_masks);
 
     s.reviews_bands = asks_direction;
     s.sh_degree = !direction ? 0 : asks_direction ? effects::sh_degree(found) : 3;

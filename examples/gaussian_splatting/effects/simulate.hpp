@@ -13,10 +13,10 @@
 namespace gs::effects {
 
 /// What a training can simulate or leave. docs/effects.md says what another one needs.
-enum class effect { direction, exposure, antialiasing, masks, count };
+enum class effect { direction, exposure, antialiasing, sky, masks, count };
 
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(effect::count)> effect_names{
-    "direction", "exposure", "antialiasing", "masks"};
+    "direction", "exposure", "antialiasing", "sky", "masks"};
 
 /// What --effects says.
 struct selection {
@@ -52,7 +52,12 @@ struct simulation {
     /// By training photo, how much brighter than others it has the same points, as a factor; ones where
     /// nobody has looked, and none without the effect.
     std::vector<float> exposures;
+    /// What it begins from, see `gaussians::sky`: zeros where nobody has looked, and none without the effect.
+    std::vector<float> sky;
     std::vector<outcome> outcomes;  ///< one an effect
+
+    /// Whatever was decided: for this reason.
+    void leave_out(effect e, const std::string& reason);
 };
 
 /// `scene`: with masks if they are to be taken. `sh_degree`: the one that was said. Looks at the photos only

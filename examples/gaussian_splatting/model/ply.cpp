@@ -62,10 +62,20 @@ constexpr std::size_t normals = 3;
 /// The comment that Brush writes, and other viewers read, of Gaussians that were trained with a 2D Mip
 /// filter.
 constexpr std::string_view render_mode = "SplatRenderMode:", mip = "mip";
+/// And one of ours: `gaussians::sky`.
+constexpr std::string_view sky_harmonics = "SkyHarmonics:";
 
 std::string header_of(const std::vector<field>& fields, const gaussians& model) {
     std::string header = "ply\nformat binary_little_endian 1.0\n";
     if (model.antialiased) header += "comment " + std::string(render_mode) + " " + std::string(mip) + "\n";
+    if (!model.sky.empty()) {
+        header += "comment " + std::string(sky_harmonics);
+        for (const float x : model.sky) {
+            char text[32];
+            header += ' ' + std::string(text, std::to_chars(text, text + sizeof text, x).ptr);
+        }
+        header += '\n';
+    }
     header += "element vertex " + std::to_string(model.count()) + "\n";
     for (std::size_t i = 0; i < fields.size(); ++i) {
         if (i == normals_after) header += "property float nx\nproperty float ny\nproperty float nz\n";
@@ -215,7 +225,8 @@ class reader {
         while (next_ < text_.size()) {
             const std::size_t end = text_.find('\n', next_);
             if (end == std::string::npos) break;
-            std::string_view rest = std::string_view(text_).substr(next_, end - next_);
+            const std::string_view whole = std::string_view(text_).substr(next_, end - next_);
+            std::string_view rest = whole;
             next_ = end + 1;
             line found;
             for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
@@ -226,9 +237,27 @@ class reader {
             if (found.count == 0 || found.words[0] == "obj_info") continue;
             if (found.words[0] != "comment") return found;
             antialiased_ = antialiased_ || (found.words[1] == render_mode && found.words[2] == mip);
+            if (found.words[1] == sky_harmonics) read_sky(whole);
         }
         if (text_.size() == longest_header) fail("its header has no end_header in its first 65536 bytes");
         fail("its header has no end_header");
+    }
+
+    void read_sky(std::string_view rest) {
+        for (int skipped = 0; skipped < 2; ++skipped) take_word(rest);
+        sky_.clear();
+        for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
+            float value = 0;
+            const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
+            if (problem != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+                fail("its sky has '" + clipped(word) + "', which is no finite number");
+            if (sky_.size() == sky_width)
+                fail("its sky has more than " + std::to_string(sky_width) + " numbers");
+            sky_.push_back(value);
+        }
+        if (sky_.size() < sky_width)
+            fail("its sky has " + std::to_string(sky_.size()) + " numbers instead of " +
+                 std::to_string(sky_width));
     }
 
     /// The header lies within the file's first bytes, which stay in `text_` for the names.
@@ -349,6 +378,7 @@ class reader {
         gaussians model;
         model.sh_degree = l.sh_degree;
         model.antialiased = antialiased_;
+        model.sky = sky_;
         for (const column& c : l.columns)
             (model.*c.to.array).resize(l.count * static_cast<std::size_t>(c.to.width));
 
@@ -388,12 +418,15 @@ class reader {
     std::string text_;      ///< the header, and what follows it up to that length
     std::size_t next_ = 0;  ///< where the next line begins in it
     bool antialiased_ = false;
+    std::vector<float> sky_;
 };
 
 }  // namespace
 
 void write_ply(const std::filesystem::path& file, const gaussians& model) {
     const std::vector<field> fields = fields_of_degree(model.sh_degree);
+    if (!std::ranges::all_of(model.sky, [](float x) { return std::isfinite(x); }))
+        throw error("cannot write " + file.string() + ": its sky is not finite");
     write_aside(file, [&](std::ostream& out) {
         out << header_of(fields, model);
         std::vector<float> row(fields.size() + normals, 0.0F);

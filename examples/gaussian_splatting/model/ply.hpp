@@ -10,7 +10,8 @@ namespace gs {
 
 /// Writes the layout of the reference implementation, which viewers read: binary little endian, properties
 /// x y z nx ny nz f_dc_0..2 f_rest_* (channel-major) opacity scale_0..2 rot_0..3, all float. That Gaussians
-/// are antialiased is the comment `SplatRenderMode: mip`, as Brush writes it. Written aside and renamed.
+/// are antialiased is the comment `SplatRenderMode: mip`, as Brush writes it; a sky is the comment
+/// `SkyHarmonics:` with its numbers. Written aside and renamed.
 /// Throws `error` naming the file; also where a value is not finite: what was there before stays.
 void write_ply(const std::filesystem::path& file, const gaussians& model);
 

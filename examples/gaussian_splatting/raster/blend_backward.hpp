@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <warpagg/atomic.hpp>
 
+#include "backdrop.hpp"
 #include "list_reader.hpp"
 #include "project_backward.hpp"
 
@@ -26,9 +27,9 @@ using sum_in_memory = typename sum_of<Real, Policy>::type;
 /// @}
 
 /// What the backward blending reads beside the lists: what the forward one came to, and what comes back.
-template <class Real>
+template <class Real, class Backdrop = one_colour<Real>>
 struct blended {
-    glm::vec<3, Real> background;
+    Backdrop background;
     const Real* picture;        ///< three planes
     const Real* transmittance;  ///< and what else `blend_forward` writes
     const std::uint32_t* last;
@@ -43,16 +44,18 @@ struct blended {
 /// pixels lie in a column, where u is the same: it is multiplied into the sums once. `Split`: one warp a
 /// patch and segment, else one a patch. `AskFirst`: skip what no pixel of the patch sees before any of it is
 /// computed (the paper, Figure 8).
-template <class Real, class Cut, bool Split, class Policy, bool AskFirst>
+template <class Real, class Cut, bool Split, class Policy, bool AskFirst, class Backdrop = one_colour<Real>>
 struct blend_backward {
     using policy = Policy;
 
     tile_lists<Real> lists;
-    blended<Real> view;
+    blended<Real, Backdrop> view;
     const std::uint32_t* tile_of_segment;  ///< see `number_segments`
 
     sum_in_memory<Real, Policy>* sums;  ///< `record_stride` a Gaussian, added to
     Policy how;
+
+    static constexpr int warps_at_once = 32;  ///< on an SM; measured
 
     template <class W>
     static std::size_t warps(std::size_t tiles, std::size_t segments) {
@@ -134,7 +137,8 @@ struct blend_backward {
             auto& [g, T, behind] = pixels[k];
             for (unsigned c = 0; c < 3; ++c) g[c] = w.load(view.gradient, at + c * plane, p.inside[k]);
             T = w.load(view.transmittance, at, p.inside[k]);
-            behind = g[0] * view.background[0] + g[1] * view.background[1] + g[2] * view.background[2];
+            const auto back = [&](unsigned c) { return view.background.at(w, at, c, plane, p.inside[k]); };
+            behind = g[0] * back(0) + g[1] * back(1) + g[2] * back(2);
             if constexpr (Split) {
                 const mask_t<W> later = end[k] > to;
                 if (!w.any(later)) continue;

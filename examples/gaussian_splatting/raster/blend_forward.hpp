@@ -4,6 +4,7 @@
 
 #include <warpagg/atomic.hpp>
 
+#include "backdrop.hpp"
 #include "list_reader.hpp"
 #include "tile_order.hpp"
 
@@ -11,17 +12,19 @@ namespace gs::raster {
 
 /// Front to back over each tile's list: C = sum c_i alpha_i T_i + T b, T_i = prod (1 - alpha_j) (Kerbl et al.
 /// 2023, equation 3). One warp a patch. A pixel ends where a splat would bring T below `least_transmittance`.
-template <class Real, class Cut>
+template <class Real, class Cut, class Backdrop = one_colour<Real>>
 struct blend_forward {
     tile_lists<Real> lists;
     tile_order order;
-    glm::vec<3, Real> background;
+    Backdrop background;
 
     Real* picture;              ///< three planes
     Real* transmittance;        ///< what is left behind the last splat
     std::uint32_t* last;        ///< one past the place, in the tile's list, of the last splat that counted
     Real* checkpoints;          ///< by segment: see there
     unsigned long long* pairs;  ///< pixel-Gaussian pairs that were evaluated, added to
+
+    static constexpr int warps_at_once = 24;  ///< on an SM; measured
 
     template <class W>
     static std::size_t warps(std::size_t tiles) {
@@ -91,7 +94,7 @@ struct blend_forward {
             const real T = warpagg::math::abs(state[k][0]);
             for (unsigned c = 0; c < 3; ++c)
                 w.store(picture, pixel + c * plane,
-                        fma(T, real(background[static_cast<int>(c)]), state[k][c + 1]), p.inside[k]);
+                        fma(T, background.at(w, pixel, c, plane, p.inside[k]), state[k][c + 1]), p.inside[k]);
             w.store(transmittance, pixel, T, p.inside[k]);
             w.store(last, pixel, end[k], p.inside[k]);
         }

@@ -32,4 +32,9 @@ constexpr bool is_repeatable(gradient_policy p) {
     return p == gradient_policy::fixed || p == gradient_policy::binned || p == gradient_policy::exact;
 }
 
+/// Whether it is there for a picture before a sky as well.
+constexpr bool knows_skies(gradient_policy p) {
+    return p == gradient_policy::split || p == gradient_policy::fixed;
+}
+
 }  // namespace gs

@@ -60,9 +60,10 @@ class renderer {
     }
     std::uint64_t reserved_instances() const { return capacity_; }
 
-    /// Draws the view: `picture()`, three planes, is valid afterwards.
+    /// Draws the view: `picture()`, three planes, is valid afterwards. `backdrop`: three planes that lie
+    /// behind all, in place of the background; until `backward`.
     void forward(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
-                 const std::array<float, 3>& background) {
+                 const std::array<float, 3>& background, const Real* backdrop = nullptr) {
         using device::stage;
         device_.begin(stage::project);
         project_all(gaussians, count, view, sh_degree);
@@ -76,11 +77,12 @@ class renderer {
         last_.resize(pixels);
         checkpoints_.resize(segments() * checkpoint_values);
         camera_ = view;
-        blend_forward_by<Cut>(background);
+        background_ = {colour(background)};
+        backdrop_ = {backdrop};
+        backdrop == nullptr ? blend_forward_by<Cut>(background_) : blend_forward_by<Cut>(backdrop_);
         count_ = count;
         gaussians_ = gaussians;
         sh_degree_ = sh_degree;
-        background_ = background;
     }
 
     /// From the gradient of the last `forward`'s picture to those of its parameters, colours up to a degree,
@@ -91,8 +93,16 @@ class renderer {
                   const Sink& sink, visibility* seen) {
         using device::stage;
         const Real* sums = nullptr;
-        with_policy<Real, Cut>(
-            policy, [&](auto kernel) { sums = blend_backward_by(kernel, picture_gradient, largest).data(); });
+        with_policy<Real, Cut>(policy, [&]<class Kernel>(const Kernel& kernel) {
+            if (backdrop_.planes == nullptr) {
+                sums = blend_backward_by(kernel, picture_gradient, largest).data();
+            } else if constexpr (before_colours<Kernel>::is_there) {
+                using same = typename before_colours<Kernel>::type;
+                sums = blend_backward_by(same{}, picture_gradient, largest).data();
+            } else {
+                throw error("a picture before a sky has no gradient by this way of adding up");
+            }
+        });
         device_.begin(stage::project_backward);
         using narrow = typename Device::narrow_warp;
         with_effects(effects_, [&]<effect_set Effects> {
@@ -111,8 +121,14 @@ class renderer {
         sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()));
         device_.begin(device::stage::blend_backward);
         kernel.lists = lists();
-        kernel.view = {colour(background_), picture_.data(),     transmittance_.data(),
-                       last_.data(),        checkpoints_.data(), picture_gradient};
+        const auto view = [&](const auto& background) {
+            return blended{background,   picture_.data(),     transmittance_.data(),
+                           last_.data(), checkpoints_.data(), picture_gradient};
+        };
+        if constexpr (std::is_same_v<decltype(kernel.view.background), colour_a_pixel<Real>>)
+            kernel.view = view(backdrop_);
+        else
+            kernel.view = view(background_);
         kernel.tile_of_segment = tile_of_segment_.data();
         device_.for_each_warp(kernel.template warps<warp>(tiles(), segments()), kernel);
         return sums_.end(kernel);
@@ -121,6 +137,8 @@ class renderer {
     std::uint32_t* fault() const { return sums_.fault(); }
 
     const Real* picture() const { return picture_.data(); }
+    /// What is left of light from behind all splats, by pixel of the last `forward`.
+    const Real* transmittance() const { return transmittance_.data(); }
     /// Whether the last view's instances fit.
     list_room room() const { return {needed_.data(), capacity_}; }
     /// On the device: pixel-Gaussian pairs evaluated by all `forward`s so far.
@@ -135,17 +153,17 @@ class renderer {
 
     std::size_t tiles() const { return std::size_t{tiles_across_} * tiles_down_; }
     /// Lower patches are shorter work: they are taken where higher ones would leave the device idle.
-    template <class Shape>
-    void blend_forward_by(const std::array<float, 3>& background) {
+    template <class Shape, class Backdrop>
+    void blend_forward_by(const Backdrop& background) {
         using shorter = lower<Shape>;
-        const blend_forward<Real, Shape> blend{lists(),
-                                               order(),
-                                               colour(background),
-                                               picture_.data(),
-                                               transmittance_.data(),
-                                               last_.data(),
-                                               checkpoints_.data(),
-                                               pairs_.data()};
+        const blend_forward<Real, Shape, Backdrop> blend{lists(),
+                                                         order(),
+                                                         background,
+                                                         picture_.data(),
+                                                         transmittance_.data(),
+                                                         last_.data(),
+                                                         checkpoints_.data(),
+                                                         pairs_.data()};
         const std::size_t n = blend.template warps<warp>(tiles());
         if constexpr (!std::is_same_v<Shape, shorter>) {
             if (n < device_.resident_warps()) return blend_forward_by<shorter>(background);
@@ -223,7 +241,8 @@ class renderer {
     std::size_t count_ = 0;
     camera camera_{};
     int sh_degree_ = 0;
-    std::array<float, 3> background_{};
+    one_colour<Real> background_{};
+    colour_a_pixel<Real> backdrop_{};
 };
 
 }  // namespace gs::raster

@@ -14,6 +14,21 @@ namespace gs::raster {
 inline constexpr int fixed_log_warps = 18;
 using fixed_sums = warpagg::accumulate::fixed<63 - fixed_log_warps, fixed_log_warps>;
 
+/// The kernel that does the same before a colour a pixel, where there is one: of split lists, whose sums are
+/// kept in float or in fixed point.
+template <class Kernel>
+struct before_colours {
+    static constexpr bool is_there = false;
+};
+template <class Real, class Cut, class Policy, bool AskFirst>
+requires(std::is_same_v<sum_in_memory<Real, Policy>, Real> ||
+         std::is_same_v<sum_in_memory<Real, Policy>,
+                        warpagg::cell<fixed_sums>>) struct before_colours<blend_backward<Real, Cut, true,
+                                                                                         Policy, AskFirst>> {
+    static constexpr bool is_there = true;
+    using type = blend_backward<Real, Cut, true, Policy, AskFirst, colour_a_pixel<Real>>;
+};
+
 /// Calls f with the `blend_backward` that the policy means, after a `blend_forward` that was cut up by `Cut`.
 /// In double sums are never kept otherwise than in double.
 template <class Real, class Cut, class F>

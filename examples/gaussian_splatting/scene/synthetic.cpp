@@ -120,6 +120,9 @@ world world_of(const std::string& text) {
         if (how.world == candidate.name) {
             world made = candidate.make();
             made.how = how;
+            if (how.sky > 0 && made.transparent)
+                throw error("the synthetic scene '" + how.world +
+                            "' is transparent where it has nothing: it has no sky");
             return made;
         }
         known += (known.empty() ? "" : ", ") + std::string(candidate.name);
@@ -203,11 +206,20 @@ double pool_of_light(const world& w, const vec& p) {
     return 1 - glm::smoothstep(0.5 * w.ground->radius, 0.98 * w.ground->radius, std::hypot(p.x, p.y));
 }
 
+vec to_sun() { return glm::normalize(vec{0.50, -0.42, 0.80}); }
+
+/// Bluer upwards, and brighter around the sun.
+vec sky(const world& w, const vec& direction) {
+    const vec low{0.55, 0.50, 0.45}, high{0.30, 0.50, 0.85}, glow{0.25, 0.22, 0.17};
+    const double near_sun = std::pow(std::max(glm::dot(direction, to_sun()), 0.0), 4);
+    return w.how.sky * (glm::mix(low, high, 0.5 + 0.5 * direction.z) + near_sun * glow);
+}
+
 /// The colour of a surface under a warm sun and a cool sky, as displayed, in [0, 1]; `to_eye` has unit
 /// length. What is glossy has Phong's lobe of the sun and the sky of the mirrored direction, more at grazing
 /// angles (Schlick's formula), on top.
 vec shade(const world& w, const surface_point& s, const vec& to_eye) {
-    static const vec sun_direction = glm::normalize(vec{0.50, -0.42, 0.80});
+    static const vec sun_direction = to_sun();
     const vec sun_colour{0.90, 0.83, 0.71};
     const vec sky_colour{0.25, 0.31, 0.40};
     const vec bounce_colour{0.13, 0.11, 0.10};
@@ -285,8 +297,8 @@ void render_row(const world& w, const camera& c, std::size_t photo, int row, std
             const double y = row + (sample / samples_per_side + 0.5) / samples_per_side;
             const vec direction = ray_direction(c, x, y);
             const std::optional<surface_point> hit = first_hit(w, origin, direction);
-            if (!hit) continue;
-            colour += shade(w, *hit, -direction);
+            if (!hit && w.how.sky == 0) continue;
+            colour += hit ? shade(w, *hit, -direction) : sky(w, direction);
             ++hits;
         }
         constexpr double weight = 1.0 / (samples_per_side * samples_per_side);

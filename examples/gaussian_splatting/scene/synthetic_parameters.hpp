@@ -15,6 +15,7 @@ struct synthetic_parameters {
     double scales = 1;    ///< the farthest camera's distance over the nearest's: 1 to 16
     double distance = 1;  ///< of all cameras, in those of other scenes: 0.25 to 16
     double passers = 0;   ///< share of a photo that a disc covers which no other photo has: 0 to 0.5. Masked
+    double sky = 0;       ///< brightness of what no surface hides, which depends on direction alone: 0 to 1
     double noise = 0;     ///< standard deviation of values in [0, 1] where a photo shows something: 0 to 0.5
 };
 

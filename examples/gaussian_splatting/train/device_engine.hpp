@@ -16,6 +16,7 @@
 #include "engine.hpp"
 #include "exposures.hpp"
 #include "photometric.hpp"
+#include "sky.hpp"
 #include "watch.hpp"
 
 namespace gs::train {
@@ -70,6 +71,7 @@ class device_engine final : public engine {
           photometric_(device_),
           exposures_(device_),
           test_exposures_(device_),
+          sky_(device_),
           densification_(device_) {
         skipped_.resize(1);
         device_.zero(skipped_.data(), 1);
@@ -123,6 +125,7 @@ class device_engine final : public engine {
         sh_degree_ = model.sh_degree;
         effects_.antialiasing = model.antialiased;
         renderer_.set_effects(effects_);
+        sky_.set(model.sky);
         trained_.values.upload(device_, model);
         for (auto* moments : {&trained_.first, &trained_.second}) {
             moments->resize(model.count(), sh_degree_);
@@ -140,6 +143,7 @@ class device_engine final : public engine {
     gaussians get_model() override {
         gaussians model = trained_.values.download(device_, count_, sh_degree_);
         model.antialiased = effects_.antialiasing;
+        model.sky = sky_.get();
         return model;
     }
 
@@ -155,12 +159,13 @@ class device_engine final : public engine {
 
     void step(const step_plan& plan) override {
         const gs::camera& camera = train_[downscales_][plan.view].camera;
-        const device::iteration_shape shape{count_,
-                                            renderer_.reserved_instances(),
-                                            static_cast<std::size_t>(camera.width),
-                                            static_cast<std::size_t>(camera.height),
-                                            static_cast<std::size_t>(plan.gradient),
-                                            plan.exposure_rate > 0 ? std::size_t{1} : 0};
+        const device::iteration_shape shape{
+            count_,
+            renderer_.reserved_instances(),
+            static_cast<std::size_t>(camera.width),
+            static_cast<std::size_t>(camera.height),
+            static_cast<std::size_t>(plan.gradient),
+            (plan.exposure_rate > 0 ? std::size_t{1} : 0) + (sky_.is_there() ? std::size_t{2} : 0)};
         device_.iteration(shape, [&] { iterate(plan); });
         lengths_of_[plan.view] = count_;
     }
@@ -294,7 +299,8 @@ class device_engine final : public engine {
     void iterate(const step_plan& plan) {
         using device::stage;
         const photo& shot = train_[downscales_][plan.view];
-        renderer_.forward(trained_.values.read(), count_, shot.camera, plan.sh_degree, plan.background);
+        renderer_.forward(trained_.values.read(), count_, shot.camera, plan.sh_degree, plan.background,
+                          sky_.draw(shot.camera));
         device_.begin(stage::loss);
         photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
                                plan.background, shot.masked);
@@ -306,6 +312,8 @@ class device_engine final : public engine {
         if (exposes)
             by_picture = exposures_.learn(plan.view, renderer_.picture(), by_picture, pixels,
                                           plan.exposure_rate, renderer_.room());
+        if (sky_.is_there())
+            sky_.learn(shot.camera, renderer_.transmittance(), by_picture, plan.sky_rate, renderer_.room());
         const train::watch watch{found_.data(), static_cast<std::uint32_t>(plan.iteration)};
         renderer_.backward(by_picture, photometric_.largest_gradient(), plan.gradient,
                            plan.updates_sh ? plan.sh_degree : 0, descent(plan, watch),
@@ -342,10 +350,11 @@ class device_engine final : public engine {
     void draw(const camera& camera, const std::array<float, 3>& background, int sh_degree) {
         const std::uint64_t before = all_pairs();
         device_.pause_times(true);
-        renderer_.forward(trained_.values.read(), count_, camera, sh_degree, background);
+        const float* backdrop = sky_.draw(camera);
+        renderer_.forward(trained_.values.read(), count_, camera, sh_degree, background, backdrop);
         if (const std::uint64_t needed = renderer_.instances(); needed > renderer_.reserved_instances()) {
             renderer_.reserve_instances(needed, needed / 4);
-            renderer_.forward(trained_.values.read(), count_, camera, sh_degree, background);
+            renderer_.forward(trained_.values.read(), count_, camera, sh_degree, background, backdrop);
         }
         device_.pause_times(false);
         drawn_pairs_ += all_pairs() - before;
@@ -361,6 +370,7 @@ class device_engine final : public engine {
     raster::renderer<Device, float> renderer_;
     photometric<Device, float> photometric_;
     train::exposures<Device> exposures_, test_exposures_;
+    train::sky<Device> sky_;
     buffer<std::uint8_t> photos_;
     std::vector<std::vector<photo>> train_{1};  ///< by how often they were shrunk
     std::vector<photo> test_;

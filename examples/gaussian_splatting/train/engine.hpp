@@ -30,6 +30,7 @@ struct step_plan {
     double ssim_weight = 0.2;
     bool watch = false;       ///< note what `densify` and `prune` want to know
     float exposure_rate = 0;  ///< of Adam; 0: photos are as the scene is, and all of this costs nothing
+    float sky_rate = 0;       ///< of Adam, for a model that has a sky
 };
 
 /// See `exposure_kernels.hpp`.

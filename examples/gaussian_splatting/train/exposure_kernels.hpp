@@ -6,8 +6,7 @@
 #include <cstdint>
 #include <warpagg/atomic.hpp>
 
-#include "../raster/list_room.hpp"
-#include "../raster/vectors.hpp"
+#include "picture_sums.hpp"
 
 namespace gs::train {
 
@@ -35,18 +34,6 @@ struct expose {
     }
 };
 
-/// The sums over a picture that an exposure's gradient is, each in as many parts as warps add pixels up. The
-/// parts are added up in their order: whichever warp ends first, the bits are the same. Zeros before a
-/// picture.
-struct exposure_sums {
-    float* parts;
-    std::size_t warps;
-
-    WARPAGG_HD float* operator()(unsigned number, std::size_t warp) const {
-        return parts + number * warps + warp;
-    }
-};
-
 /// The gradients by the picture and by the exposure, from that by the exposed picture. A warp for as many
 /// pixels as its lanes have, `rounds` times.
 struct expose_backward {
@@ -57,7 +44,7 @@ struct expose_backward {
     const float* by_exposed;
     std::size_t pixels;
     float* by_picture;
-    exposure_sums sums;  ///< of `warps(pixels)`
+    picture_sums sums;  ///< of `warps(pixels)`
 
     template <class W>
     static std::size_t warps(std::size_t pixels) {
@@ -97,40 +84,6 @@ struct expose_backward {
         }
         const auto part = [&, index](unsigned i) { return sums(i, index); };
         warpagg::warp_reduce_atomic(w, part, total, warpagg::mask_t<W>(true));
-    }
-};
-
-/// Adam's step (see `adam`) of one photo's exposure: a warp for each number of it. Leaves zeros in its sum. A
-/// gradient that is not finite is left out, and so is a step without room for the view's lists.
-struct learn_exposure {
-    exposure_sums sums;
-    float *exposure, *first, *second;  ///< and the moments
-    float rate, correction;            ///< alpha / (1 - beta1^t), 1 / sqrt(1 - beta2^t)
-    raster::list_room room;
-
-    static constexpr float beta1 = 0.9f, beta2 = 0.999f, epsilon = 1e-15f;
-
-    WARPAGG_EXEC_CHECK_DISABLE
-    template <class W>
-    WARPAGG_HD void operator()(const W& w, unsigned number) const {
-        using real = warpagg::value_t<W, float>;
-        using mask = warpagg::mask_t<W>;
-        real g(0);
-        for (std::size_t warp = 0; warp < sums.warps; warp += W::size) {
-            const std::size_t left = sums.warps - warp;
-            const mask inside = w.lane() < static_cast<unsigned>(left < W::size ? left : W::size);
-            g += w.load_row(sums(number, warp), 0, inside);
-            w.store_row(sums(number, warp), 0, real(0), inside);
-        }
-        for (unsigned distance = W::size / 2; distance > 0; distance /= 2) g += w.shfl_xor(g, distance);
-        if (room.exceeded()) return;
-        const mask learns = w.lane() == 0u && g > real(-1e18f) && g < real(1e18f);
-        const real m = real(beta1) * w.load_row(first, number, learns) + real(1 - beta1) * g;
-        const real v = real(beta2) * w.load_row(second, number, learns) + real(1 - beta2) * g * g;
-        const real step = real(rate) * m / (real(correction) * warpagg::math::sqrt(v) + real(epsilon));
-        w.store_row(first, number, m, learns);
-        w.store_row(second, number, v, learns);
-        w.store_row(exposure, number, w.load_row(exposure, number, learns) - step, learns);
     }
 };
 

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "engine.hpp"
 #include "exposure_kernels.hpp"
+#include "learned_numbers.hpp"
 
 namespace gs::train {
 
@@ -18,27 +18,21 @@ class exposures {
     using warp = typename Device::warp;
 
   public:
-    explicit exposures(Device& device) : device_(device) {}
+    explicit exposures(Device& device) : device_(device), numbers_(device) {}
 
     /// What the photos begin from, as if no step had shown any.
     void set(const std::vector<exposure>& all) {
         std::vector<float> values;
         for (const exposure& e : all) values.insert(values.end(), e.begin(), e.end());
-        for (auto* memory : {&values_, &first_, &second_}) memory->resize(values.size());
-        device_.upload(values_.data(), values.data(), values.size());
-        device_.zero(first_.data(), values.size());
-        device_.zero(second_.data(), values.size());
-        device_.wait();
-        steps_.assign(all.size(), 0);
+        numbers_.set(values);
     }
 
-    std::size_t count() const { return steps_.size(); }
+    std::size_t count() const { return numbers_.rows(); }
 
     /// The picture of a view, on the device, as its photo would have it.
     const float* show(std::size_t view, const float* picture, std::size_t pixels) {
         exposed_.resize(3 * pixels);
-        device_.for_each_index(
-            pixels, expose{picture, values_.data() + view * exposure_width, pixels, exposed_.data()});
+        device_.for_each_index(pixels, expose{picture, numbers_.row(view), pixels, exposed_.data()});
         return exposed_.data();
     }
 
@@ -46,47 +40,28 @@ class exposures {
     const float* learn(std::size_t view, const float* picture, const float* by_exposed, std::size_t pixels,
                        float rate, const raster::list_room& room) {
         by_picture_.resize(3 * pixels);
-        float* const own = values_.data() + view * exposure_width;
-        const exposure_sums sums = sums_over(pixels);
-        device_.for_each_warp(sums.warps,
-                              expose_backward{picture, own, by_exposed, pixels, by_picture_.data(), sums});
-        const int t = ++steps_[view];
-        const double by_first = 1 - std::pow(static_cast<double>(learn_exposure::beta1), t);
-        const double by_second = 1 - std::pow(static_cast<double>(learn_exposure::beta2), t);
-        device_.for_each_warp(
-            exposure_width,
-            learn_exposure{sums, own, first_.data() + view * exposure_width,
-                           second_.data() + view * exposure_width, static_cast<float>(rate / by_first),
-                           static_cast<float>(1 / std::sqrt(by_second)), room});
+        const picture_sums sums = numbers_.sums(expose_backward::warps<warp>(pixels));
+        device_.for_each_warp(sums.warps, expose_backward{picture, numbers_.row(view), by_exposed, pixels,
+                                                          by_picture_.data(), sums});
+        numbers_.learn(view, sums, rate, room);
         return by_picture_.data();
     }
 
     /// See `centre_exposures`.
-    void centre() { device_.for_each_index(exposure_width, centre_exposures{values_.data(), steps_.size()}); }
+    void centre() { device_.for_each_index(exposure_width, centre_exposures{numbers_.row(0), count()}); }
 
     std::vector<exposure> get() const {
-        std::vector<exposure> all(steps_.size());
-        std::vector<float> values(values_.size());
-        device_.download(values.data(), values_.data(), values.size());
+        std::vector<exposure> all(count());
+        const std::vector<float> values = numbers_.get();
         for (std::size_t i = 0; i < values.size(); ++i)
             all[i / exposure_width][i % exposure_width] = values[i];
         return all;
     }
 
   private:
-    exposure_sums sums_over(std::size_t pixels) {
-        const std::size_t warps = expose_backward::warps<warp>(pixels), before = sums_.size();
-        if (exposure_width * warps > before) {
-            sums_.resize(exposure_width * warps);
-            device_.zero(sums_.data(), sums_.size());
-        }
-        return {sums_.data(), warps};
-    }
-
     Device& device_;
-    buffer<float> values_, first_, second_, exposed_, by_picture_;
-    buffer<float> sums_;      ///< zeros between steps
-    std::vector<int> steps_;  ///< that showed each photo
+    learned_numbers<Device, exposure_width> numbers_;
+    buffer<float> exposed_, by_picture_;
 };
 
 }  // namespace gs::train

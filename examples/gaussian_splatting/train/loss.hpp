@@ -37,8 +37,8 @@ WARPAGG_HD mask_t<W> is_left_out(const W& w, const std::uint32_t* photo, std::pt
 }
 
 /// First pass: the sum of and the difference between the picture and the photo over a background, in which
-/// the similarity is simplest; and zeros into the frames of all maps. Pixels that a mask leaves out are zero
-/// in both. A warp for as many values of a line as it has lanes.
+/// the similarity is simplest; and zeros into the frames of all maps and after their end. Pixels that a mask
+/// leaves out are zero in both. A warp for as many values of a line as it has lanes.
 template <class Real, bool Masked>
 struct sum_and_difference {
     const std::uint32_t* photo;  ///< premultiplied RGBA bytes
@@ -48,7 +48,7 @@ struct sum_and_difference {
 
     template <class W>
     static std::size_t count(const framed_planes& planes) {
-        return static_cast<std::size_t>(planes.lines() * planes.pitch()) / W::size;
+        return planes.size() / W::size;
     }
 
     WARPAGG_EXEC_CHECK_DISABLE

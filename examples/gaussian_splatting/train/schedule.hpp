@@ -60,6 +60,8 @@ struct schedule {
     /// Adam's rate of exposures, which falls to a tenth: each can come as far as 0.6, however few steps show
     /// its photo, unless those are fewer than 30. In Kerbl et al. 2024's implementation it falls from 0.01.
     float exposure_rate_at(int iteration, int views) const;
+    /// Adam's rate of a sky's coefficients, which falls to a hundredth.
+    float sky_rate_at(int iteration) const;
     int densify_until() const;
     /// A Gaussian grows from this mean gradient of its centre, in halves of the picture. Where it is not
     /// said, it is 8e-5 if densification lasts 15,000 iterations, and more, by the fourth root, if it is

@@ -155,6 +155,7 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
         plan.watch = schedule.watches(iteration, views);
         plan.iteration = iteration;
         if (exposes) plan.exposure_rate = schedule.exposure_rate_at(iteration, views);
+        plan.sky_rate = schedule.sky_rate_at(iteration);
         engine.step(plan);
         watch.shows(plan.view);
 
