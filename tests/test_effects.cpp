@@ -94,6 +94,15 @@ TEST_CASE("a scene without points is not told what it needs") {
         CHECK(d.called_for.has_value() == (d.name == "background" || d.name == "masks"));
     }
     CHECK(sh_degree(gather(scene)) == 3);
+    // With points of which next to none tells there is nothing to tell it by, and with a few more there is.
+    evidence few = gather(scene);
+    few.has_points = true;
+    for (const auto& [points, degree] : {std::pair{0, 0}, {9, 0}, {10, 3}, {49, 3}}) {
+        few.direction_points = static_cast<std::size_t>(points);
+        CHECK(sh_degree(few) == degree);
+        CHECK(decide(few)[0].choice == "--sh-degree " + std::to_string(degree));
+        CHECK_FALSE(decide(few)[0].called_for);
+    }
 }
 
 TEST_CASE("what is matte needs no degree, and what mirrors a sky needs several") {

@@ -244,9 +244,13 @@ TEST_CASE("a picture too large to be numbered is refused") {
     large.width = large.height = 23171;  // squared, beyond 2^29
     for (const auto make : engines()) {
         const auto e = make();
-        e->set_model(gs::from_points(scene.points, 0, 1, 1));
-        CHECK_THROWS_WITH_AS(e->render(large, {}), doctest::Contains("23171x23171 has more than 2^29 pixels"),
-                             gs::error);
+        gaussians model = gs::from_points(scene.points, 0, 1, 1);
+        for (const std::size_t sky : {std::size_t{0}, gs::sky_width}) {
+            model.sky.assign(sky, 0.0f);
+            e->set_model(model);
+            CHECK_THROWS_WITH_AS(e->render(large, {}),
+                                 doctest::Contains("23171x23171 has more than 2^29 pixels"), gs::error);
+        }
     }
 }
 

@@ -14,6 +14,7 @@
 
 #include "bytes.hpp"
 #include "scene/colmap.hpp"
+#include "scene/mask.hpp"
 #include "scene/scene.hpp"
 #include "temporary_folder.hpp"
 
@@ -617,43 +618,83 @@ TEST_CASE("smaller copies of the photos take their cameras along; other sizes ar
     CHECK(says(error_of_loading(options), {"b.png", "wrong size", "200x150", "40x30"}));
 }
 
-TEST_CASE("masks leave out what they have dark, in photos that were bent and shrunk as well") {
-    const distorted_case lens = radial(-0.1, 0.05);
-    const temporary_folder folder;
-    model_record model;
-    model.cameras = {lens.camera};
-    for (const char* name : {"a.png", "b.png", "c.png"})
-        model.images.push_back({{1, 0, 0, 0}, {0, 0, 0}, 1, name, {}});
-    model.points = {{{0, 0, 1}, {1, 2, 3}, 0}};
-    write_binary(folder / "sparse/0", model);
-    // The mask is the photo itself: what is left of that must be bright.
-    for (const char* name :
-         {"images/a.png", "images/b.png", "images/c.png", "masks/a.png.png", "masks/b.png"})
-        write_distorted_photo(folder / name, lens);
-    auto options = options_for(folder.path());
-    for (const int resolution : {1, 2}) {
-        CAPTURE(resolution);
-        options.resolution = resolution;
-        options.masks = true;
-        std::string said;
-        const gs::scene scene = gs::load_scene(options, [&](const std::string& line) { said += line; });
-        CHECK(says(said, {"2 photos of 3 have masks"}));
-        CHECK_FALSE(scene.has_alpha);
-        options.masks = false;
-        const gs::scene whole = gs::load_scene(options, ignore);
-        for (std::size_t v = 0; v < 3; ++v) {
-            const gs::image &pixels = scene.train[v].pixels, &all = whole.train[v].pixels;
-            CHECK(pixels.has_mask == (v < 2));
-            CHECK_FALSE(all.has_mask);
-            for (std::size_t i = 0; i < all.rgba.size() / 4; ++i)
-                CHECK(pixels.leaves_out(i) == (v < 2 && all.rgba[4 * i] < 128));
+TEST_CASE("masks leave out where they are black, in photos that were bent and shrunk as well") {
+    for (const double bent : {0.0, 0.1}) {
+        CAPTURE(bent);
+        const distorted_case lens = radial(-bent, bent / 2);
+        const gs::camera c = intrinsics_of(lens.camera);
+        const temporary_folder folder;
+        model_record model;
+        model.cameras = {lens.camera};
+        for (const char* name : {"a.png", "b/c.png", "d.png"})
+            model.images.push_back({{1, 0, 0, 0}, {0, 0, 0}, 1, name, {}});
+        model.points = {{{0, 0, 1}, {1, 2, 3}, 0}};
+        write_binary(folder / "sparse/0", model);
+        // Photos are red where the mask is black, and else blue; the masks are 1 of 255 where they are not
+        // black.
+        const auto write = [&](const std::filesystem::path& file, const std::array<float, 3>& left_out,
+                               const std::array<float, 3>& kept) {
+            std::filesystem::create_directories(file.parent_path());
+            std::vector<float> planes;
+            for (std::size_t plane = 0; plane < 3; ++plane)
+                for (int y = 0; y < c.height; ++y)
+                    for (int x = 0; x < c.width; ++x)
+                        planes.push_back((x < c.width / 3 ? left_out : kept)[plane]);
+            gs::write_png(file, c.width, c.height, planes);
+        };
+        for (const char* name : {"images/a.png", "images/b/c.png", "images/d.png"})
+            write(folder / name, {1, 0, 0}, {0, 0, 1});
+        for (const char* name : {"masks/a.png.png", "masks/b/c.png"})
+            write(folder / name, {0, 0, 0}, {0, 1.0f / 255, 0});
+        auto options = options_for(folder.path());
+        for (const int resolution : {1, 2, 4}) {
+            CAPTURE(resolution);
+            options.resolution = resolution;
+            options.masks = true;
+            std::string said;
+            const gs::scene scene = gs::load_scene(options, [&](const std::string& line) { said += line; });
+            CHECK(says(said, {"2 photos of 3 have masks"}));
+            CHECK_FALSE(scene.has_alpha);
+            options.masks = false;
+            const gs::scene whole = gs::load_scene(options, ignore);
+            for (std::size_t v = 0; v < 3; ++v) {
+                const gs::image &pixels = scene.train[v].pixels, &all = whole.train[v].pixels;
+                CHECK(pixels.has_mask == (v < 2));
+                CHECK_FALSE(all.has_mask);
+                for (std::size_t i = 0; i < all.rgba.size() / 4; ++i) {
+                    const int red = all.rgba[4 * i];
+                    if (v < 2 && red > 200) CHECK(pixels.leaves_out(i));
+                    if (v == 2 || red < 60) CHECK_FALSE(pixels.leaves_out(i));
+                    // What is left out comes into no average, but into what bending interpolates.
+                    if (v < 2 && !pixels.leaves_out(i)) CHECK(pixels.rgba[4 * i] <= (bent > 0 ? 128 : 0));
+                }
+            }
         }
+        options.masks = true;
+        options.resolution = 1;
+        write(folder / "masks/a.png.png", {0, 0, 0}, {0, 0, 0});
+        CHECK(says(error_of_loading(options), {"a.png.png", "leaves nothing"}));
+        write_photo(folder / "masks/a.png.png", 30, 22);
+        CHECK(says(error_of_loading(options), {"a.png.png", "wrong size", "30x22"}));
+        write_file(folder / "masks/a.png.png", "no mask");
+        CHECK(says(error_of_loading(options), {"a.png.png"}));
     }
-    options.masks = true;
-    write_photo(folder / "masks/a.png.png", 30, 22);
-    CHECK(says(error_of_loading(options), {"a.png.png", "wrong size", "30x22"}));
-    gs_test::write_file(folder / "masks/a.png.png", "no mask");
-    CHECK(says(error_of_loading(options), {"a.png.png"}));
+}
+
+TEST_CASE("a mask has its photo's name, in its own folder") {
+    const temporary_folder folder;
+    const auto masks = folder / "masks";
+    for (const char* name : {"masks/x.jpg.png", "masks/x.png", "masks/sub/y.png", "images/z.png"}) {
+        std::filesystem::create_directories((folder / name).parent_path());
+        write_file(folder / name, "");
+    }
+    CHECK(gs::mask_of(masks, "x.jpg") == masks / "x.jpg.png");
+    CHECK(gs::mask_of(masks, "x.JPG") == masks / "x.png");
+    CHECK(gs::mask_of(masks, "sub/y.jpeg") == masks / "sub/y.png");
+    CHECK(gs::mask_of(masks, "y.jpeg").empty());
+    CHECK(gs::mask_of(masks, "").empty());
+    CHECK(gs::mask_of(masks, "../images/z.png").empty());
+    CHECK(gs::mask_of(masks, (folder / "images/z.png").string()).empty());
 }
 
 TEST_CASE("every n-th view by name is held out, from the first") {

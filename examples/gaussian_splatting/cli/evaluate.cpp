@@ -14,6 +14,7 @@ void evaluate(const settings& s) {
     const auto engine = session.make_engine();
     const stopwatch loading;
     gaussians model = read_ply(s.ply);
+    session.require_no_background_before(model);
     scene scene = session.load();
     model = into(scene.frame, std::move(model));
     if (scene.test.empty()) scene.test = std::move(scene.train);  // without --eval, all views are measured

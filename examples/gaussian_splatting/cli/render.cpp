@@ -67,6 +67,7 @@ void render(const settings& s) {
     const session session(s);
     const auto engine = session.make_engine();
     gaussians model = read_ply(s.ply);
+    session.require_no_background_before(model);
     if (model.count() == 0) throw error(s.ply + " holds no Gaussians: there is nothing to draw");
     const bool orbits = s.scene.data.empty();
     bool alpha = false;

@@ -39,6 +39,12 @@ train::background_choice session::background(bool alpha) const {
     return {{level, level, level}, settings_.background == "random"};
 }
 
+void session::require_no_background_before(const gaussians& model) const {
+    if (!model.sky.empty() && settings_.background != "auto")
+        throw error("--background " + settings_.background + ": " + settings_.ply +
+                    " has a sky, which takes its place");
+}
+
 output_folder::output_folder(const fs::path& path) : path_(path) {
     if (fs::exists(path) && !fs::is_directory(path))
         throw error("cannot write to " + path.string() + ": it is not a folder");

@@ -25,6 +25,8 @@ class session {
     std::unique_ptr<train::engine> make_engine() const;
     /// `alpha`: the photos (or the model's) have transparent parts.
     train::background_choice background(bool alpha) const;
+    /// Throws `error` where the command line names a background that the model's sky would be before.
+    void require_no_background_before(const gaussians& model) const;
 
   private:
     const settings& settings_;

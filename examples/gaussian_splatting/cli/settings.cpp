@@ -264,6 +264,7 @@ CLI::App* add_evaluate(CLI::App& app, settings& s) {
     add_scene(*evaluate, s, true);
     add_common(*evaluate, s);
     add_fit_exposure(*evaluate, s);
+    evaluate->add_flag("!--no-masks", s.scene.masks, "Measure what masks leave out, too");
     evaluate->add_option("-o,--output", s.output,
                          "Folder for metrics.json and the pictures; none are kept without");
     return evaluate;
@@ -368,6 +369,7 @@ settings parse(int argc, char** argv) {
     refuse_pruning_at_no_time(s.schedule);
     refuse_large_budget(s);
     s.policy = policy_of(s);
+    if (s.command == "render") s.scene.masks = false;  // its photos are not looked at
     if (s.command == "render" && s.scene.data.empty() && s.scene.eval)
         throw error("--eval picks views of a scene: it needs --data");
     return s;

@@ -11,6 +11,7 @@ namespace {
 /// From which evidence on an effect is called for.
 constexpr struct {
     std::size_t points = 50;             ///< fewer of them say nothing
+    std::size_t some_points = 10;        ///< fewer of them are next to none
     double direction_share = 0.03;       ///< of the mean square that is unexplained, for each further degree
     double direction_amplitude = 0.002;  ///< and this root mean square, of full brightness
     double exposure = 0.1;               ///< see `evidence::exposure_spread`
@@ -38,10 +39,11 @@ constexpr const char* direction =
     "5 % of an iteration and 45 floats a Gaussian for degree 3; 1 dB on glossy scenes, -0.2 dB on noisy "
     "matte ones";
 constexpr const char* exposure =
-    "4 to 15 % of an iteration; 7 dB where photos differ by a fifth, after fitting";
+    "up to 8 % of an iteration; 6 dB where photos differ by a fifth, after fitting";
 constexpr const char* antialiasing = "no time; 1 to 7 dB from other distances, -0.7 dB where all are alike";
-constexpr const char* sky = "5 % of an iteration; 8 dB where a third of the photos is sky, 0.5 dB on photos";
-constexpr const char* masks = "3 % of an iteration; what moved from photo to photo leaves no haze";
+constexpr const char* sky =
+    "2 to 15 % of an iteration; 4 dB where a third of the photos is sky, 0.5 dB on photos";
+constexpr const char* masks = "no time; 2 dB where a tenth of each photo is something that passed";
 constexpr const char* background = "nothing";
 }  // namespace expected
 
@@ -115,7 +117,7 @@ decision background(const evidence& e) {
 bool direction_is_known(const evidence& e) { return e.direction_points >= limits.points; }
 
 int sh_degree(const evidence& e) {
-    if (!direction_is_known(e)) return 3;
+    if (!direction_is_known(e)) return e.has_points && e.direction_points < limits.some_points ? 0 : 3;
     std::size_t degree = 0;
     for (std::size_t d = 1; d < e.unexplained.size(); ++d) {
         const double gone = e.unexplained[degree] - e.unexplained[d];

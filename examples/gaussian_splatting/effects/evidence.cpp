@@ -278,10 +278,9 @@ std::array<double, 4> unexplained_by_direction(const points_seen& points) {
     return least;
 }
 
-namespace {
-
-/// What the photos have of the scene's points.
-void look_at_points(const scene& of, evidence& found) {
+evidence gather_from_points(const scene& of) {
+    evidence found;
+    found.has_points = !of.points.empty();
     points_seen points = observe_points(of);
     std::vector<double> ratios;
     for (const auto& seen : points) {
@@ -293,7 +292,7 @@ void look_at_points(const scene& of, evidence& found) {
     if (!ratios.empty()) found.scale_ratio = median(ratios);
     points = smooth_part(std::move(points));
     found.exposure_points = points.size();
-    if (points.empty()) return;
+    if (points.empty()) return found;
 
     const exposure_estimate exposure = exposures(points, of.train.size());
     found.brighter = exposure.brighter;
@@ -316,19 +315,19 @@ void look_at_points(const scene& of, evidence& found) {
     std::erase_if(points, [](const auto& seen) { return seen.size() < least_views_of_point; });
     found.direction_points = points.size();
     if (!points.empty()) found.unexplained = unexplained_by_direction(points);
+    return found;
 }
 
-}  // namespace
-
 evidence gather(const scene& of) {
-    evidence found;
+    evidence found = gather_from_points(of);
     found.alpha = of.has_alpha;
     count_masks(of, found);
-    look_at_points(of, found);
     found.sky = find_sky(of, {});
     // A sky that is overexposed is white in every photo: then that told more.
-    if (sky_evidence evened = find_sky(of, found.brighter); evened.share > found.sky.share)
-        found.sky = std::move(evened);
+    if (!found.brighter.empty()) {
+        sky_evidence evened = find_sky(of, found.brighter);
+        if (evened.share > found.sky.share) found.sky = std::move(evened);
+    }
     return found;
 }
 

@@ -14,6 +14,8 @@ namespace gs::effects {
 /// What the photos say of the effects that a scene may call for. Without points there is nothing that photos
 /// share.
 struct evidence {
+    bool has_points = false;  ///< the scene has some
+
     /// Exposures: by what factor photos have the same points brighter than others have them, as displayed;
     /// its logarithm to base 2. A photo's light has changed by about twice that.
     std::size_t exposure_points = 0;  ///< that tell of it
@@ -41,6 +43,8 @@ struct evidence {
 };
 
 evidence gather(const scene& of);
+/// Only what the points say: of exposures, directions and scales.
+evidence gather_from_points(const scene& of);
 
 /// Parts of it.
 /// @{

@@ -71,7 +71,8 @@ double change_above(int degree, train::engine& engine, const scene& of,
 band_review review_bands(train::engine& engine, const scene& scene, const std::array<float, 3>& background,
                          int sh_degree) {
     band_review review;
-    const evidence left = scene.points.empty() ? evidence{} : gather(residual_of(scene, engine, background));
+    const evidence left =
+        scene.points.empty() ? evidence{} : gather_from_points(residual_of(scene, engine, background));
     review.unexplained = left.unexplained;
     // Where too few points tell, no band is called for that is not there.
     const int called_for = direction_is_known(left) ? effects::sh_degree(left) : 0;

@@ -88,7 +88,7 @@ simulation simulate(const scene& scene, const selection& selection, const std::o
             o.reason = "--effects " + selection.text;
         } else if (looks) {  // else --sh-degree says
             const decision& d = decisions[static_cast<std::size_t>(e)];
-            o.on = d.called_for.value_or(e == effect::direction);
+            o.on = d.called_for.value_or(e == effect::direction && effects::sh_degree(found) > 0);
             o.reason = d.evidence;
         }
         s.outcomes.push_back(o);

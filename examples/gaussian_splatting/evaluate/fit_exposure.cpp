@@ -11,8 +11,8 @@
 
 namespace gs::evaluate {
 
-double psnr_after_fit(const std::vector<float>& picture, const image& shot,
-                      const std::array<float, 3>& background) {
+std::optional<double> psnr_after_fit(const std::vector<float>& picture, const image& shot,
+                                     const std::array<float, 3>& background) {
     const int width = shot.width, height = shot.height;
     const std::vector<float> photo = over_background(shot, background.data());
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -55,6 +55,7 @@ double psnr_after_fit(const std::vector<float>& picture, const image& shot,
         }
         values += 3;
     });
+    if (values == 0) return std::nullopt;
     return -10 * std::log10(squares / values);
 }
 

@@ -44,8 +44,10 @@ double test_report::ssim() const {
     return mean(views, [](const view_quality& v) { return v.quality.ssim; });
 }
 std::optional<double> test_report::fitted_psnr() const {
-    if (views.empty() || !views.front().fitted_psnr) return {};
-    return mean(views, [](const view_quality& v) { return *v.fitted_psnr; });
+    std::vector<view_quality> fitted = views;
+    std::erase_if(fitted, [](const view_quality& v) { return !v.fitted_psnr; });
+    if (fitted.empty()) return {};
+    return mean(fitted, [](const view_quality& v) { return *v.fitted_psnr; });
 }
 
 test_report measure_test_views(train::engine& engine, const scene& scene,

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <string>
 
+#include "../error.hpp"
 #include "../model/number.hpp"
 #include "../scene/scene.hpp"
 
@@ -22,6 +25,13 @@ struct device_camera {
     /// every side, so that the affine approximation of far-off Gaussians stays bounded (Zwicker et al. 2001).
     Real least_x, most_x, least_y, most_y;
 };
+
+/// Throws `error` where a picture is too large: places in its three planes are numbers of 31 bits.
+inline void require_drawable(const camera& view) {
+    if (std::int64_t{view.width} * view.height > std::int64_t{1} << 29)
+        throw error("a picture of " + std::to_string(view.width) + "x" + std::to_string(view.height) +
+                    " has more than 2^29 pixels: lower --resolution");
+}
 
 template <class Real>
 device_camera<Real> for_device(const camera& c) {

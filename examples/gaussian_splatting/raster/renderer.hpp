@@ -178,10 +178,7 @@ class renderer {
     }
 
     void project_all(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
-        // Places in the three planes of a picture are numbers of 31 bits.
-        if (std::int64_t{view.width} * view.height > std::int64_t{1} << 29)
-            throw error("a picture of " + std::to_string(view.width) + "x" + std::to_string(view.height) +
-                        " has more than 2^29 pixels: lower --resolution");
+        require_drawable(view);
         tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
         using narrow = typename Device::narrow_warp;

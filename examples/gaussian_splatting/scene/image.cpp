@@ -412,6 +412,12 @@ void image::leave_out(std::size_t pixel) {
     has_mask = true;
 }
 
+bool image::leaves_all_out() const {
+    std::size_t i = 0;
+    while (i < rgba.size() / 4 && leaves_out(i)) ++i;
+    return i == rgba.size() / 4;
+}
+
 bool image::has_transparent_pixel() const {
     for (std::size_t i = 0; i < rgba.size() / 4; ++i)
         if (rgba[4 * i + 3] != 255 && !leaves_out(i)) return true;

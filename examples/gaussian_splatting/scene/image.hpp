@@ -16,12 +16,13 @@ struct image {
     int width = 0;
     int height = 0;
     std::vector<std::uint8_t> rgba;  ///< 4 * width * height
-    bool has_alpha = false;          ///< some pixel is not opaque
+    bool has_alpha = false;          ///< some pixel is not opaque, and no mask leaves it out
     bool has_mask = false;           ///< some pixel is left out
 
     bool leaves_out(std::size_t pixel) const {
         return has_mask && rgba[4 * pixel + 3] == 0 && rgba[4 * pixel] == 255;
     }
+    bool leaves_all_out() const;
     void leave_out(std::size_t pixel);
     bool has_transparent_pixel() const;  ///< that is not left out
 };

@@ -44,7 +44,7 @@ struct scene {
     std::vector<view> train;
     std::vector<view> test;
     std::vector<coloured_point> points;  ///< from structure from motion; empty if the source has none
-    bool has_alpha = false;              ///< some photo is not opaque
+    bool has_alpha = false;              ///< some photo is not opaque, beside what masks leave out
     std::string source;                  ///< "Blender", "COLMAP" or "synthetic", for messages
     gs::frame frame;                     ///< that cameras and points are in: the files' own until `recentre`
 

@@ -192,12 +192,13 @@ std::vector<view> load_views(const std::vector<recorded_view>& recorded, const l
         const auto& [file, name, _, distortion, model, mask] = recorded[i];
         image photo = read_image(file);
         image counts = mask.empty() ? image() : read_mask(mask, photo);
-        for (image* one : {&photo, &counts}) {
-            if (one->width == 0) continue;
-            if (!distortion.is_straight()) *one = undistort(*one, fitted[i], distortion, straight[i]);
-            *one = shrink(*one, scaled[i].width, scaled[i].height);
+        if (!distortion.is_straight()) {
+            photo = undistort(photo, fitted[i], distortion, straight[i]);
+            if (!mask.empty()) counts = undistort(counts, fitted[i], distortion, straight[i]);
         }
-        apply_mask(counts, photo);
+        apply_mask(counts, photo);  // before shrinking, so that what it leaves out is in no average
+        photo = shrink(photo, scaled[i].width, scaled[i].height);
+        if (photo.leaves_all_out()) throw error("the mask " + mask.string() + " leaves nothing of its photo");
         views[i] = {name, scaled[i], std::move(photo)};
     });
     const auto masks = std::ranges::count_if(recorded, [](const auto& one) { return !one.mask.empty(); });

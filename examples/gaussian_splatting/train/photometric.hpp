@@ -47,6 +47,7 @@ class photometric {
     }
 
     /// dL/dpicture for L = (1 - ssim_weight) L1 + ssim_weight (1 - SSIM), on the device. Compares as well.
+    /// With a mask, of picture and photo that are black where it leaves out, by all pixels.
     const Real* gradient(const Real* picture, double ssim_weight, const raster::list_room& room = {}) {
         compare(picture, room);
         masked_ ? differentiate<true>(ssim_weight) : differentiate<false>(ssim_weight);

@@ -26,6 +26,7 @@ class sky {
     /// What a camera sees of it: three planes on the device, or null without a sky.
     const float* draw(const camera& camera) {
         if (!is_there()) return nullptr;
+        raster::require_drawable(camera);
         planes_.resize(3 * static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
         device_.for_each_warp(
             sky_patch<warp>::count(camera.width, camera.height),

@@ -13,7 +13,8 @@
 
 namespace gs::train {
 
-/// Of a sky. Its colour in a direction is 0.5 + the sum of coefficients times harmonics, as a Gaussian's.
+/// Of a sky. Its colour in a direction is 0.5 + the sum of coefficients times harmonics, as a Gaussian's, but
+/// not held to any range.
 inline constexpr unsigned sky_coefficients = sh_coefficients(sky_degree);
 
 /// Pixels of a picture for a warp: as many columns as it has lanes, of some rows.
