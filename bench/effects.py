@@ -35,9 +35,9 @@ TAKEN = {"exposure", "scales", "passers", "noise"}  # what is of the photos, not
 SIDE = "256"
 
 
-def evaluated(program, ply, world, distance, device, folder):
+def evaluated(program, ply, world, distance, device, background, folder):
     subprocess.run([program, "evaluate", ply, "-d", f"synthetic:{world},distance={distance}", "-r", SIDE, "-q", "-o", folder,
-                    "--device", device, "--background", "black"], check=True)
+                    "--device", device, *background], check=True)
     return json.loads((pathlib.Path(folder) / "metrics.json").read_text())["psnr"]
 
 
@@ -58,7 +58,9 @@ def train(arguments, scene, effects, seed):
             ply = next(pathlib.Path(folder).glob("point_cloud/*/point_cloud.ply"))
             device = metrics["device"].split(",")[0]
             world = ",".join(word for word in scene.split(",") if word.split("=")[0] not in TAKEN)
-            one["from_distance"] = {str(d): evaluated(arguments.program, ply, world, d, device, folder) for d in DISTANCES}
+            has_sky = any(effect["on"] for effect in metrics["effects"] if effect["name"] == "sky")
+            behind = [] if has_sky else ["--background", "black"]
+            one["from_distance"] = {str(d): evaluated(arguments.program, ply, world, d, device, behind, folder) for d in DISTANCES}
     print(scene, effects, seed, f"{one['psnr']:.2f} dB, fitted {one['fitted_psnr']:.2f}",
           f"{one['iterations_per_second']:.0f} it/s", flush=True)
     return one

@@ -209,8 +209,8 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
             return sum;
         };
         gs::train::learned_numbers<gs::device::cpu, gs::sky_width> numbers(device);
-        const auto sums = numbers.sums(gs::train::sky_patch<warp>::count(width, height));
-        device.for_each_warp(sums.warps, gs::train::sky_backward<warp>{
+        const auto sums = numbers.sums(gs::train::sky_patch<warp, false>::count(width, height));
+        device.for_each_warp(sums.warps, gs::train::sky_backward<warp, false>{
                                              gs::raster::for_device<warpagg::value_t<warp, float>>(camera),
                                              through.data(), weights.data(), sums});
         for (const unsigned k : {0u, 4u, 20u, 47u}) {

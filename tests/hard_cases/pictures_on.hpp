@@ -124,8 +124,10 @@ class pictures_on {
             return static_cast<unsigned>((pixels + gs::raster::tile_size - 1) / gs::raster::tile_size);
         };
         const gs::camera& camera = q.view.camera;
+        gs::effect_set effects = q.effects;
+        effects.fisheye = camera.fisheye.has_value();
         using narrow = typename Device::narrow_warp;
-        gs::raster::with_effects(q.effects, [&]<gs::effect_set Effects> {
+        gs::raster::with_effects(effects, [&]<gs::effect_set Effects> {
             using projection = gs::raster::project<narrow, Real, Effects>;
             device.template for_each_warp<narrow>(
                 projection::warps(n),

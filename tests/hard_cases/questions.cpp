@@ -17,6 +17,17 @@ void add_backdrop(question& q, unsigned seed) {
     for (double& x : q.backdrop) x = static_cast<double>(random() % 1000) / 999;
 }
 
+void take_fisheye(question& q, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    gs::camera& c = q.view.camera;
+    c.fisheye = gs::fisheye(
+        {0.03 * normal(random), 0.01 * normal(random), 0.002 * normal(random), 0.0003 * normal(random)});
+    c.fx = 0.36 * c.width;
+    c.fy = 0.33 * c.width;
+    c.translation = glm::dvec3(0.1, -0.2, 1);
+}
+
 question random_question(unsigned seed, std::size_t splats, int width, int height, int sh_degree) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;

@@ -26,11 +26,9 @@ struct projected {
 std::vector<projected> project(const camera& c, const std::vector<coloured_point>& points) {
     std::vector<projected> seen;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const glm::dvec3 p = c.rotation * points[i].position + c.translation;
-        if (p.z <= 0) continue;
-        const double x = c.fx * p.x / p.z + c.cx, y = c.fy * p.y / p.z + c.cy;
-        if (x >= 2 && y >= 2 && x < c.width - 2 && y < c.height - 2)
-            seen.push_back({static_cast<std::uint32_t>(i), x, y, p.z});
+        const auto p = c.see(points[i].position);
+        if (p && p->x >= 2 && p->y >= 2 && p->x < c.width - 2 && p->y < c.height - 2)
+            seen.push_back({static_cast<std::uint32_t>(i), p->x, p->y, p->depth});
     }
     return seen;
 }

@@ -64,9 +64,9 @@ photo_cells cells_of(const view& v, const std::vector<coloured_point>& points) {
     // Whether points lie in a cell or beside it.
     std::vector<char> near_points(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 0);
     for (const coloured_point& point : points) {
-        const glm::dvec3 p = c.rotation * point.position + c.translation;
-        if (p.z <= 0) continue;
-        const double x = (c.fx * p.x / p.z + c.cx) / side, y = (c.fy * p.y / p.z + c.cy) / side;
+        const auto p = c.see(point.position);
+        if (!p) continue;
+        const double x = p->x / side, y = p->y / side;
         if (!(x > -1 && y > -1 && x < across + 1 && y < down + 1)) continue;
         for (int row = std::max(0, static_cast<int>(std::floor(y)) - 1);
              row <= std::min(down - 1, static_cast<int>(std::floor(y)) + 1); ++row)
@@ -82,9 +82,7 @@ photo_cells cells_of(const view& v, const std::vector<coloured_point>& points) {
             if (!colour) continue;
             cell one;
             one.colour = *colour;
-            const glm::dvec3 ray(((column + 0.5) * side - c.cx) / c.fx, ((row + 0.5) * side - c.cy) / c.fy,
-                                 1);
-            sh_basis<double>(sky_degree, glm::normalize(glm::transpose(c.rotation) * ray), one.basis.data());
+            sh_basis<double>(sky_degree, c.ray((column + 0.5) * side, (row + 0.5) * side), one.basis.data());
             found.empty.push_back(one);
         }
     return found;

@@ -8,6 +8,7 @@ namespace gs {
 /// is not compiled in. See docs/effects.md.
 struct effect_set {
     bool antialiasing = false;  ///< a Gaussian that a pixel's filter widens becomes fainter by as much
+    bool fisheye = false;       ///< the camera has such a lens
 };
 
 namespace raster {
@@ -15,8 +16,13 @@ namespace raster {
 /// Calls `f.template operator()<set>()`.
 template <class F>
 decltype(auto) with_effects(const effect_set& set, const F& f) {
-    if (set.antialiasing) return f.template operator()<effect_set{.antialiasing = true}>();
-    return f.template operator()<effect_set{}>();
+    const auto with_lens = [&]<bool Antialiasing>() -> decltype(auto) {
+        if (set.fisheye)
+            return f.template operator()<effect_set{.antialiasing = Antialiasing, .fisheye = true}>();
+        return f.template operator()<effect_set{.antialiasing = Antialiasing}>();
+    };
+    if (set.antialiasing) return with_lens.template operator()<true>();
+    return with_lens.template operator()<false>();
 }
 
 }  // namespace raster

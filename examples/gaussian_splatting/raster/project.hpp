@@ -42,13 +42,13 @@ struct project {
         gaussian_row<W> row{std::size_t{warp_index} * W::size, inside, inside};
         const vec3<real> mean = row.template load<3>(w, gaussians.mean, 0, 3);
         const vec3<real> at = in_camera(mean, camera);
-        row.active = inside && at.z > constant<real>(near_plane);
+        row.active = inside && projection_of<real, Effects>::is_drawn(at, camera);
         drawing d{};
         if (w.any(row.active)) draw(w, row, mean, at, d);
 
         const auto first = static_cast<std::ptrdiff_t>(row.first);
         const auto drawn = [&]<class V>(const V& value) { return select(row.active, value, V(0)); };
-        const auto depth = warpagg::math::convert<float>(at.z);
+        const auto depth = warpagg::math::convert<float>(projection_of<real, Effects>::depth(at));
         w.store_row(identities, first, i, inside);
         w.store_row(depths, first, select(row.active, bits_of<number>(depth), number(0xffffffffu)), inside);
         w.store_row(tiles, first, drawn((d.x1 - d.x0) * (d.y1 - d.y0)), inside);
@@ -76,7 +76,7 @@ struct project {
         const auto log_scale = row.template load<3>(w, gaussians.log_scale, 0, 3);
         const auto quaternion = row.template load<4>(w, gaussians.quaternion, 0, 4);
         const real logit = row.template load<1>(w, gaussians.opacity, 0, 1).x;
-        const footprint<real> f = see(at, log_scale, quaternion, camera);
+        const footprint<real, Effects> f(at, log_scale, quaternion, camera);
         real opacity = sigmoid(logit);
         if constexpr (Effects.antialiasing) opacity *= opacity_left(whitened_axes<real>(f.shape, f.ax, f.ay));
         splat<real>& s = d.shape;
@@ -84,8 +84,8 @@ struct project {
         s.reach = warpagg::math::log2(opacity * constant<real>(1 / least_alpha));
         row.active = row.active && f.drawable && is_finite(logit) && s.reach > real(0);
         if (!w.any(row.active)) return;
-        s.x = f.x;
-        s.y = f.y;
+        s.x = f.seen.x;
+        s.y = f.seen.y;
         s.p = f.shape.p;
         s.q = f.shape.q;
         s.r = f.shape.r;

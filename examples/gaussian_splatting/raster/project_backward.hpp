@@ -100,7 +100,7 @@ struct project_backward {
         const auto log_scale = row.template load<3>(w, gaussians.log_scale, 0, 3);
         const auto quaternion = row.template load<4>(w, gaussians.quaternion, 0, 4);
         const auto opacity = row.template load<1>(w, gaussians.opacity, 0, 1);
-        const footprint<real> f = see(in_camera(mean, camera), log_scale, quaternion, camera);
+        const footprint<real, Effects> f(in_camera(mean, camera), log_scale, quaternion, camera);
         const auto put = sink.for_row(w, row);
         // L depends on the exponent through alpha = o exp(-ln2 (u^2 + v^2)), and s = dL/dalpha alpha. With M
         // the rows (p, 0), (r, q), the inverse covariance is 2 ln2 M^T M and (u, v) = M d.
@@ -117,8 +117,9 @@ struct project_backward {
         if constexpr (Effects.antialiasing) add_opacity_left_gradient(axes, s[sum_s], nx, ny);
         const vec3<real> dax = p * nx + r * ny, day = q * ny;
 
-        const vec3<real> by_position =
-            position(f, centre, f.rotation * (dax * f.scale), f.rotation * (day * f.scale));
+        // The mean moves the centre and the Jacobian, and the direction that the colour is seen from.
+        const vec3<real> by_position = f.seen.position_gradient(centre, f.rotation * (dax * f.scale),
+                                                                f.rotation * (day * f.scale), camera);
         put(parameter::log_scale, 0, 3, log_scale, nx * axes.x + ny * axes.y);
         put(parameter::quaternion, 0, 4, quaternion, turn(f, dax * f.scale, day * f.scale));
         put(parameter::opacity, 0, 1, opacity, glm::vec<1, real>(s[sum_s] * sigmoid(-opacity.x)));
@@ -127,34 +128,16 @@ struct project_backward {
     }
 
     /// ax = (px R) * scale: through R to the quaternion.
-    static WARPAGG_HD vec4<real> turn(const footprint<real>& f, const vec3<real>& sax,
+    static WARPAGG_HD vec4<real> turn(const footprint<real, Effects>& f, const vec3<real>& sax,
                                       const vec3<real>& say) {
         mat3<real> rotation;
-        for (int c = 0; c < 3; ++c) rotation[c] = sax[c] * f.px + say[c] * f.py;
+        for (int c = 0; c < 3; ++c) rotation[c] = sax[c] * f.seen.px + say[c] * f.seen.py;
         const vec4<real> g = rotation_gradient(f.turn, rotation);
         // Only the part across the quaternion turns anything.
         return (g - f.turn * glm::dot(f.turn, g)) * f.inverse_length;
     }
 
-    /// The mean moves the centre and the Jacobian ...
-    WARPAGG_HD vec3<real> position(const footprint<real>& f, const vec2<real>& centre, const vec3<real>& dpx,
-                                   const vec3<real>& dpy) const {
-        const real rz = 1 / f.at.z;
-        const auto row = [&](int r) {
-            return vec3<real>(camera.rotation[0][r], camera.rotation[1][r], camera.rotation[2][r]);
-        };
-        // px = fx / z (row 0 - u row 2), and u = x / z unless it is clamped.
-        const real du = select(f.u_free, -camera.fx * rz * glm::dot(dpx, row(2)), real(0));
-        const real dv = select(f.v_free, -camera.fy * rz * glm::dot(dpy, row(2)), real(0));
-        vec3<real> at(camera.fx * rz * centre.x, camera.fy * rz * centre.y, real(0));
-        at.z = -rz * (at.x * f.at.x + at.y * f.at.y) - rz * (glm::dot(dpx, f.px) + glm::dot(dpy, f.py)) -
-               rz * (du * f.u + dv * f.v);
-        at.x += du * rz;
-        at.y += dv * rz;
-        return at * camera.rotation;
-    }
-
-    /// ... and the direction that the colour is seen from: returns the gradient through that.
+    /// Returns the mean's gradient through the direction.
     template <class Put>
     WARPAGG_HD vec3<real> colour(const W& w, const gaussian_row<W>& row, const Put& put,
                                  const value_t<W, unsigned>& i, const vec3<real>& mean, const real* s) const {

@@ -33,7 +33,7 @@ class renderer {
         device_.zero(reserve(needed_, 1).data(), 1);
     }
 
-    /// Of what is drawn from now on: none at first.
+    /// Of what is drawn from now on, beside what views' lenses call for: none at first.
     void set_effects(const effect_set& effects) { effects_ = effects; }
 
     /// Finds how many instances (Gaussian, tile) a view has: see `instances`.
@@ -105,7 +105,7 @@ class renderer {
         });
         device_.begin(stage::project_backward);
         using narrow = typename Device::narrow_warp;
-        with_effects(effects_, [&]<effect_set Effects> {
+        with_effects(effects_of(camera_), [&]<effect_set Effects> {
             device_.template for_each_warp<narrow>(
                 (count_ + narrow::size - 1) / narrow::size,
                 project_backward<narrow, Real, Sink, Effects>{
@@ -151,6 +151,12 @@ class renderer {
         return b;
     }
 
+    effect_set effects_of(const camera& view) const {
+        effect_set effects = effects_;
+        effects.fisheye = view.fisheye.has_value();
+        return effects;
+    }
+
     std::size_t tiles() const { return std::size_t{tiles_across_} * tiles_down_; }
     /// Lower patches are shorter work: they are taken where higher ones would leave the device idle.
     template <class Shape, class Backdrop>
@@ -182,7 +188,7 @@ class renderer {
         tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
         using narrow = typename Device::narrow_warp;
-        with_effects(effects_, [&]<effect_set Effects> {
+        with_effects(effects_of(view), [&]<effect_set Effects> {
             using projection = project<narrow, Real, Effects>;
             device_.template for_each_warp<narrow>(
                 projection::warps(count),

@@ -19,8 +19,14 @@ struct colmap_camera {
     const char* model = "";  ///< its name, for messages
     double fx = 0, fy = 0, cx = 0, cy = 0;
     lens distortion;
+    std::optional<gs::fisheye> fisheye;
 
-    camera pinhole() const { return {width, height, fx, fy, cx, cy}; }  ///< at the origin
+    /// At the origin.
+    gs::camera camera() const {
+        gs::camera c{width, height, fx, fy, cx, cy};
+        c.fisheye = fisheye;
+        return c;
+    }
 };
 
 struct colmap_image {

@@ -28,7 +28,8 @@ struct colmap_camera_model {
     int id;
     const char* name;
     bool two_focal_lengths;
-    std::size_t distortion_count;  ///< of k1, k2, p1, p2 in this order
+    std::size_t distortion_count;  ///< of k1, k2, p1, p2 in this order, or of k1 to k4 of a fisheye
+    bool is_fisheye = false;
 
     std::size_t parameter_count() const { return (two_focal_lengths ? 4U : 3U) + distortion_count; }
 };

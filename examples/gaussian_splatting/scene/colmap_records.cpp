@@ -14,8 +14,14 @@ namespace {
 constexpr std::uint64_t largest_side = 65536;
 
 constexpr colmap_camera_model camera_models[] = {
-    {0, "SIMPLE_PINHOLE", false, 0}, {1, "PINHOLE", true, 0}, {2, "SIMPLE_RADIAL", false, 1},
-    {3, "RADIAL", false, 2},         {4, "OPENCV", true, 4},
+    {0, "SIMPLE_PINHOLE", false, 0},
+    {1, "PINHOLE", true, 0},
+    {2, "SIMPLE_RADIAL", false, 1},
+    {3, "RADIAL", false, 2},
+    {4, "OPENCV", true, 4},
+    {5, "OPENCV_FISHEYE", true, 4, true},
+    {8, "SIMPLE_RADIAL_FISHEYE", false, 1, true},
+    {9, "RADIAL_FISHEYE", false, 2, true},
 };
 
 template <class Matches>
@@ -57,10 +63,15 @@ void add_camera(colmap_model& model, std::uint32_t id, const colmap_camera_model
     added.fy = kind.two_focal_lengths ? *next++ : added.fx;
     added.cx = *next++;
     added.cy = *next++;
-    double* const coefficients[] = {&added.distortion.k1, &added.distortion.k2, &added.distortion.p1,
-                                    &added.distortion.p2};
-    for (std::size_t i = 0; i < kind.distortion_count; ++i) *coefficients[i] = next[i];
-    if (!has_sound_intrinsics(added.pinhole(), added.distortion)) throw error(name + unsound_intrinsics);
+    std::array<double, 4> coefficients{};
+    std::copy_n(next, kind.distortion_count, coefficients.begin());
+    if (kind.is_fisheye) {
+        added.fisheye = fisheye(coefficients);
+    } else {
+        const auto& [k1, k2, p1, p2] = coefficients;
+        added.distortion = {k1, k2, p1, p2};
+    }
+    if (!has_sound_intrinsics(added.camera(), added.distortion)) throw error(name + unsound_intrinsics);
     model.cameras.push_back(added);
 }
 

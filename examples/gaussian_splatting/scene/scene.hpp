@@ -4,29 +4,16 @@
 
 #include <filesystem>
 #include <functional>
-#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "camera.hpp"
 #include "frame.hpp"
 #include "image.hpp"
 
 namespace gs {
-
-/// A pinhole camera. A world point p is at `rotation * p + translation` in camera space (x right, y down,
-/// z forward) and at (fx x/z + cx, fy y/z + cy) in pixels, where the centre of the top left pixel is (0.5,
-/// 0.5).
-struct camera {
-    int width = 0;
-    int height = 0;
-    double fx = 0, fy = 0, cx = 0, cy = 0;
-    glm::dmat3 rotation{1};
-    glm::dvec3 translation{0};
-
-    glm::dvec3 centre() const { return -glm::transpose(rotation) * translation; }
-};
 
 /// One photo with its camera; both are at the resolution that was asked for.
 struct view {

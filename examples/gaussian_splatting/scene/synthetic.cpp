@@ -263,11 +263,14 @@ camera spiral_camera(int i, int size, const synthetic_parameters& how) {
     const double farther = how.distance * std::pow(how.scales, std::fmod(i * std::numbers::sqrt2, 1.0));
     const vec eye =
         farther * camera_distance * vec{across * std::cos(angle), across * std::sin(angle), height};
-    return look_at(eye, vec{0}, {0, 0, 1}, size, 0.5 * size / std::tan(0.5 * field_of_view));
-}
-
-vec ray_direction(const camera& c, double x, double y) {
-    return glm::normalize(glm::transpose(c.rotation) * vec{(x - c.cx) / c.fx, (y - c.cy) / c.fy, 1});
+    const auto looking = [&](double reach) {
+        return look_at(eye, vec{0}, {0, 0, 1}, size, 0.5 * size / reach);
+    };
+    if (how.fisheye == 0) return looking(std::tan(0.5 * field_of_view));
+    const fisheye lens({0.02, -0.006, 0.001, -0.0001});  // about what lenses for sports have
+    camera c = looking(lens.reach(how.fisheye * std::numbers::pi / 360));
+    c.fisheye = lens;
+    return c;
 }
 
 /// Spelt out because the standard leaves the results of its distributions to the implementation.
@@ -295,7 +298,7 @@ void render_row(const world& w, const camera& c, std::size_t photo, int row, std
         for (int sample = 0; sample < samples_per_side * samples_per_side; ++sample) {
             const double x = column + (sample % samples_per_side + 0.5) / samples_per_side;
             const double y = row + (sample / samples_per_side + 0.5) / samples_per_side;
-            const vec direction = ray_direction(c, x, y);
+            const vec direction = c.ray(x, y);
             const std::optional<surface_point> hit = first_hit(w, origin, direction);
             if (!hit && w.how.sky == 0) continue;
             colour += hit ? shade(w, *hit, -direction) : sky(w, direction);
@@ -376,7 +379,7 @@ std::vector<coloured_point> seen_points(const world& w, const std::vector<view>&
         const camera& c = views[chosen].camera;
         const double x = uniform(random) * c.width;
         const double y = uniform(random) * c.height;
-        const vec direction = ray_direction(c, x, y);
+        const vec direction = c.ray(x, y);
         const std::optional<surface_point> hit = first_hit(w, c.centre(), direction);
         if (!hit) continue;
         const vec colour = shade(w, *hit, -direction);

@@ -24,6 +24,7 @@ constexpr parameter parameters[] = {{"gloss", &synthetic_parameters::gloss, 0, 1
                                     {"distance", &synthetic_parameters::distance, 0.25, 16},
                                     {"passers", &synthetic_parameters::passers, 0, 0.5},
                                     {"sky", &synthetic_parameters::sky, 0, 1},
+                                    {"fisheye", &synthetic_parameters::fisheye, 0, 240},
                                     {"noise", &synthetic_parameters::noise, 0, 0.5}};
 
 const parameter& parameter_called(const std::string& name) {

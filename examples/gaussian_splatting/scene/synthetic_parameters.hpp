@@ -16,7 +16,9 @@ struct synthetic_parameters {
     double distance = 1;  ///< of all cameras, in those of other scenes: 0.25 to 16
     double passers = 0;   ///< share of a photo that a disc covers which no other photo has: 0 to 0.5. Masked
     double sky = 0;       ///< brightness of what no surface hides, which depends on direction alone: 0 to 1
-    double noise = 0;     ///< standard deviation of values in [0, 1] where a photo shows something: 0 to 0.5
+    double fisheye =
+        0;  ///< degrees across the picture of a lens of this kind, or 0: a pinhole camera. 0 to 240
+    double noise = 0;  ///< standard deviation of values in [0, 1] where a photo shows something: 0 to 0.5
 };
 
 /// From "WORLD", or "WORLD,gloss=0.5,noise=0.02" and so on. Throws `error` for a parameter that is none,

@@ -163,12 +163,13 @@ std::vector<camera> scale_to_resolution(const std::vector<camera>& full,
 }  // namespace
 
 // Written so that NaN fails too.
-bool has_sound_intrinsics(const camera& pinhole, const lens& distortion) {
+bool has_sound_intrinsics(const camera& taken_with, const lens& distortion) {
     constexpr double least_focal_length = 1e-6, largest = 1e9;
-    for (const double value : {pinhole.fx, pinhole.fy, pinhole.cx, pinhole.cy, distortion.k1, distortion.k2,
-                               distortion.p1, distortion.p2})
+    const auto k = taken_with.fisheye ? taken_with.fisheye->k() : std::array<double, 4>{};
+    for (const double value : {taken_with.fx, taken_with.fy, taken_with.cx, taken_with.cy, distortion.k1,
+                               distortion.k2, distortion.p1, distortion.p2, k[0], k[1], k[2], k[3]})
         if (!(std::abs(value) <= largest)) return false;
-    return pinhole.fx >= least_focal_length && pinhole.fy >= least_focal_length;
+    return taken_with.fx >= least_focal_length && taken_with.fy >= least_focal_length;
 }
 
 bool is_sound_place(const glm::dvec3& place) {

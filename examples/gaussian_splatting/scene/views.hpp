@@ -34,7 +34,7 @@ view shrunk(const view& full, int divisor);
 
 /// Whether the focal lengths lie between 1e-6 and 1e9 pixels and the rest is finite and at most 1e9: what no
 /// change of the photo's size can make overflow.
-bool has_sound_intrinsics(const camera& pinhole, const lens& distortion);
+bool has_sound_intrinsics(const camera& taken_with, const lens& distortion);
 inline constexpr const char* unsound_intrinsics =
     " has a focal length that is not between 1e-6 and 1e9, or a parameter that is not finite or beyond 1e9";
 

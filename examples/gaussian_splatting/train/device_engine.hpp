@@ -159,13 +159,14 @@ class device_engine final : public engine {
 
     void step(const step_plan& plan) override {
         const gs::camera& camera = train_[downscales_][plan.view].camera;
-        const device::iteration_shape shape{
-            count_,
-            renderer_.reserved_instances(),
-            static_cast<std::size_t>(camera.width),
-            static_cast<std::size_t>(camera.height),
-            static_cast<std::size_t>(plan.gradient),
-            (plan.exposure_rate > 0 ? std::size_t{1} : 0) + (sky_.is_there() ? std::size_t{2} : 0)};
+        const device::iteration_shape shape{count_,
+                                            renderer_.reserved_instances(),
+                                            static_cast<std::size_t>(camera.width),
+                                            static_cast<std::size_t>(camera.height),
+                                            static_cast<std::size_t>(plan.gradient),
+                                            (plan.exposure_rate > 0 ? std::size_t{1} : 0) +
+                                                (sky_.is_there() ? std::size_t{2} : 0) +
+                                                (camera.fisheye ? std::size_t{4} : 0)};
         device_.iteration(shape, [&] { iterate(plan); });
         lengths_of_[plan.view] = count_;
     }

@@ -7,8 +7,7 @@
 
 #include "../model/gaussians.hpp"
 #include "../model/spherical_harmonics.hpp"
-#include "../raster/camera.hpp"
-#include "../raster/vectors.hpp"
+#include "../raster/fisheye.hpp"
 #include "picture_sums.hpp"
 
 namespace gs::train {
@@ -17,8 +16,9 @@ namespace gs::train {
 /// not held to any range.
 inline constexpr unsigned sky_coefficients = sh_coefficients(sky_degree);
 
-/// Pixels of a picture for a warp: as many columns as it has lanes, of some rows.
-template <class W>
+/// Pixels of a picture for a warp: as many columns as it has lanes, of some rows. `Fisheye`: the camera has
+/// such a lens.
+template <class W, bool Fisheye>
 struct sky_patch {
     using real = warpagg::value_t<W, float>;
 
@@ -44,14 +44,16 @@ struct sky_patch {
     WARPAGG_HD void basis(const W& w, const raster::device_camera<real>& camera, int row,
                           real (&values)[sky_coefficients]) const {
         const real x = warpagg::math::convert<float>(w.lane() + left) + real(0.5f);
-        const raster::vec3<real> ray((x - camera.cx) / camera.fx,
-                                     (real(static_cast<float>(row) + 0.5f) - camera.cy) / camera.fy, real(1));
+        const raster::vec2<real> place((x - camera.cx) / camera.fx,
+                                       (real(static_cast<float>(row) + 0.5f) - camera.cy) / camera.fy);
+        raster::vec3<real> ray(place, real(1));
+        if constexpr (Fisheye) ray = raster::fisheye_ray(place, camera);
         sh_basis(sky_degree, raster::unit<3, real>(ray * camera.rotation).direction, values);
     }
 };
 
 /// The sky behind a picture.
-template <class W>
+template <class W, bool Fisheye>
 struct draw_sky {
     using real = warpagg::value_t<W, float>;
 
@@ -61,7 +63,7 @@ struct draw_sky {
 
     WARPAGG_EXEC_CHECK_DISABLE
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
-        const sky_patch<W> patch(w, index, camera.width, camera.height);
+        const sky_patch<W, Fisheye> patch(w, index, camera.width, camera.height);
         const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(camera.width) * camera.height;
         for (int row = patch.first; row < patch.last; ++row) {
             real basis[sky_coefficients];
@@ -81,7 +83,7 @@ struct draw_sky {
 
 /// The sums of the gradients by the sky's coefficients, from that by the picture and what is left of light
 /// from behind it.
-template <class W>
+template <class W, bool Fisheye>
 struct sky_backward {
     using real = warpagg::value_t<W, float>;
 
@@ -92,7 +94,7 @@ struct sky_backward {
 
     WARPAGG_EXEC_CHECK_DISABLE
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
-        const sky_patch<W> patch(w, index, camera.width, camera.height);
+        const sky_patch<W, Fisheye> patch(w, index, camera.width, camera.height);
         const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(camera.width) * camera.height;
         real total[sky_width];
         WARPAGG_UNROLL

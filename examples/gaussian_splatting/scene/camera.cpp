@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace gs {
+namespace {
+
+/// The derivative of `fisheye::reach`.
+double slope(const std::array<double, 4>& k, double angle) {
+    const double w = angle * angle;
+    return 1 + w * (3 * k[0] + w * (5 * k[1] + w * (7 * k[2] + w * 9 * k[3])));
+}
+
+/// Where a condition that holds at `from` and not at `to` ends to hold.
+template <class Condition>
+double bisect(double from, double to, const Condition& holds) {
+    for (int i = 0; i < 60; ++i) {
+        const double middle = std::midpoint(from, to);
+        (holds(middle) ? from : to) = middle;
+    }
+    return from;
+}
+
+}  // namespace
+
+fisheye::fisheye(const std::array<double, 4>& k) : k_(k), end_(widest) {
+    constexpr int steps = 300;  // between two of them no sound lens turns back and forth
+    const auto grows = [&](double t) { return slope(k, t) > 0; };
+    for (int i = 1; i <= steps && end_ == widest; ++i)
+        if (!grows(widest * i / steps)) end_ = bisect(widest * (i - 1) / steps, widest * i / steps, grows);
+}
+
+double fisheye::reach(double angle) const {
+    const double w = angle * angle;
+    return angle * (1 + w * (k_[0] + w * (k_[1] + w * (k_[2] + w * k_[3]))));
+}
+
+double fisheye::angle(double reach) const {
+    if (reach >= this->reach(end_)) return end_;
+    return bisect(0, end_, [&](double t) { return this->reach(t) <= reach; });
+}
+
+std::optional<camera::image_point> camera::see(const glm::dvec3& point) const {
+    const glm::dvec3 p = rotation * point + translation;
+    if (!fisheye) {
+        if (p.z <= 0) return std::nullopt;
+        return image_point{fx * p.x / p.z + cx, fy * p.y / p.z + cy, p.z};
+    }
+    const double across = std::hypot(p.x, p.y), angle = std::atan2(across, p.z);
+    if (angle >= fisheye->end()) return std::nullopt;
+    const double out = across > 0 ? fisheye->reach(angle) / across : 0;
+    return image_point{fx * out * p.x + cx, fy * out * p.y + cy, glm::length(p)};
+}
+
+glm::dvec3 camera::ray(double x, double y) const {
+    const glm::dvec2 place((x - cx) / fx, (y - cy) / fy);
+    glm::dvec3 in_camera(place, 1);
+    if (fisheye) {
+        const double out = glm::length(place), angle = fisheye->angle(out);
+        in_camera = {(out > 0 ? std::sin(angle) / out : 1) * place, std::cos(angle)};
+    }
+    return glm::normalize(glm::transpose(rotation) * in_camera);
+}
+
+}  // namespace gs
