@@ -75,14 +75,12 @@ TEST_CASE("densification ends half-way, and opacities are reset only when an int
     CHECK(s.densifies(3400));
     CHECK_FALSE(s.densifies(3500));
     CHECK_FALSE(s.resets_opacity(3000));
-    CHECK_FALSE(s.drops_large(3001));
     CHECK_FALSE(s.resets_opacity(500));
     s.white = true;
     CHECK(s.resets_opacity(500));
     s.iterations = 100000;
     CHECK(s.densify_until() == 15000);
     CHECK(s.resets_opacity(3000));
-    CHECK(s.drops_large(3001));
     CHECK(s.resets_opacity(12000));
     CHECK_FALSE(s.resets_opacity(15000));
 }
@@ -203,8 +201,6 @@ TEST_CASE("densification and resets keep to their intervals") {
     s.densify_until_iter = 899;
     CHECK_FALSE(s.resets_opacity(870));
     s.densify_until_iter = 900;
-    CHECK_FALSE(s.drops_large(30));
-    CHECK(s.drops_large(31));
     s.white = true;
     CHECK(s.resets_opacity(20));
     s.densify_until_iter = 0;

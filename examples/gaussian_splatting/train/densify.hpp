@@ -40,9 +40,7 @@ struct judge_gaussians {
         if (v.seen > 0 && v.gradient == 0) device::atomic_add(silent, 1);
         const glm::vec3 s = raster::load3(gaussians.log_scale, i);
         const float largest = glm::exp(warpagg::math::max(s.x, warpagg::math::max(s.y, s.z)));
-        const bool opaque = sigmoid(gaussians.opacity[i]) >= rule.least_opacity;
-        const bool too_large = rule.most_scale > 0 && largest > rule.most_scale;
-        const bool stay = opaque && !too_large;
+        const bool stay = sigmoid(gaussians.opacity[i]) >= rule.least_opacity;
         stays[i] = stay ? 1 : 0;
         large[i] = largest > rule.dense_scale ? 1 : 0;
         identities[i] = i;

@@ -82,11 +82,6 @@ struct schedule {
     /// Every interval, but not in densification's last one: what a reset took back has to grow again. On
     /// white once more, when densification begins.
     bool resets_opacity(int iteration) const;
-    /// Gaussians that are large in the world are dropped once opacities have been reset. Those that are large
-    /// on the screen are not: that costs lego 1.7 dB.
-    bool drops_large(int iteration) const {
-        return iteration > opacity_reset_interval && resets_opacity(opacity_reset_interval);
-    }
 };
 
 }  // namespace gs::train

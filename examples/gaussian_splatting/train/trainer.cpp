@@ -50,7 +50,6 @@ densify_rule rule_at(int iteration, const schedule& schedule, const train_option
                      std::size_t gaussians) {
     densify_rule rule;
     rule.dense_scale = static_cast<float>(0.01 * schedule.extent);
-    if (schedule.drops_large(iteration)) rule.most_scale = static_cast<float>(0.1 * schedule.extent);
     rule.gradient = static_cast<float>(schedule.growth_threshold());
     rule.cap = options.max_cap;
     if (options.budget > 0) {
