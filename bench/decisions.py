@@ -22,9 +22,9 @@ from scenes import by
 
 WORLDS = ["spheres", "alpha"]
 BACKGROUND = "background"
-CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales", "sky": "sky", "masks": "passers"}
+CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales", "sky": "sky", "masks": "passers", "lens": "fisheye"}
 EFFECTS = [*CAUSES, BACKGROUND]
-PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"passers": 0.1}, {"noise": 0.03}]
+PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"passers": 0.1}, {"fisheye": 60}, {"noise": 0.03}]
 SKYLESS = "alpha"  # what no surface hides is transparent there
 MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "sky": (0.3, 1), "passers": (0.05, 0.2)}
 

@@ -41,6 +41,8 @@ TEST_CASE("a scene calls for what it was made with, and for nothing else") {
         {"spheres,sky=0.4,noise=0.03", {"sky"}},
         {"spheres,sky=1,exposure=0.3,scales=4", {"sky", "exposure", "antialiasing"}},
         {"spheres,passers=0.1", {"masks"}},
+        {"spheres,fisheye=60,gloss=0.6,sky=0.8", {"lens", "direction", "sky"}},
+        {"alpha,fisheye=60", {"lens", "background"}},
         {"alpha", {"background"}},
         {"alpha,gloss=0.6,exposure=0.3,passers=0.1", {"direction", "exposure", "masks", "background"}}};
     for (const auto& c : cases) {
@@ -91,7 +93,7 @@ TEST_CASE("a scene without points is not told what it needs") {
     const auto found = decide(gather(scene));
     for (const decision& d : found) {
         INFO(d.name);
-        CHECK(d.called_for.has_value() == (d.name == "background" || d.name == "masks"));
+        CHECK(d.called_for.has_value() == (d.name == "background" || d.name == "masks" || d.name == "lens"));
     }
     CHECK(sh_degree(gather(scene)) == 3);
     // With points of which next to none tells there is nothing to tell it by, and with a few more there is.
@@ -175,12 +177,12 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
     CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
     CHECK(refusal("spheres,glos=0.5") ==
           "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
-          "sky, noise");
+          "sky, fisheye, noise");
     CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
     CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
     CHECK(refusal("spheres,") ==
           "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
-          "sky, noise");
+          "sky, fisheye, noise");
     CHECK(refusal("spheres,gloss=nan") ==
           "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
     CHECK(refusal("spheres,gloss=0,gloss=1") ==

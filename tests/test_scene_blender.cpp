@@ -191,6 +191,24 @@ TEST_CASE("lens distortion in a transforms file is not ignored") {
     CHECK(scene.train[0].camera.fx > 10 / std::tan(0.4));  // pincushion: a narrower view
 }
 
+TEST_CASE("a camera model in a transforms file is that of its frame, or of all") {
+    const temporary_folder folder;
+    json file = transforms(folder.path(), "train", 2);
+    file.update({{"fl_x", 9}, {"k1", 0.1}, {"k2", -0.02}, {"k3", 0.003}, {"k4", -0.0004}});
+    file["camera_model"] = "OPENCV_FISHEYE";
+    file["frames"][1]["camera_model"] = "OPENCV";
+    write_json(folder / "transforms_train.json", file);
+    const gs::scene scene = load(folder.path());
+    CHECK(scene.train[0].camera.fisheye.value().k() == std::array{0.1, -0.02, 0.003, -0.0004});
+    CHECK_FALSE(scene.train[1].camera.fisheye);
+    file["frames"][1]["camera_model"] = "EQUIRECTANGULAR";
+    write_json(folder / "transforms_train.json", file);
+    CHECK(says(error_of_loading(folder.path()), {"frame 1", "EQUIRECTANGULAR", "OPENCV_FISHEYE"}));
+    file["camera_model"] = 5;
+    write_json(folder / "transforms_train.json", file);
+    CHECK(says(error_of_loading(folder.path()), {"camera_model is not a string"}));
+}
+
 TEST_CASE("a rotation that is slightly off is made exact") {
     const temporary_folder folder;
     json file = transforms(folder.path(), "train", 1);

@@ -618,6 +618,35 @@ TEST_CASE("smaller copies of the photos take their cameras along; other sizes ar
     CHECK(says(error_of_loading(options), {"b.png", "wrong size", "200x150", "40x30"}));
 }
 
+TEST_CASE("photos of fisheye lenses stay as they are, in binary and in text") {
+    for (const bool is_text : {false, true}) {
+        CAPTURE(is_text);
+        const temporary_folder folder;
+        model_record model = plain_model();
+        model.cameras = {{1, 5, "OPENCV_FISHEYE", 40, 30, {12, 11, 19, 16, 0.1, -0.02, 0.003, -0.0004}},
+                         {2, 8, "SIMPLE_RADIAL_FISHEYE", 40, 30, {12, 19, 16, 0.1}},
+                         {7, 9, "RADIAL_FISHEYE", 40, 30, {12, 19, 16, 0.1, -0.02}}};
+        model.images[2].camera_id = 2;
+        (is_text ? write_text : write_binary)(folder / "sparse/0", model);
+        write_photos(folder / "images", model, 40, 30);
+        std::string said;
+        auto options = options_for(folder.path());
+        const gs::scene scene = gs::load_scene(options, [&](const std::string& line) { said += line; });
+        CHECK_FALSE(says(said, {"pinhole"}));
+        const auto k = [&](std::size_t view) { return scene.train[view].camera.fisheye.value().k(); };
+        CHECK(k(0) == std::array{0.1, -0.02, 0.003, -0.0004});
+        CHECK(k(1) == std::array{0.1, 0.0, 0.0, 0.0});
+        CHECK(k(2) == std::array{0.1, -0.02, 0.0, 0.0});
+        CHECK(scene.train[0].camera.fx == 12);
+        CHECK(scene.train[0].camera.fy == 11);
+        CHECK(scene.train[1].camera.fy == 12);
+        options.resolution = 2;
+        const gs::camera half = gs::load_scene(options, ignore).train[0].camera;
+        CHECK(half.fx == 6);
+        CHECK(half.fisheye.value().k() == k(0));
+    }
+}
+
 TEST_CASE("masks leave out where they are black, in photos that were bent and shrunk as well") {
     for (const double bent : {0.0, 0.1}) {
         CAPTURE(bent);
@@ -797,8 +826,13 @@ TEST_CASE("models that say something impossible, in binary and in text") {
         {"no cameras", [](auto& m) { m.cameras.clear(); }, {"cameras", "no cameras"}},
         {"no images", [](auto& m) { m.images.clear(); }, {"images", "no images"}},
         {"model",
-         [](auto& m) { m.cameras[1].model_id = 5, m.cameras[1].model = "OPENCV_FISHEYE"; },
-         {"cameras", "unknown", "SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV"}},
+         [](auto& m) { m.cameras[1].model_id = 7, m.cameras[1].model = "FOV"; },
+         {"cameras", "unknown", "SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, OPENCV_FISHEYE"}},
+        {"fisheye",
+         [](auto& m) {
+             m.cameras[1] = {7, 8, "SIMPLE_RADIAL_FISHEYE", 40, 30, {44, 20, 14, infinity}};
+         },
+         {"cameras", "camera 7", "not finite"}},
         {"width", [](auto& m) { m.cameras[1].width = 0; }, {"cameras", "camera 7", "0x30"}},
         {"height",
          [](auto& m) { m.cameras[1].height = 1ULL << 40; },

@@ -44,6 +44,7 @@ constexpr const char* antialiasing = "no time; 1 to 7 dB from other distances, -
 constexpr const char* sky =
     "2 to 15 % of an iteration; 4 dB where a third of the photos is sky, 0.5 dB on photos";
 constexpr const char* masks = "no time; 2 dB where a tenth of each photo is something that passed";
+constexpr const char* lens = "LENS";
 constexpr const char* background = "nothing";
 }  // namespace expected
 
@@ -112,6 +113,15 @@ decision background(const evidence& e) {
             e.alpha ? "white" : "black", expected::background};
 }
 
+decision lens(const evidence& e) {
+    const bool bent = e.fisheye_photos > 0;
+    return {"lens", bent,
+            bent ? text("fisheye lenses took %zu of %zu photos, up to %.0f degrees from corner to corner",
+                        e.fisheye_photos, e.photos, e.widest)
+                 : "all cameras are pinhole cameras, or their photos were undistorted",
+            bent ? "drawn in place" : "pinhole", expected::lens};
+}
+
 }  // namespace
 
 bool direction_is_known(const evidence& e) { return e.direction_points >= limits.points; }
@@ -128,7 +138,7 @@ int sh_degree(const evidence& e) {
 }
 
 std::vector<decision> decide(const evidence& e) {
-    return {direction(e), exposure(e), antialiasing(e), sky(e), masks(e), background(e)};
+    return {direction(e), exposure(e), antialiasing(e), sky(e), masks(e), background(e), lens(e)};
 }
 
 }  // namespace gs::effects

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "../model/spherical_harmonics.hpp"
@@ -226,6 +227,17 @@ void count_masks(const scene& of, evidence& found) {
     found.masked_share = static_cast<double>(out) / static_cast<double>(all);
 }
 
+void look_at_lenses(const scene& of, evidence& found) {
+    for (const view& v : of.train) {
+        const camera& c = v.camera;
+        if (!c.fisheye) continue;
+        ++found.fisheye_photos;
+        const double wide =
+            std::hypot(std::max(c.cx, c.width - c.cx) / c.fx, std::max(c.cy, c.height - c.cy) / c.fy);
+        found.widest = std::max(found.widest, 360 / std::numbers::pi * c.fisheye->angle(wide));
+    }
+}
+
 }  // namespace
 
 exposure_estimate exposures(const points_seen& points, std::size_t views) {
@@ -322,6 +334,7 @@ evidence gather(const scene& of) {
     evidence found = gather_from_points(of);
     found.alpha = of.has_alpha;
     count_masks(of, found);
+    look_at_lenses(of, found);
     found.sky = find_sky(of, {});
     // A sky that is overexposed is white in every photo: then that told more.
     if (!found.brighter.empty()) {

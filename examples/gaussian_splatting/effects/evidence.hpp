@@ -37,6 +37,9 @@ struct evidence {
     std::size_t photos = 0, masked_photos = 0;  ///< and of those for training that have a mask
     double masked_share = 0;                    ///< of all their pixels that masks leave out
 
+    std::size_t fisheye_photos = 0;  ///< and of those that fisheye lenses took
+    double widest = 0;               ///< degrees from corner to corner of the widest of these
+
     sky_evidence sky;
 
     bool alpha = false;  ///< photos have transparent parts

@@ -48,21 +48,24 @@ double focal_length(const transforms& all, std::size_t index, int width) {
 }
 
 void set_intrinsics(recorded_view& recorded, const transforms& all, std::size_t index) {
-    camera& pinhole = recorded.camera;
+    camera& taken_with = recorded.camera;
     const auto number = [&](transforms_number which) { return all.number(index, which); };
     int photo_width = 0, photo_height = 0;
     read_image_size(recorded.file, photo_width, photo_height);
-    pinhole.width = side(all, index, w, photo_width);
-    pinhole.height = side(all, index, h, photo_height);
+    taken_with.width = side(all, index, w, photo_width);
+    taken_with.height = side(all, index, h, photo_height);
     const auto said = number(fl_x);
-    pinhole.fx = said ? *said : focal_length(all, index, pinhole.width);
-    pinhole.fy = number(fl_y).value_or(pinhole.fx);
-    pinhole.cx = number(cx).value_or(0.5 * pinhole.width);
-    pinhole.cy = number(cy).value_or(0.5 * pinhole.height);
-    recorded.distortion = {number(k1).value_or(0), number(k2).value_or(0), number(p1).value_or(0),
-                           number(p2).value_or(0)};
+    taken_with.fx = said ? *said : focal_length(all, index, taken_with.width);
+    taken_with.fy = number(fl_y).value_or(taken_with.fx);
+    taken_with.cx = number(cx).value_or(0.5 * taken_with.width);
+    taken_with.cy = number(cy).value_or(0.5 * taken_with.height);
+    const auto bend = [&](transforms_number which) { return number(which).value_or(0); };
+    if (all.is_fisheye(index))
+        taken_with.fisheye = fisheye({bend(k1), bend(k2), bend(k3), bend(k4)});
+    else
+        recorded.distortion = {bend(k1), bend(k2), bend(p1), bend(p2)};
     recorded.model = "OPENCV";
-    if (!has_sound_intrinsics(pinhole, recorded.distortion))
+    if (!has_sound_intrinsics(taken_with, recorded.distortion))
         throw error(all.where_is(index) + unsound_intrinsics);
 }
 

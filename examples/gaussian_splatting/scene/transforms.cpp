@@ -41,6 +41,17 @@ class said_numbers {
     std::array<std::optional<double>, transforms_number_names.size()> values_;
 };
 
+transforms_lens lens_called(const std::string* name, const std::string& where) {
+    constexpr std::string_view opencv[] = {"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV"};
+    if (!name) throw error(where + ": camera_model is not a string");
+    if (*name == "OPENCV_FISHEYE") return transforms_lens::fisheye;
+    if (std::ranges::find(opencv, *name) == std::end(opencv))
+        throw error(where + ": the camera model " + clipped(*name) +
+                    " is unknown; supported are SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, "
+                    "OPENCV_FISHEYE");
+    return transforms_lens::opencv;
+}
+
 /// How deep the reader is in what it reads: each level is a bracket within the one before.
 enum class level { file, top, frames, frame, matrix, row };
 
@@ -144,6 +155,7 @@ class reader final : public json::json_sax_t {
                 throw error(all_.where + " is not a JSON object");
             case level::top:
                 if (field_ == "frames") throw error(all_.where + ": frames is not an array");
+                if (field_ == "camera_model") all_.lens = lens_called(text, all_.where);
                 numbers_.take(field_, number);
                 break;
             case level::frames:
@@ -170,6 +182,8 @@ class reader final : public json::json_sax_t {
         } else if (field_ == "transform_matrix") {
             frame_.has_matrix = true;
             frame_.is_sound = false;
+        } else if (field_ == "camera_model") {
+            all_.frames.back().lens = lens_called(text, where());
         } else {
             frame_.numbers.take(field_, number);
         }
@@ -229,6 +243,11 @@ std::optional<double> transforms::number(std::size_t index, transforms_number wh
                     std::string(transforms_number_names[static_cast<std::size_t>(which)]) +
                     " is not a number");
     return value;
+}
+
+bool transforms::is_fisheye(std::size_t index) const {
+    const transforms_lens own = frames[index].lens;
+    return (own == transforms_lens::unsaid ? lens : own) == transforms_lens::fisheye;
 }
 
 transforms read_transforms(const std::filesystem::path& file) {
