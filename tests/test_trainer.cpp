@@ -63,7 +63,15 @@ class recorder final : public gs::train::engine {
     std::uint64_t skipped_steps() override { return 0; }
     gs::train::findings take_findings() override { return {}; }
     std::vector<float> render(const gs::camera&, const std::array<float, 3>&, int) override { return {}; }
-    void set_sh_degree(int) override {}
+    std::vector<int> degrees;
+    void set_sh_degree(int degree) override { degrees.push_back(degree); }
+    std::vector<std::size_t> dropped_bands_after;  ///< so many steps
+    std::size_t drop_bands(double change, gs::gradient_policy) override {
+        CHECK(change == 0.01);
+        CHECK((pruned_after.empty() || pruned_after.back() <= steps.size()));
+        dropped_bands_after.push_back(steps.size());
+        return 0;
+    }
     gs::train::quality measure(std::size_t, const std::array<float, 3>&, std::vector<float>*) override {
         return {};
     }
@@ -156,4 +164,27 @@ TEST_CASE(
     CHECK(made.pruned_after == std::vector<std::size_t>{18});
     for (std::size_t i = 0; i < 20; ++i) CHECK(made.steps[i].plan.watch == (i < 18));
     CHECK(made.sizes_reserved.size() == 1 + 1 + 6 + 1);
+}
+
+TEST_CASE("Gaussians lose bands once none comes or goes, and bands have been reviewed and had their time") {
+    gs::train::train_options o;
+    CHECK(trained(o).dropped_bands_after.empty());
+    o.band_change = 0.01;
+    o.schedule.sh_degree = 1;
+    o.schedule.sh_degree_interval = 2;
+    CHECK(trained(o).dropped_bands_after == std::vector<std::size_t>{15});  // densifies before
+    o.schedule.prune_share = 0.25;
+    CHECK(trained(o).dropped_bands_after == std::vector<std::size_t>{18});  // prunes
+    o.schedule.sh_degree_interval = 10;
+    for (const int degree : {0, 1, 2}) {
+        CAPTURE(degree);
+        o.review_bands = [degree](int) { return degree; };
+        const recorder made = trained(o);
+        CHECK(made.degrees == std::vector{degree});
+        // Reviewed after 20: none are there, or new ones have no time before the end.
+        CHECK(made.dropped_bands_after == std::vector<std::size_t>(degree == 1 ? 1 : 0, 20));
+    }
+    o.schedule.prune_share = 0;
+    o.schedule.sh_degree_interval = 6;  // reviewed after 12, with two new ones the last time
+    CHECK(trained(o).dropped_bands_after == std::vector<std::size_t>{18});
 }

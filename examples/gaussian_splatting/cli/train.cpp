@@ -128,6 +128,7 @@ ordered_json effects_json(const settings& s, const scene& scene, const train::ba
     direction["sh_degree"] = result.sh_degree;
     if (review) {
         direction["on"] = result.sh_degree > 0;
+        if (result.banded) direction["gaussians_with_bands"] = *result.banded;
         direction["sh_degree_at_first"] = simulated.sh_degree;
         direction["unexplained_half_way"] = review->unexplained;
         if (review->change) direction["change_without_highest_band"] = *review->change;
@@ -198,11 +199,13 @@ void train(const settings& s) {
         session.background(scene.has_alpha && simulated.exposures.empty());
     train::train_options options = options_of(s, scene, background, simulated);
     std::optional<effects::band_review> review;
-    if (simulated.reviews_bands)
+    if (simulated.reviews_bands) {
         options.review_bands = [&](int sh_degree) {
             review = effects::review_bands(*engine, scene, background.colour, sh_degree);
             return review->sh_degree;
         };
+        options.band_change = effects::single_band_change_limit;
+    }
     gaussians model = first_model(scene, options);
     model.antialiased = simulated.antialiasing;
     model.sky = simulated.sky;
@@ -291,6 +294,9 @@ void train(const settings& s) {
     }
     write_json(output.path() / "metrics.json", metrics);
 
+    if (result.banded)
+        session.say(std::to_string(engine->count() - *result.banded) + " of " +
+                    std::to_string(engine->count()) + " Gaussians have one colour from all directions");
     if (report.views.empty()) {
         session.say("training PSNR " + number("%.2f dB", last.psnr) + " (no held-out views without --eval)");
     } else {

@@ -23,6 +23,10 @@ struct band_review {
 /// A band that changes pictures by less is not needed: a picture at 35 dB loses 0.014 dB by that.
 inline constexpr double band_change_limit = 0.001;
 
+/// By what training views may change at most, as a root mean square, when single Gaussians lose their bands:
+/// see `train::engine::drop_bands`. Costs held-out views less than 0.02 dB (docs/effects.md).
+inline constexpr double single_band_change_limit = 0.00025;
+
 /// Bands are needed where what the model leaves of the photos depends on direction, and those of the model's
 /// that change the pictures of eight training views. Draws the training views once, and these eight again by
 /// band. Precondition: `engine` has the scene's views, and a model of this degree.

@@ -24,19 +24,25 @@ class parameter_memory {
             arrays_[p].resize(has_parameter(p, sh_degree)
                                   ? in_whole_blocks(count) * width_of(static_cast<parameter>(p))
                                   : 0);
+        banded_ = count;
     }
     /// Keeps the contents, but for bands above the degree `to`, which have no memory from now on. Those above
     /// `from` are zero.
-    void change_sh_degree(Device& device, std::size_t count, int from, int to) {
+    void change_sh_degree(Device& device, int from, int to) {
         for (std::size_t p = 0; p < parameter_count; ++p) {
             if (has_parameter(p, from) == has_parameter(p, to)) continue;
             arrays_[p] = buffer();
             if (!has_parameter(p, to)) continue;
-            arrays_[p].resize(in_whole_blocks(count) * width_of(static_cast<parameter>(p)));
+            arrays_[p].resize(in_whole_blocks(banded_) * width_of(static_cast<parameter>(p)));
             device.zero(arrays_[p].data(), arrays_[p].size());
         }
     }
     buffer& operator[](std::size_t p) { return arrays_[p]; }
+    /// How many Gaussians have bands: see `parameter_arrays`. It is for who sizes the arrays to set it.
+    /// @{
+    std::size_t banded() const { return banded_; }
+    void set_banded(std::size_t count) { banded_ = count; }
+    /// @}
 
     parameter_arrays<const float> read() const { return pointers<const float>(); }
     parameter_arrays<float> write() { return pointers<float>(); }
@@ -55,6 +61,7 @@ class parameter_memory {
                 device.wait();
             });
     }
+    /// Bands that a Gaussian does not have are zero.
     gaussians download(Device& device, std::size_t count, int sh_degree) const {
         gaussians model;
         model.sh_degree = sh_degree;
@@ -68,7 +75,8 @@ class parameter_memory {
             const buffer& from = arrays_[static_cast<std::size_t>(p)];
             std::vector<float> blocks(from.size());
             device.download(blocks.data(), from.data(), blocks.size());
-            from_blocks(blocks.data(), count, stride, width_of(p), to.data() + first);
+            const std::size_t rows = is_band(static_cast<std::size_t>(p)) ? banded_ : count;
+            from_blocks(blocks.data(), rows, stride, width_of(p), to.data() + first);
         });
         return model;
     }
@@ -95,10 +103,12 @@ class parameter_memory {
                 a[1].data(),
                 a[2].data(),
                 a[3].data(),
-                {a[4].data(), a[5].data(), a[6].data(), a[7].data()}};
+                {a[4].data(), a[5].data(), a[6].data(), a[7].data()},
+                banded_};
     }
 
     std::array<buffer, parameter_count> arrays_;
+    std::size_t banded_ = 0;
 };
 
 }  // namespace gs

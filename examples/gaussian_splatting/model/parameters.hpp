@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <warpagg/simt/target.hpp>
 
 namespace gs {
@@ -31,6 +32,9 @@ constexpr bool has_parameter(std::size_t p, int sh_degree) {
     return static_cast<int>(p) - static_cast<int>(parameter::sh0) <= sh_degree;
 }
 
+/// Whether it is of colours that depend on direction, which not every Gaussian has to have.
+constexpr bool is_band(std::size_t p) { return p > static_cast<std::size_t>(parameter::sh0); }
+
 /// Where the arrays lie, each in blocks: see `place`. Values, gradients and moments have this form.
 template <class Real>
 struct parameter_arrays {
@@ -39,6 +43,8 @@ struct parameter_arrays {
     Real* quaternion = nullptr;  ///< w x y z
     Real* opacity = nullptr;     ///< logit
     Real* sh[4] = {};            ///< bands 0 to 3, coefficient-major, RGB within
+    /// So many Gaussians, the first ones, have bands 1 to 3: whole blocks, or all. Others have one colour.
+    std::size_t banded = std::numeric_limits<std::size_t>::max();
 
     WARPAGG_HD constexpr Real* operator[](parameter p) const {
         switch (p) {

@@ -22,6 +22,11 @@ struct gaussian_row {
     mask_t<W> inside;  ///< there is such a Gaussian
     mask_t<W> active;  ///< and the step concerns it
 
+    /// Up to which degree their colours depend on direction, of what a model has: the same in all lanes.
+    template <class Real>
+    WARPAGG_HD int degree_of(const parameter_arrays<Real>& gaussians, int sh_degree) const {
+        return first < gaussians.banded ? sh_degree : 0;
+    }
     /// N components of each, from the k-th on, in an array of `width`. Means nothing in lanes not active.
     template <int N, class Real>
     WARPAGG_HD glm::vec<N, value_t<W, Real>> load(const W& w, const Real* from, std::size_t k,

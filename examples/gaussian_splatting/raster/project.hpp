@@ -123,13 +123,14 @@ struct project {
     }
 
     WARPAGG_HD vec3<real> colour(const W& w, const gaussian_row<W>& row, const vec3<real>& mean) const {
+        const int degree = row.degree_of(gaussians, sh_degree);
         const vec3<real> direction = unit(mean - camera.centre).direction;
         real basis[16]{};
-        sh_basis(sh_degree, direction, basis);
+        sh_basis(degree, direction, basis);
         vec3<real> sum(constant<real>(0.5));
         WARPAGG_UNROLL
         for (unsigned band = 0; band < 4; ++band) {
-            if (static_cast<int>(band) > sh_degree) break;
+            if (static_cast<int>(band) > degree) break;
             const unsigned size = 2 * band + 1;
             WARPAGG_UNROLL
             for (unsigned m = 0; m < size; ++m)

@@ -150,13 +150,14 @@ struct project_backward {
                           real(0));
         };
         const vec3<real> g(free(0), free(1), free(2));
+        const int degree = row.degree_of(gaussians, sh_degree);
         const unit<3, real> sight(mean - camera.centre);
         const vec3<real> direction = sight.direction;
         real basis[16]{}, weight[16]{};
-        sh_basis(sh_degree, direction, basis);
+        sh_basis(degree, direction, basis);
         WARPAGG_UNROLL
         for (int band = 0; band < 4; ++band) {
-            if (band > sh_degree) break;
+            if (band > degree) break;
             const int size = 2 * band + 1;
             WARPAGG_UNROLL
             for (int m = 0; m < size; ++m) {
@@ -168,7 +169,7 @@ struct project_backward {
                 if (band <= learned_sh_degree) put(sh_band(band), component, width, value, basis[k] * g);
             }
         }
-        const vec3<real> d = sh_gradient(sh_degree, direction, weight);
+        const vec3<real> d = sh_gradient(degree, direction, weight);
         return (d - direction * glm::dot(direction, d)) * sight.inverse_length;
     }
 

@@ -91,7 +91,20 @@ class renderer {
     template <class Sink>
     void backward(const Real* picture_gradient, float largest, gradient_policy policy, int learned_sh_degree,
                   const Sink& sink, visibility* seen) {
-        using device::stage;
+        const Real* sums = pixel_sums(picture_gradient, largest, policy);
+        device_.begin(device::stage::project_backward);
+        using narrow = typename Device::narrow_warp;
+        with_effects(effects_of(camera_), [&]<effect_set Effects> {
+            device_.template for_each_warp<narrow>(
+                (count_ + narrow::size - 1) / narrow::size,
+                project_backward<narrow, Real, Sink, Effects>{
+                    gaussians_, count_, for_device<value_t<narrow, Real>>(camera_), sh_degree_,
+                    learned_sh_degree, splats_.data(), tiles_.data(), sums, sink, seen, room()});
+        });
+    }
+
+    /// The first half of `backward`: by Gaussian that was drawn, what `project_backward` begins from.
+    const Real* pixel_sums(const Real* picture_gradient, float largest, gradient_policy policy) {
         const Real* sums = nullptr;
         with_policy<Real, Cut>(policy, [&]<class Kernel>(const Kernel& kernel) {
             if (backdrop_.planes == nullptr) {
@@ -103,15 +116,7 @@ class renderer {
                 throw error("a picture before a sky has no gradient by this way of adding up");
             }
         });
-        device_.begin(stage::project_backward);
-        using narrow = typename Device::narrow_warp;
-        with_effects(effects_of(camera_), [&]<effect_set Effects> {
-            device_.template for_each_warp<narrow>(
-                (count_ + narrow::size - 1) / narrow::size,
-                project_backward<narrow, Real, Sink, Effects>{
-                    gaussians_, count_, for_device<value_t<narrow, Real>>(camera_), sh_degree_,
-                    learned_sh_degree, splats_.data(), tiles_.data(), sums, sink, seen, room()});
-        });
+        return sums;
     }
 
     /// The blending's part of `backward` by this kernel, which is filled in. Returns its sums: see
@@ -136,6 +141,10 @@ class renderer {
     /// See `gradient_sums`.
     std::uint32_t* fault() const { return sums_.fault(); }
 
+    /// Of the last view, by Gaussian.
+    const splat<Real>* splats() const { return splats_.data(); }
+    /// In how many tiles it may be; zero if it is not drawn.
+    const std::uint32_t* tiles_of() const { return tiles_.data(); }
     const Real* picture() const { return picture_.data(); }
     /// What is left of light from behind all splats, by pixel of the last `forward`.
     const Real* transmittance() const { return transmittance_.data(); }

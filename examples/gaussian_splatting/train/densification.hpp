@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <vector>
 
 #include "../model/parameter_memory.hpp"
 #include "densify.hpp"
@@ -61,6 +64,33 @@ class densification {
         renew(of, count, sh_degree);
     }
 
+    /// Takes their bands, with the memory, from as many of `count` Gaussians as add up to at most `squares`
+    /// by their spreads, and gives them their mean colours: they come last then. None loses any if it would
+    /// be less than a tenth of those that have them. Waits for the device, once.
+    void drop_bands(trained_parameters<Device>& of, std::size_t count, int sh_degree,
+                    const colour_spread* spreads, double squares) {
+        begin(count, count);
+        device_.for_each_index(count,
+                               rate_bands{spreads, copies_.data(), urgency_.data(), gaussian_of_.data()});
+        device_.sort_pairs(urgency_, gaussian_of_, count);
+        std::vector<std::uint32_t> ascending(count);
+        device_.download(ascending.data(), urgency_.data(), count);
+        std::size_t without = 0;
+        for (double sum = 0; without < count; ++without) {
+            sum += static_cast<double>(std::bit_cast<float>(ascending[without]));
+            if (!(sum <= squares)) break;
+        }
+        const std::size_t banded = in_whole_blocks(count - without), before = of.values.banded();
+        if (banded + before / 10 > before) return;
+        device_.for_each_index(count - banded, drop_ranked{gaussian_of_.data(), copies_.data()});
+        device_.for_each_index(count, take_mean_colour{spreads, copies_.data(), of.values.write().sh[0]});
+        device_.prefix_sum(copies_, first_copy_, count);
+        device_.for_each_index(count, place_banded_first{count, copies_.data(), first_copy_.data(),
+                                                         origin_.data(), births_.data()});
+        carry_all(of, count, banded, sh_degree);
+        for (auto& s : spare_) s = buffer<float>();
+    }
+
   private:
     void begin(std::size_t count, std::size_t most) {
         for (auto* b : {&copies_, &large_, &urgency_, &gaussian_of_}) b->resize(count);
@@ -78,27 +108,35 @@ class densification {
         device_.copy(&tally_.data()->count, first_copy_.data() + count, 1);
         densify_tally tally;
         device_.download(&tally, tally_.data(), 1);
-        for (std::size_t p = 0; p < parameter_count; ++p)
-            if (has_parameter(p, sh_degree)) carry(of, p, tally.count);
-        spare_steps_.resize(tally.count);
-        device_.for_each_index(tally.count,
-                               carry_steps{origin_.data(), of.last_step.data(), spare_steps_.data()});
-        of.last_step.resize(tally.count);
-        device_.copy(of.last_step.data(), spare_steps_.data(), tally.count);
+        carry_all(of, tally.count, tally.count, sh_degree);
         return tally;
+    }
+
+    /// To `count` new Gaussians, of which the first `banded` have bands; bands of those without are zero.
+    void carry_all(trained_parameters<Device>& of, std::size_t count, std::size_t banded, int sh_degree) {
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            if (has_parameter(p, sh_degree)) carry(of, p, is_band(p) ? banded : count);
+        for (auto* all : {&of.values, &of.first, &of.second}) all->set_banded(banded);
+        spare_steps_.resize(count);
+        device_.for_each_index(count, carry_steps{origin_.data(), of.last_step.data(), spare_steps_.data()});
+        of.last_step.resize(count);
+        device_.copy(of.last_step.data(), spare_steps_.data(), count);
     }
 
     void carry(trained_parameters<Device>& of, std::size_t p, std::size_t count) {
         const std::size_t width = width_of(static_cast<parameter>(p)), n = in_whole_blocks(count) * width;
+        constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
         const std::array arrays{&of.values[p], &of.first[p], &of.second[p]};
         for (auto& s : spare_) s.resize(n);
         device_.for_each_index(n, carry_over{count,
+                                             is_band(p) ? of.values.banded() : all,
                                              origin_.data(),
                                              births_.data(),
                                              width,
                                              {arrays[0]->data(), arrays[1]->data(), arrays[2]->data()},
                                              {spare_[0].data(), spare_[1].data(), spare_[2].data()}});
         for (std::size_t k = 0; k < arrays.size(); ++k) {
+            if (n < arrays[k]->size()) *arrays[k] = buffer<float>();  // gives memory back
             arrays[k]->resize(n);
             device_.copy(arrays[k]->data(), spare_[k].data(), n);
         }

@@ -8,6 +8,7 @@
 #include "../raster/bits.hpp"
 #include "../raster/geometry.hpp"
 #include "../raster/project_backward.hpp"
+#include "colour_spread.hpp"
 #include "densify_rule.hpp"
 #include "random.hpp"
 
@@ -86,6 +87,48 @@ struct drop_ranked {
     WARPAGG_HD void operator()(std::size_t rank) const { copies[gaussian_of[rank]] = 0; }
 };
 
+/// How much it shows that a Gaussian has bands: one index a Gaussian. All keep them, so far.
+struct rate_bands {
+    const colour_spread* spreads;
+    std::uint32_t* keeps;
+    std::uint32_t* rating;  ///< sort key: the less it shows the smaller
+    std::uint32_t* identities;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        keeps[i] = 1;
+        rating[i] = spreads[i].squares > 0 ? raster::bits_of(spreads[i].squares) : 0;
+        identities[i] = static_cast<std::uint32_t>(i);
+    }
+};
+
+/// A Gaussian that loses its bands gets its mean colour, if it was seen: one index a Gaussian.
+struct take_mean_colour {
+    const colour_spread* spreads;
+    const std::uint32_t* keeps;
+    float* sh0;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        if (keeps[i] != 0 || !(spreads[i].weight > 0)) return;
+        for (std::size_t c = 0; c < 3; ++c)
+            sh0[place(i, c, 3)] = (spreads[i].mean[c] - 0.5f) / 0.28209479177387814f;  // see `sh_basis`
+    }
+};
+
+/// Puts Gaussians that keep their bands before those that do not, both in their order: one index a Gaussian.
+struct place_banded_first {
+    std::size_t count;
+    const std::uint32_t* keeps;
+    const std::uint64_t* first;  ///< how many before it keep them
+    std::uint32_t* origin;
+    birth* births;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        const std::uint64_t at = keeps[i] != 0 ? first[i] : first[count] + (i - first[i]);
+        origin[at] = static_cast<std::uint32_t>(i);
+        births[at] = kept;
+    }
+};
+
 /// Where each new Gaussian comes from: one index an old one.
 struct place_copies {
     const std::uint32_t* copies;
@@ -105,7 +148,8 @@ struct place_copies {
 /// Carries values and moments of one parameter over to the new Gaussians, in whole blocks: one index a new
 /// value. New ones begin without momentum.
 struct carry_over {
-    std::size_t count;  ///< of new Gaussians
+    std::size_t count;   ///< of new Gaussians that have the parameter: the first ones
+    std::size_t before;  ///< of old ones; the others' is zero
     const std::uint32_t* origin;
     const birth* births;
     std::size_t width;
@@ -114,7 +158,7 @@ struct carry_over {
 
     WARPAGG_HD void operator()(std::size_t i) const {
         const std::size_t gaussian = i / (block_length * width) * block_length + i % block_length;
-        const bool exists = gaussian < count,
+        const bool exists = gaussian < count && origin[gaussian] < before,
                    keeps = exists && (births[gaussian] == kept || births[gaussian] == original);
         const std::size_t source =
             exists ? place(origin[gaussian], i / block_length % width, width) : std::size_t{0};

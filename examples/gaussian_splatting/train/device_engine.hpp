@@ -12,6 +12,7 @@
 #include "../raster/renderer.hpp"
 #include "../scene/views.hpp"
 #include "adam.hpp"
+#include "colour_spread.hpp"
 #include "densification.hpp"
 #include "engine.hpp"
 #include "exposures.hpp"
@@ -251,8 +252,33 @@ class device_engine final : public engine {
 
     void set_sh_degree(int degree) override {
         for (auto* all : {&trained_.values, &trained_.first, &trained_.second})
-            all->change_sh_degree(device_, count_, sh_degree_, degree);
+            all->change_sh_degree(device_, sh_degree_, degree);
         sh_degree_ = degree;
+    }
+
+    std::size_t drop_bands(double change, gradient_policy how) override {
+        if (count_ == 0 || sh_degree_ == 0) return trained_.values.banded();
+        buffer<colour_spread> spreads;
+        buffer<float> ones;
+        spreads.resize(count_);
+        device_.zero(spreads.data(), count_);
+        std::size_t values = 0;
+        for (const photo& shot : train_.back()) {
+            draw(shot.camera, {}, sh_degree_);
+            device_.pause_times(true);
+            const std::size_t n = values_of(shot.camera);
+            ones.resize(n);
+            device_.for_each_index(n, make_one{ones.data()});
+            const float* sums = renderer_.pixel_sums(ones.data(), 1, how);
+            device_.for_each_index(
+                count_, note_colours{renderer_.splats(), renderer_.tiles_of(), sums, spreads.data()});
+            device_.pause_times(false);
+            values += n;
+        }
+        densification_.drop_bands(trained_, count_, sh_degree_, spreads.data(),
+                                  change * change * static_cast<double>(values));
+        begin_generation(count_);
+        return trained_.values.banded();
     }
 
     quality measure(std::size_t test_view, const std::array<float, 3>& background,

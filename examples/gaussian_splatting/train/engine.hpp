@@ -92,6 +92,12 @@ class engine {
     /// Colours depend on direction up to this degree from now on: bands above it go, with their memory, and
     /// new ones are zero.
     virtual void set_sh_degree(int degree) = 0;
+    /// Takes their bands, with the memory, from Gaussians whose colours hardly depend on direction, and gives
+    /// them their mean colours over the training views: as many as by `colour_spread` change these views'
+    /// pictures by a root mean square of at most `change`; none if it would be less than a tenth. Returns how
+    /// many have bands then. Gaussians change their places, and all have bands again after `densify` and
+    /// `prune`. Draws the training views, as small as `set_views` was asked for, and adds up by `how`.
+    virtual std::size_t drop_bands(double change, gradient_policy how) = 0;
     /// What test views are shown with from now on, one each; none: as `render` draws them, as after
     /// `set_views`.
     virtual void set_test_exposures(const std::vector<exposure>& all) = 0;

@@ -72,6 +72,8 @@ struct schedule {
     /// The iteration after which `share_to_prune` is dropped, when each of the training views has been seen
     /// about once since the last densification; 0 for none.
     int prune_after(int views) const;
+    /// The iteration after which the number of Gaussians stays.
+    int count_is_final_after(int views) const { return std::max(densify_until(), prune_after(views)); }
     bool watches(int iteration, int views) const {
         return iteration < densify_until() || iteration <= prune_after(views);
     }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include "../error.hpp"
 
@@ -127,6 +128,7 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     train_result result;
     const int views = static_cast<int>(scene.train.size());
     const int review_after = schedule.bands_are_known_after();  // once, whatever comes of it
+    int drop_bands_after = std::max(review_after, schedule.count_is_final_after(views));
     const bool exposes = !options.exposures.empty();
     if (exposes) engine.set_exposures(options.exposures);
     engine.take_findings();  // of steps that are not ours
@@ -160,7 +162,8 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
 
         const bool prunes = iteration == schedule.prune_after(views);
         const bool reviews = options.review_bands && iteration == review_after;
-        if (schedule.densifies(iteration) || prunes || reviews || iteration % reserve_every == 0) {
+        if (schedule.densifies(iteration) || prunes || reviews || iteration == drop_bands_after ||
+            iteration % reserve_every == 0) {
             engine.wait();
             const auto from = clock::now();
             if (schedule.densifies(iteration))
@@ -169,9 +172,15 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
                              engine.densify(rule_at(iteration, schedule, options, engine.count())));
             if (prunes) engine.prune(schedule.share_to_prune());
             if (reviews) {
-                schedule.sh_degree = options.review_bands(schedule.sh_degree);
+                const int before =
+                    std::exchange(schedule.sh_degree, options.review_bands(schedule.sh_degree));
                 engine.set_sh_degree(schedule.sh_degree);
+                if (schedule.sh_degree > before)  // new ones have their time first
+                    drop_bands_after = std::max(drop_bands_after, iteration + schedule.sh_degree_interval);
             }
+            if (options.band_change && schedule.sh_degree > 0 && iteration == drop_bands_after &&
+                iteration < schedule.iterations)
+                result.banded = engine.drop_bands(*options.band_change, options.gradient);
             engine.reserve();
             result.densify_seconds += seconds_since(from);
         }

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -34,6 +35,10 @@ struct train_options {
     /// Asked half-way, with the degree so far, up to which colours are to depend on direction from then on;
     /// may be none, and the schedule's stays.
     std::function<int(int sh_degree)> review_bands;
+    /// By what training views may change when Gaussians whose colours hardly depend on direction lose their
+    /// bands, see `engine::drop_bands`; none: they do not. That is when there are no new ones any more, and
+    /// bands have been reviewed and have had their time.
+    std::optional<double> band_change;
     std::set<int> save_iterations;
     std::set<int> test_iterations;
 };
@@ -54,6 +59,7 @@ struct train_result {
     std::uint64_t left_out_sums = 0;       ///< steps where one did not fit in fixed point
     std::uint64_t silent_gaussians = 0;    ///< the most at any densification: see `engine::densify`
     int sh_degree = 0;                     ///< up to which colours depend on direction in the end
+    std::optional<std::size_t> banded;     ///< Gaussians whose colours do, where others have no bands
     std::vector<exposure> exposures;       ///< of the training photos, if they have any
 };
 
