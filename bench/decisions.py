@@ -22,11 +22,15 @@ from scenes import by
 
 WORLDS = ["spheres", "alpha"]
 BACKGROUND = "background"
-CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales", "sky": "sky", "masks": "passers", "lens": "fisheye"}
+CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales", "sky": "sky", "masks": "passers", "depth": "depths",
+          "lens": "fisheye"}
 EFFECTS = [*CAUSES, BACKGROUND]
-PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"passers": 0.1}, {"fisheye": 60}, {"noise": 0.03}]
+PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"passers": 0.1}, {"depths": 0.05}, {"depths": 2}, {"fisheye": 60},
+        {"noise": 0.03}]
 SKYLESS = "alpha"  # what no surface hides is transparent there
-MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "sky": (0.3, 1), "passers": (0.05, 0.2)}
+RIGHT_DEPTHS = 0.05  # of what has more noise nobody can tell what is nearer
+MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "sky": (0.3, 1), "passers": (0.05, 0.2),
+         "depths": (0.01, 0.02)}
 
 
 def synthetic(kind, world, parameters):
@@ -34,6 +38,7 @@ def synthetic(kind, world, parameters):
     parameters = {name: value for name, value in parameters.items() if name != "sky" or world != SKYLESS}
     given = [f"{name}={value:g}" for name, value in parameters.items() if value]
     truth = {effect: bool(parameters.get(cause)) for effect, cause in CAUSES.items()}
+    truth["depth"] = truth["depth"] and parameters["depths"] <= RIGHT_DEPTHS
     return {"kind": kind, "scene": "synthetic:" + ",".join([world, *given]), "noise": parameters.get("noise", 0),
             "truth": {**truth, BACKGROUND: world == "alpha"}}
 

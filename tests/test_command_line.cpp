@@ -485,7 +485,7 @@ TEST_CASE("inspect says what a scene calls for, and writes it") {
     CAPTURE(o.err);
     CHECK(o.code == 0);
     const auto json = nlohmann::json::parse(read_file(file));
-    REQUIRE(json.at("effects").size() == 6);
+    REQUIRE(json.at("effects").size() == 7);
     for (const auto& effect : json.at("effects")) {
         const auto name = effect.at("name").get<std::string>();
         CHECK(effect.at("called_for").get<bool>() == (name == "direction" || name == "exposure"));
@@ -830,6 +830,7 @@ TEST_CASE("train simulates what the scene calls for, or what it is told, and say
                                              {"antialiasing", true},
                                              {"sky", false},
                                              {"masks", false},
+                                             {"depth", false},
                                              {"background", false}});
     const json found = read_json(folder / "auto/exposures.json");
     CHECK(found.at("train").size() == 40);
@@ -847,6 +848,7 @@ TEST_CASE("train simulates what the scene calls for, or what it is told, and say
                                                                              {"antialiasing", true},
                                                                              {"sky", false},
                                                                              {"masks", false},
+                                                                             {"depth", false},
                                                                              {"background", false}});
     CHECK(!fs::exists(folder / "some/exposures.json"));
     CHECK(!read_json(folder / "some/metrics.json").contains("fitted_psnr"));

@@ -43,6 +43,9 @@ TEST_CASE("a scene calls for what it was made with, and for nothing else") {
         {"spheres,passers=0.1", {"masks"}},
         {"spheres,fisheye=60,gloss=0.6,sky=0.8", {"lens", "direction", "sky"}},
         {"alpha,fisheye=60", {"lens", "background"}},
+        {"spheres,depths=0.05,noise=0.01", {"depth"}},
+        {"spheres,depths=2", {}},
+        {"alpha,depths=0,exposure=0.3,passers=0.1", {"depth", "exposure", "masks", "background"}},
         {"alpha", {"background"}},
         {"alpha,gloss=0.6,exposure=0.3,passers=0.1", {"direction", "exposure", "masks", "background"}}};
     for (const auto& c : cases) {
@@ -93,7 +96,8 @@ TEST_CASE("a scene without points is not told what it needs") {
     const auto found = decide(gather(scene));
     for (const decision& d : found) {
         INFO(d.name);
-        CHECK(d.called_for.has_value() == (d.name == "background" || d.name == "masks" || d.name == "lens"));
+        const std::set<std::string> of_files = {"background", "masks", "depth", "lens"};
+        CHECK(d.called_for.has_value() == of_files.contains(d.name));
     }
     CHECK(sh_degree(gather(scene)) == 3);
     // With points of which next to none tells there is nothing to tell it by, and with a few more there is.
@@ -165,6 +169,58 @@ TEST_CASE(
     CHECK(std::sqrt(square) < 0.01);
 }
 
+TEST_CASE(
+    "a line through values and inverse depths is found behind outliers, and is not flattened by noise") {
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    std::vector<depth_pair> pairs;
+    for (int i = 0; i < 2000; ++i) {
+        const double inverse = 0.2 + 0.05 * normal(random);
+        pairs.push_back({1000 + 40000 * (inverse + 0.03 * normal(random)), inverse});
+        if (i % 20 == 0) pairs.back().inverse_depth = 2;
+    }
+    const depth_line line = fit_line(pairs);
+    CHECK(line.scale == doctest::Approx(1 / 40000.0).epsilon(0.1));
+    CHECK(line.scale * (1000 + 40000 * 0.2) + line.offset == doctest::Approx(0.2).epsilon(0.02));
+    CHECK(line.correlation > 0.6);
+    for (depth_pair& p : pairs) p.value = 1000 * normal(random);
+    CHECK(std::abs(fit_line(pairs).correlation) < 0.1);
+    for (depth_pair& p : pairs) p.value = 7;
+    CHECK(fit_line(pairs).correlation == 0);
+}
+
+TEST_CASE("depth maps become the inverse depths of what photos show, and wrong ones are not used") {
+    gs::scene scene = made("spheres,views=6,depths=0.01");
+    scene.train[0].depths = {};
+    for (std::uint16_t& x : scene.train[1].depths.values) x = static_cast<std::uint16_t>(65535 - x);
+    scene.train[2].depths.values.assign(scene.train[2].depths.values.size(), 0);
+    const depth_evidence found = compare_depths(scene);
+    CHECK(found.photos == 6);
+    CHECK(found.with_map == 5);
+    CHECK(found.told == 4);
+    CHECK(found.agreeing == 3);
+    CHECK(found.correlation > 0.95);
+    for (std::size_t v = 0; v < 6; ++v) {
+        CAPTURE(v);
+        const gs::view& photo = scene.train[v];
+        CHECK((found.fits[v].scale > 0) == (v > 2));
+        if (v <= 2) continue;
+        std::vector<double> off;
+        for (const place_in_photo& p : points_in_sight(photo.camera, scene.points)) {
+            const auto i =
+                static_cast<std::size_t>(static_cast<int>(p.y) * photo.depths.width + static_cast<int>(p.x));
+            off.push_back(std::abs(static_cast<double>(found.fits[v].scale) * photo.depths.values[i] +
+                                   static_cast<double>(found.fits[v].offset) - 1 / p.depth) *
+                          p.depth);
+        }
+        std::ranges::nth_element(off, off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2));
+        CHECK(off[off.size() / 2] < 0.015);
+    }
+    CHECK(*decide(gather(scene))[5].called_for);
+    scene.points.clear();
+    CHECK_FALSE(decide(gather(scene))[5].called_for);
+}
+
 TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
     const auto refusal = [](const std::string& text) -> std::string {
         try {
@@ -177,14 +233,19 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
     CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
     CHECK(refusal("spheres,glos=0.5") ==
           "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
-          "sky, fisheye, noise");
+          "sky, fisheye, depths, points, views, noise");
     CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
     CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
     CHECK(refusal("spheres,") ==
           "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
-          "sky, fisheye, noise");
+          "sky, fisheye, depths, points, views, noise");
     CHECK(refusal("spheres,gloss=nan") ==
           "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
+    CHECK(refusal("spheres,views=4,depths=0") == "");
+    CHECK(refusal("spheres,views=4.5") ==
+          "the 'views' of a synthetic scene is a whole number from 1 to 48, not '4.5'");
+    CHECK(refusal("spheres,depths=-1") ==
+          "the 'depths' of a synthetic scene is a number from 0 to 10, not '-1'");
     CHECK(refusal("spheres,gloss=0,gloss=1") ==
           "a synthetic scene has one 'gloss', not several: spheres,gloss=0,gloss=1");
 }

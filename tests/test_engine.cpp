@@ -254,8 +254,36 @@ TEST_CASE("a picture too large to be numbered is refused") {
     }
 }
 
+TEST_CASE("what a photo has no depth map for, or one that does not agree, is learnt as if there were none") {
+    gs::scene scene = small_scene("synthetic:spheres,depths=0");
+    scene.train[1].depths = {};
+    const std::vector<gs::depth_fit> none(scene.train.size()), fits(scene.train.size(), {1e-5f, 0});
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test, 1);
+        const auto after = [&](std::size_t view, float weight, const std::vector<gs::depth_fit>& all,
+                               int downscales) {
+            e->set_depth_fits(all);
+            e->set_model(gs::from_points(scene.points, 0, 3000, 1));
+            e->set_downscales(downscales);
+            e->reserve();
+            gs::train::step_plan plan = plan_for(view);
+            plan.gradient = gs::gradient_policy::fixed;
+            plan.depth_weight = weight;
+            e->step(plan);
+            return e->get_model();
+        };
+        for (const int downscales : {0, 1}) {
+            CAPTURE(downscales);
+            CHECK(same(after(1, 1, fits, downscales), after(1, 0, fits, downscales)));
+            CHECK(same(after(0, 1, none, downscales), after(0, 0, fits, downscales)));
+            CHECK_FALSE(same(after(0, 1, fits, downscales), after(0, 0, fits, downscales)));
+        }
+    }
+}
+
 TEST_CASE("a step whose lists do not fit changes nothing, and is counted") {
-    const gs::scene scene = small_scene();
+    const gs::scene scene = small_scene("synthetic:spheres,depths=0");
     const gaussians small = gs::from_points(scene.points, 0, 1, 1);
     gaussians large = gs::from_points(scene.points, 0, 3000, 1);
     for (float& s : large.log_scale)
@@ -266,11 +294,14 @@ TEST_CASE("a step whose lists do not fit changes nothing, and is counted") {
         e->set_model(small);
         e->reserve();
         e->set_model(large);
-        e->step(plan_for(0));
+        e->set_depth_fits(std::vector<gs::depth_fit>(scene.train.size(), {1e-5f, 0}));
+        gs::train::step_plan plan = plan_for(0);
+        plan.depth_weight = 1;
+        e->step(plan);
         CHECK(e->skipped_steps() == 1);
         CHECK(same(e->get_model(), large));
         e->reserve();
-        e->step(plan_for(0));
+        e->step(plan);
         CHECK(e->skipped_steps() == 1);
         CHECK_FALSE(same(e->get_model(), large));
     }

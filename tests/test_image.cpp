@@ -294,6 +294,44 @@ class captured_stderr {
 
 }  // namespace
 
+TEST_CASE("one channel is read in 16 bit, whatever the file has, and several are refused") {
+    const temporary_folder folder;
+    const auto file = folder / "depths.png";
+    for (const int depth : {1, 2, 4, 8, 16})
+        for (const bool interlaced : {false, true}) {
+            CAPTURE(depth);
+            const png_kind grey{PNG_COLOR_TYPE_GRAY, depth, interlaced, false};
+            const auto samples = random_samples(grey, 13, 7);
+            write_any_png(file, grey, 13, 7, samples);
+            int width = 0, height = 0;
+            const std::vector<std::uint16_t> values = gs::read_grey_png(file, width, height);
+            CHECK(std::pair{width, height} == std::pair{13, 7});
+            REQUIRE(values.size() == samples.size());
+            const unsigned spread = 65535 / ((1U << depth) - 1U);
+            for (std::size_t i = 0; i < samples.size(); ++i) CHECK(values[i] == spread * samples[i]);
+        }
+    for (const int colour_type : {PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA}) {
+        const png_kind kind{colour_type, 8, false, false};
+        write_any_png(file, kind, 13, 7, random_samples(kind, 13, 7));
+        CHECK(says(error_of([&] { gs::read_depth_map(file, 13, 7); }), {"depths.png", "one channel"}));
+    }
+    write_jpeg(file, 13, 7, JCS_GRAYSCALE, smooth_samples(13, 7, 1));
+    CHECK(says(error_of([&] { gs::read_depth_map(file, 13, 7); }), {"depths.png", "no PNG"}));
+}
+
+TEST_CASE("a depth map of another size is averaged over what it knows") {
+    const gs::depth_map map{4, 2, {10, 20, 0, 0, 30, 40, 0, 8}};
+    CHECK(gs::resized(map, 2, 1).values == std::vector<std::uint16_t>{25, 0});
+    CHECK(gs::resized(map, 4, 1).values == std::vector<std::uint16_t>{20, 30, 0, 8});
+    const gs::depth_map larger = gs::resized(map, 8, 6);
+    CHECK(std::pair{larger.width, larger.height} == std::pair{8, 6});
+    for (std::size_t y = 0; y < 6; ++y)
+        for (std::size_t x = 0; x < 8; ++x)
+            CHECK(larger.values[8 * y + x] == map.values[4 * (y / 3) + x / 2]);
+    CHECK(gs::resized({3, 1, {30, 60, 90}}, 2, 1).values == std::vector<std::uint16_t>{40, 80});
+    CHECK_FALSE(gs::resized({}, 2, 1).is_there());
+}
+
 TEST_CASE("what write_png writes, read_image reads") {
     const temporary_folder folder;
     const int width = 17, height = 16, plane = width * height;

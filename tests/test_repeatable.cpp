@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "device/cpu.hpp"
+#include "effects/depth_evidence.hpp"
 #include "effects/review_bands.hpp"
 #include "engines.hpp"
 #include "error.hpp"
@@ -33,6 +34,7 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene, gs::gradient
     model.antialiased = true;
     if (gs::knows_skies(how)) model.sky.assign(gs::sky_width, 0.0f);
     o.exposures.assign(scene.train.size(), gs::train::unexposed);
+    o.depth_fits = gs::effects::compare_depths(scene).fits;
     o.review_bands = [&](int degree) { return gs::effects::review_bands(e, scene, {}, degree).sh_degree; };
     o.band_change = 0.005;
     e.set_model(model);
@@ -49,7 +51,7 @@ bool are_the_same(const gs::gaussians& a, const gs::gaussians& b) {
 }  // namespace
 
 TEST_CASE("sums whose order does not show make training repeatable, with any number of threads") {
-    const gs::scene scene = small_scene();
+    const gs::scene scene = small_scene("synthetic:spheres,depths=0.02");
     const int threads = omp_get_max_threads();
     for (const auto make : engines())
         for (const auto how :

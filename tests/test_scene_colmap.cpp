@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
+#include <png.h>
 
 #include <array>
 #include <cmath>
@@ -16,6 +17,7 @@
 #include "scene/colmap.hpp"
 #include "scene/mask.hpp"
 #include "scene/scene.hpp"
+#include "scene/views.hpp"
 #include "temporary_folder.hpp"
 
 namespace {
@@ -710,6 +712,102 @@ TEST_CASE("masks leave out where they are black, in photos that were bent and sh
     }
 }
 
+namespace {
+
+/// Of one channel and 16 bit.
+void write_grey(const std::filesystem::path& file, int width, int height,
+                const std::vector<std::uint16_t>& values) {
+    std::filesystem::create_directories(file.parent_path());
+    png_image grey{};
+    grey.version = PNG_IMAGE_VERSION;
+    grey.width = static_cast<png_uint_32>(width);
+    grey.height = static_cast<png_uint_32>(height);
+    grey.format = PNG_FORMAT_LINEAR_Y;
+    REQUIRE(png_image_write_to_file(&grey, file.c_str(), 0, values.data(), 0, nullptr) != 0);
+}
+
+}  // namespace
+
+TEST_CASE("depth maps come with their photos, bent and shrunk as these, and some photos have none") {
+    for (const double bent : {0.0, 0.1}) {
+        CAPTURE(bent);
+        const distorted_case lens = radial(-bent, bent / 2);
+        const gs::camera c = intrinsics_of(lens.camera);
+        const temporary_folder folder;
+        model_record model;
+        model.cameras = {lens.camera};
+        for (const char* name : {"a.jpg", "b.png", "c.png"})
+            model.images.push_back({{1, 0, 0, 0}, {0, 0, 0}, 1, name, {}});
+        model.points = {{{0, 0, 1}, {1, 2, 3}, 0}};
+        write_binary(folder / "sparse/0", model);
+        // Bright above, dark below, not known at the left; photos are as the maps.
+        const auto write = [&](int width, int height) {
+            std::vector<std::uint16_t> values;
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x)
+                    values.push_back(4 * x < width ? 0 : 2 * y < height ? 60000 : 257);
+            write_grey(folder / "depths/a.png", width, height, values);
+        };
+        for (const char* name : {"a.jpg", "b.png", "c.png"}) {
+            std::vector<float> planes;
+            for (int plane = 0; plane < 3; ++plane)
+                for (int y = 0; y < c.height; ++y)
+                    for (int x = 0; x < c.width; ++x) planes.push_back(2 * y < c.height ? 1.0f : 0.0f);
+            std::filesystem::create_directories(folder / "images");
+            gs::write_png(folder / "images" / name, c.width, c.height, planes);
+        }
+        auto options = options_for(folder.path());
+        for (const int smaller : {1, 3})
+            for (const int resolution : {1, 2, 4}) {
+                CAPTURE(smaller);
+                CAPTURE(resolution);
+                write(c.width / smaller, c.height / smaller);
+                options.resolution = resolution;
+                std::string said;
+                const gs::scene scene =
+                    gs::load_scene(options, [&](const std::string& line) { said += line; });
+                CHECK(says(said, {"1 photo of 3 has a depth map"}));
+                const gs::view& first = scene.train[0];
+                REQUIRE(first.depths.is_there());
+                CHECK_FALSE(scene.train[1].depths.is_there());
+                CHECK(first.depths.width == first.pixels.width);
+                REQUIRE(first.depths.values.size() == first.pixels.rgba.size() / 4);
+                std::size_t wrong = 0, known = 0;
+                for (std::size_t i = 0; i < first.depths.values.size(); ++i) {
+                    const int value = first.depths.values[i], grey = first.pixels.rgba[4 * i];
+                    known += value != 0;
+                    if (value != 0 && (grey == 0 || grey == 255)) wrong += (value > 30000) != (grey > 127);
+                }
+                CHECK(wrong <= first.depths.values.size() / 20);  // where a map is coarser than its photo
+                CHECK(static_cast<double>(known) / static_cast<double>(first.depths.values.size()) ==
+                      doctest::Approx(0.75).epsilon(0.1));
+                const gs::view half = gs::shrunk(first, 2);
+                CHECK(half.depths.width == half.pixels.width);
+                CHECK(half.depths.values.size() == half.pixels.rgba.size() / 4);
+            }
+        options.resolution = 1;
+        options.depths = false;
+        CHECK_FALSE(gs::load_scene(options, ignore).train[0].depths.is_there());
+        options.depths = true;
+        write(c.width, c.height / 2);
+        CHECK(says(error_of_loading(options), {"depths/a.png", "another shape"}));
+        gs::write_png(folder / "depths/a.png", 1, 1, {0, 0, 0});
+        CHECK(says(error_of_loading(options), {"depths/a.png", "more than one channel"}));
+        write_file(folder / "depths/a.png", "no map");
+        CHECK(says(error_of_loading(options), {"depths/a.png"}));
+    }
+}
+
+TEST_CASE("a mask leaves out of a depth map what it leaves out of its photo") {
+    gs::image photo{2, 1, {9, 9, 9, 255, 9, 9, 9, 255}};
+    photo.leave_out(1);
+    gs::depth_map depths{2, 1, {7, 8}}, none;
+    gs::forget_left_out(photo, depths);
+    gs::forget_left_out(photo, none);
+    CHECK(depths.values == std::vector<std::uint16_t>{7, 0});
+    CHECK_FALSE(none.is_there());
+}
+
 TEST_CASE("a mask has its photo's name, in its own folder") {
     const temporary_folder folder;
     const auto masks = folder / "masks";
@@ -717,13 +815,13 @@ TEST_CASE("a mask has its photo's name, in its own folder") {
         std::filesystem::create_directories((folder / name).parent_path());
         write_file(folder / name, "");
     }
-    CHECK(gs::mask_of(masks, "x.jpg") == masks / "x.jpg.png");
-    CHECK(gs::mask_of(masks, "x.JPG") == masks / "x.png");
-    CHECK(gs::mask_of(masks, "sub/y.jpeg") == masks / "sub/y.png");
-    CHECK(gs::mask_of(masks, "y.jpeg").empty());
-    CHECK(gs::mask_of(masks, "").empty());
-    CHECK(gs::mask_of(masks, "../images/z.png").empty());
-    CHECK(gs::mask_of(masks, (folder / "images/z.png").string()).empty());
+    CHECK(gs::beside_photo(masks, "x.jpg") == masks / "x.jpg.png");
+    CHECK(gs::beside_photo(masks, "x.JPG") == masks / "x.png");
+    CHECK(gs::beside_photo(masks, "sub/y.jpeg") == masks / "sub/y.png");
+    CHECK(gs::beside_photo(masks, "y.jpeg").empty());
+    CHECK(gs::beside_photo(masks, "").empty());
+    CHECK(gs::beside_photo(masks, "../images/z.png").empty());
+    CHECK(gs::beside_photo(masks, (folder / "images/z.png").string()).empty());
 }
 
 TEST_CASE("every n-th view by name is held out, from the first") {

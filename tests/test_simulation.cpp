@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../examples/gaussian_splatting/device/cpu.hpp"
+#include "../examples/gaussian_splatting/effects/depth_evidence.hpp"
 #include "../examples/gaussian_splatting/effects/review_bands.hpp"
 #include "../examples/gaussian_splatting/effects/simulate.hpp"
 #include "../examples/gaussian_splatting/error.hpp"
@@ -18,6 +19,7 @@
 #include "../examples/gaussian_splatting/evaluate/test_exposures.hpp"
 #include "../examples/gaussian_splatting/evaluate/test_views.hpp"
 #include "../examples/gaussian_splatting/model/initialise.hpp"
+#include "../examples/gaussian_splatting/train/depth_gradient.hpp"
 #include "../examples/gaussian_splatting/train/exposures.hpp"
 #include "../examples/gaussian_splatting/train/sky.hpp"
 #include "../examples/gaussian_splatting/train/trainer.hpp"
@@ -60,7 +62,7 @@ TEST_CASE("what is simulated is what the scene calls for, or what was said") {
     CHECK(matte.reviews_bands);
     CHECK(matte.exposures.empty());
     CHECK_FALSE(matte.antialiasing);
-    REQUIRE(matte.outcomes.size() == 5);
+    REQUIRE(matte.outcomes.size() == 6);
     for (const auto& o : matte.outcomes) CHECK_FALSE(o.on);
     CHECK(matte.outcomes[1].reason.find("brighter or darker") != std::string::npos);
 
@@ -80,7 +82,7 @@ TEST_CASE("what is simulated is what the scene calls for, or what was said") {
     CHECK(simulated(spheres, "all").exposures == std::vector<float>(48, 1.0f));
     CHECK_FALSE(simulated(spheres, "all").reviews_bands);
     CHECK(simulated(glossy, "none").sh_degree == 0);
-    CHECK(simulated(spheres, "+direction,-exposure,-antialiasing,-sky,-masks").sh_degree == 3);
+    CHECK(simulated(spheres, "+direction,-exposure,-antialiasing,-sky,-masks,-depth").sh_degree == 3);
     const simulation listed = simulated(spheres, "exposure,direction");
     CHECK_FALSE(listed.exposures.empty());
     CHECK(listed.sh_degree == 3);
@@ -88,7 +90,7 @@ TEST_CASE("what is simulated is what the scene calls for, or what was said") {
     CHECK(simulated(glossy, "auto", 1).sh_degree == 1);
     CHECK_FALSE(simulated(glossy, "auto", 0).outcomes[0].on);
     const simulation settled =
-        simulated(spheres, "auto,-exposure,-antialiasing,-sky,-masks", 2);  // nothing to look for
+        simulated(spheres, "auto,-exposure,-antialiasing,-sky,-masks,-depth", 2);  // nothing to look for
     CHECK(settled.sh_degree == 2);
     CHECK_FALSE(settled.reviews_bands);
     CHECK(settled.outcomes[0].reason == "--sh-degree 2");
@@ -105,6 +107,21 @@ TEST_CASE("what is simulated is what the scene calls for, or what was said") {
     const simulation masked = simulated(made("spheres,passers=0.1"), "auto");
     CHECK(masked.outcomes[4].on);
     CHECK(masked.outcomes[4].reason.starts_with("48 of 48 photos have masks, which leave out "));
+
+    CHECK(simulated(spheres, "all").outcomes[5].reason == "no training photo has a depth map");
+    CHECK(simulated(spheres, "all").depth_fits.empty());
+    const gs::scene estimated = made("spheres,views=4,points=1000,depths=0.02");
+    CHECK(simulated(estimated, "none").depth_fits.empty());
+    for (const char* text : {"auto", "depth"}) {
+        const simulation deep = simulated(estimated, text);
+        CHECK(deep.outcomes[5].on);
+        REQUIRE(deep.depth_fits.size() == 4);
+        for (const gs::depth_fit& fit : deep.depth_fits) CHECK(fit.scale > 0);
+    }
+    const simulation wrong = simulated(made("spheres,views=4,depths=10"), "all");
+    CHECK_FALSE(wrong.outcomes[5].on);
+    CHECK(wrong.outcomes[5].reason.starts_with(
+        "4 of 4 photos have depth maps, of which 0 agree with the points; the median correlation is "));
 }
 
 TEST_CASE("a selection of effects that is none is refused") {
@@ -114,11 +131,13 @@ TEST_CASE("a selection of effects that is none is refused") {
         CHECK(refusal(text) == "");
     }
     CHECK(refusal("glare") ==
-          "--effects: there is no effect 'glare'; there are direction, exposure, antialiasing, sky, masks");
-    CHECK(parse_selection("auto").takes_masks());
-    CHECK(parse_selection("masks").takes_masks());
-    CHECK_FALSE(parse_selection("none").takes_masks());
-    CHECK_FALSE(parse_selection("all,-masks").takes_masks());
+          "--effects: there is no effect 'glare'; there are direction, exposure, antialiasing, sky, masks, "
+          "depth");
+    CHECK(parse_selection("auto").takes(effect::masks));
+    CHECK(parse_selection("masks").takes(effect::masks));
+    CHECK_FALSE(parse_selection("none").takes(effect::masks));
+    CHECK_FALSE(parse_selection("all,-masks").takes(effect::masks));
+    CHECK(parse_selection("all,-masks").takes(effect::depth));
     for (const char* text : {"auto,exposure", "exposure,+direction", "exposure,auto", ""}) {
         CAPTURE(text);
         CHECK(refusal(text).starts_with("--effects"));
@@ -274,6 +293,53 @@ TEST_CASE("behind a scene a sky is learnt, where no surface is") {
             CHECK_NOTHROW(e->step(plan));
         else
             CHECK_THROWS_WITH_AS(e->step(plan), doctest::Contains("before a sky"), gs::error);
+    }
+}
+
+TEST_CASE("an inverse depth is drawn to what its map says, and to nothing that it does not know") {
+    const std::vector<float> drawn{0.2f, 0.4f, 0.3f, 0.3f, 0.1f};
+    const std::vector<std::uint16_t> map{100, 100, 100, 0, 1};  // 0.3, and below zero
+    std::vector<float> gradient(15, 7.0f);
+    const gs::train::depth_gradient kernel{drawn.data(), map.data(), {0.004f, -0.1f},
+                                           0.5f,         5,          gradient.data()};
+    for (std::size_t i = 0; i < 5; ++i) kernel(i);
+    CHECK(gradient[0] == -0.5f);
+    CHECK(gradient[1] == 0.5f);
+    CHECK(std::abs(gradient[2]) <= 0.5f);
+    CHECK(gradient[3] == 0);
+    CHECK(gradient[4] == 0.5f);
+    for (std::size_t i = 5; i < 15; ++i) CHECK(gradient[i] == 0);
+}
+
+TEST_CASE("with depth maps, few photos with few points make a better scene") {
+    for (const auto make : engines()) {
+        double gain = 0;
+        for (const std::uint64_t seed : {0, 1}) {
+            gs::load_options from;
+            from.data = "synthetic:spheres,views=4,points=300,depths=0.02";
+            from.resolution = 48;
+            from.eval = true;
+            from.seed = seed;
+            const gs::scene scene = gs::load_scene(from, {});
+            const auto psnr_with = [&](const std::vector<gs::depth_fit>& fits) {
+                const auto e = make();
+                gs::train::train_options o;
+                o.schedule.iterations = 1500;
+                o.schedule.sh_degree = 0;
+                o.max_cap = 4000;
+                o.seed = seed;
+                o.depth_fits = fits;
+                e->set_views(scene.train, scene.test, o.schedule.num_downscales);
+                e->set_model(gs::from_points(scene.points, 0, 4000, seed));
+                gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
+                return gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr();
+            };
+            const depth_evidence found = compare_depths(scene);
+            CHECK(found.agreeing >= 3);
+            gain += psnr_with(found.fits) / 2 - psnr_with({}) / 2;
+        }
+        MESSAGE("depth maps bring " << gain << " dB");
+        CHECK(gain > 0.3);
     }
 }
 

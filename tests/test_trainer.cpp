@@ -56,6 +56,7 @@ class recorder final : public gs::train::engine {
     void set_exposures(const std::vector<gs::train::exposure>&) override {}
     void set_test_exposures(const std::vector<gs::train::exposure>&) override {}
     void centre_exposures() override {}
+    void set_depth_fits(const std::vector<gs::depth_fit>&) override {}
     std::vector<std::size_t> cleared_after;  ///< so many steps
     void clear_cameras() override { cleared_after.push_back(steps.size()); }
     void reserve() override { sizes_reserved.push_back(downscales_); }

@@ -28,6 +28,8 @@ struct question {
     gs::view view;
     std::array<float, 3> background{};
     std::vector<double> backdrop;  ///< three planes behind all, in place of the background; or none
+    /// Of what the loss has beside: the sum of the inverse depths, each times this, one a pixel; or none.
+    std::vector<double> depth_weights;
     gradient_policy policy = gradient_policy::split;
     std::vector<double> weights;  ///< of the loss's gradient, one a pixel; none for 1 everywhere
     /// The picture at which the loss's gradient is taken; none for the one that is drawn.

@@ -123,6 +123,7 @@ TEST_CASE("the reference's gradients are those of central differences") {
         q.effects.antialiasing = seed / 4 % 2 == 1;
         if (seed / 8 % 2 == 1) add_backdrop(q, static_cast<unsigned>(seed));
         if (seed / 16 % 2 == 1) take_fisheye(q, static_cast<unsigned>(seed));
+        if (seed / 32 % 2 == 1) add_depths(q, static_cast<unsigned>(seed));
         if (seed % 10 == 3)  // capped alphas, and pixels that end early
             for (double& o : q.parameters[3]) o += 6;
         std::vector<std::size_t> some(splats);

@@ -38,7 +38,8 @@ class pictures_on {
         gs::train::photometric<Device, Real> photometric{device};
         parameters values, gradients;
         buffer<std::uint8_t> photo;
-        buffer<Real> backdrop;
+        buffer<Real> backdrop, by_depths;
+        double depth_loss = 0;
 
         void draw(const question& q) {
             for (std::size_t p = 0; p < gs::parameter_count; ++p) {
@@ -53,12 +54,31 @@ class pictures_on {
             const std::uint64_t needed = renderer.instances();
             renderer.reserve_instances(needed, needed / 2 + 64);
             if (!q.backdrop.empty()) on.put(backdrop, q.backdrop);
-            renderer.forward(model, q.count(), camera, q.sh_degree, q.background,
-                             q.backdrop.empty() ? nullptr : backdrop.data());
+            renderer.list(model, q.count(), camera, q.sh_degree);
+            if (!q.depth_weights.empty()) draw_depths(q);
+            renderer.blend(q.background, q.backdrop.empty() ? nullptr : backdrop.data());
             on.put_bytes(photo, q.view.pixels.rgba);
             photometric.set_photo(photo.data(), camera.width, camera.height, q.background);
         }
+
+        void draw_depths(const question& q) {
+            renderer.blend_depths();
+            const std::vector<double> inverse = on.get(renderer.picture(), q.pixels());
+            std::vector<double> weights = q.depth_weights;
+            for (std::size_t i = 0; i < q.pixels(); ++i) {
+                if (!q.weights.empty()) weights[i] *= q.weights[i];
+                depth_loss += weights[i] * inverse[i];
+            }
+            weights.resize(3 * q.pixels());
+            on.put(by_depths, weights);
+            renderer.backward_depths(by_depths.data(), largest_gradient(q), q.policy);
+        }
     };
+
+    /// Of a pixel, by picture and inverse depth.
+    static float largest_gradient(const question& q) {
+        return (q.weights.empty() ? 1 : largest_of(q.weights)) / static_cast<float>(q.pixels());
+    }
 
   public:
     static answer ask(const question& q) {
@@ -69,10 +89,8 @@ class pictures_on {
         if (!q.gradient_at.empty()) s.on.put(given, q.gradient_at);
         const Real* by_picture = s.photometric.gradient(
             q.gradient_at.empty() ? s.renderer.picture() : given.data(), gs::train::schedule::ssim_weight);
-        float largest = s.photometric.largest_gradient();
         buffer<Real> weights, weighed;
         if (!q.weights.empty()) {
-            largest *= largest_of(q.weights);
             s.on.put(weights, q.weights);
             weighed.resize(values);
             s.device.for_each_index(
@@ -82,12 +100,12 @@ class pictures_on {
         buffer<gs::raster::visibility> seen;
         seen.resize(q.count());
         s.device.zero(seen.data(), q.count());
-        s.renderer.backward(by_picture, largest, q.policy, q.sh_degree,
+        s.renderer.backward(by_picture, largest_gradient(q), q.policy, q.sh_degree,
                             gs::raster::store_gradients<Real>{write(s.gradients)}, seen.data());
 
         answer a;
         a.picture = s.on.get(s.renderer.picture(), values);
-        a.loss = s.photometric.take().loss(gs::train::schedule::ssim_weight);
+        a.loss = s.photometric.take().loss(gs::train::schedule::ssim_weight) + s.depth_loss;
         for (std::size_t p = 0; p < gs::parameter_count; ++p)
             a.gradients[p] = get(s.on, s.gradients[p], q, p);
         const auto sightings = s.on.get_as_they_are(seen.data(), q.count());
@@ -102,7 +120,7 @@ class pictures_on {
         session s;
         s.draw(q);
         s.photometric.compare(s.renderer.picture());
-        return s.photometric.take().loss(gs::train::schedule::ssim_weight);
+        return s.photometric.take().loss(gs::train::schedule::ssim_weight) + s.depth_loss;
     }
 
     static std::vector<projected_splat> project(const question& q) {

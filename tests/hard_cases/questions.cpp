@@ -28,6 +28,14 @@ void take_fisheye(question& q, unsigned seed) {
     c.translation = glm::dvec3(0.1, -0.2, 1);
 }
 
+void add_depths(question& q, unsigned seed) {
+    std::mt19937 random(seed);
+    q.depth_weights.resize(q.pixels());
+    for (double& x : q.depth_weights)
+        x = static_cast<float>((static_cast<double>(random() % 2001) / 1000 - 1) /
+                               static_cast<double>(q.pixels()));
+}
+
 question random_question(unsigned seed, std::size_t splats, int width, int height, int sh_degree) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;

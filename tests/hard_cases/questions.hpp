@@ -20,6 +20,9 @@ void add_backdrop(question& q, unsigned seed);
 /// The camera gets a fisheye lens of 160 degrees across and stands between the Gaussians.
 void take_fisheye(question& q, unsigned seed);
 
+/// Inverse depths in the loss, by random weights of either sign.
+void add_depths(question& q, unsigned seed);
+
 /// No Gaussians yet, degree 0, black background and photo, before a camera at the origin that looks along z,
 /// with the focal length of the picture's width and its axis through the middle of the picture.
 question empty_question(int width, int height);

@@ -151,6 +151,7 @@ TEST_CASE("100 random scenes: gradients in float against double") {
         questions.back().effects.antialiasing = seed / 4 % 2 == 1;
         if (seed / 8 % 2 == 1) add_backdrop(questions.back(), seed);
         if (seed / 16 % 2 == 1) take_fisheye(questions.back(), seed);
+        if (seed / 32 % 2 == 1) add_depths(questions.back(), seed);
     }
     const std::vector<measured> all = measure(questions, false);
     CHECK(share_left_out(all) < 0.02);

@@ -5,7 +5,8 @@
 
     compare.py CXX [NVCC]
 
-What stands behind `if constexpr (Effects...` or `(Masked)` is cut out of a copy of the sources. With the effects off both
+What stands behind `if constexpr (Effects...` or `(Masked)` is cut out of a copy of the sources, and of the two projections that
+`std::conditional_t<Effects...` chooses from, that of the effect. With the effects off both
 must come to the same assembly (and, with NVCC, PTX), and with them on to another.
 """
 import pathlib
@@ -18,8 +19,10 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCES = HERE.parent.parent / "examples" / "gaussian_splatting"
-EFFECT_STATEMENTS = 6
+EFFECT_STATEMENTS = 9
 STATEMENT = re.compile(r"^ *if constexpr \((?:Effects\.\w+|Masked)\)\s[^;]*;\n", re.MULTILINE)
+
+CHOICE = re.compile(r"std::conditional_t<Effects\.\w+, [^,]*, ([^,]*)>;")
 
 
 def compiled(command, sources, effects):
@@ -37,8 +40,9 @@ def without_effects(folder):
     cut = 0
     for header in [*(copy / "raster").glob("*.hpp"), *(copy / "train").glob("*.hpp")]:
         text, n = STATEMENT.subn("", header.read_text())
+        text, m = CHOICE.subn(r"\1;", text)
         header.write_text(text)
-        cut += n
+        cut += n + m
     return copy, cut
 
 

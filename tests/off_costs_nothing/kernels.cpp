@@ -14,7 +14,7 @@
 #include "train/adam.hpp"
 #include "train/loss.hpp"
 
-constexpr gs::effect_set effects{.antialiasing = EFFECTS};
+constexpr gs::effect_set effects{.antialiasing = EFFECTS, .fisheye = EFFECTS, .depth = EFFECTS};
 constexpr bool masked = EFFECTS;
 
 #if defined(__CUDACC__)

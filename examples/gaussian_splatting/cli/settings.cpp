@@ -208,10 +208,12 @@ CLI::App* add_train(CLI::App& app, settings& s) {
             "--effects",
             [&s](const std::string& text) {
                 s.effects = effects::parse_selection(text);
-                s.scene.masks = s.effects.takes_masks();
+                s.scene.masks = s.effects.takes(effects::effect::masks);
+                s.scene.depths = s.effects.takes(effects::effect::depth);
             },
             "What to simulate: auto is what the scene calls for (see inspect), all, none, or some of "
-            "direction, exposure, antialiasing, sky and masks; auto,+exposure,-direction adds and leaves out")
+            "direction, exposure, antialiasing, sky, masks and depth; auto,+exposure,-direction adds and "
+            "leaves out")
         ->default_str("auto");
     train->add_option("--sh-degree", s.sh_degree, "Of view-dependent colour; by default as --effects has it")
         ->check(whole_number(0, 3));
@@ -370,6 +372,7 @@ settings parse(int argc, char** argv) {
     refuse_large_budget(s);
     s.policy = policy_of(s);
     if (s.command == "render") s.scene.masks = false;  // its photos are not looked at
+    if (s.command == "render" || s.command == "evaluate") s.scene.depths = false;
     if (s.command == "render" && s.scene.data.empty() && s.scene.eval)
         throw error("--eval picks views of a scene: it needs --data");
     return s;

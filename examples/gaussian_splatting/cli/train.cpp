@@ -33,6 +33,7 @@ train::train_options options_of(const settings& s, const scene& scene,
     o.schedule.sh_degree = simulated.sh_degree;
     for (const float gain : simulated.exposures)
         o.exposures.push_back({gain, 0, 0, 0, 0, gain, 0, 0, 0, 0, gain, 0});
+    o.depth_fits = simulated.depth_fits;
     o.max_cap = s.max_cap > 0 ? s.max_cap : std::max(train::default_cap(scene), s.budget);
     o.budget = s.budget;
     o.revised_opacity = s.revised_opacity;
@@ -183,7 +184,7 @@ void train(const settings& s) {
     const session session(s);
     const auto engine = session.make_engine();
     const stopwatch loading;
-    const scene scene = session.load();
+    scene scene = session.load();
     effects::simulation simulated = effects::simulate(scene, s.effects, s.sh_degree);
     if (!simulated.sky.empty() && !knows_skies(s.policy))
         simulated.leave_out(effects::effect::sky,
@@ -210,6 +211,8 @@ void train(const settings& s) {
     model.antialiased = simulated.antialiasing;
     model.sky = simulated.sky;
     const output_folder output(s.output);
+    for (std::size_t v = 0; v < scene.train.size(); ++v)
+        if (options.depth_fits.empty() || options.depth_fits[v].scale == 0) scene.train[v].depths = {};
     engine->set_views(scene.train, scene.test, options.schedule.num_downscales);
     engine->set_model(model);
     const double load_seconds = loading.seconds();

@@ -335,6 +335,7 @@ evidence gather(const scene& of) {
     found.alpha = of.has_alpha;
     count_masks(of, found);
     look_at_lenses(of, found);
+    found.depth = compare_depths(of);
     found.sky = find_sky(of, {});
     // A sky that is overexposed is white in every photo: then that told more.
     if (!found.brighter.empty()) {

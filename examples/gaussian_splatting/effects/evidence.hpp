@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "depth_evidence.hpp"
 #include "observations.hpp"
 #include "sky_evidence.hpp"
 
@@ -41,6 +42,7 @@ struct evidence {
     double widest = 0;               ///< degrees from corner to corner of the widest of these
 
     sky_evidence sky;
+    depth_evidence depth;
 
     bool alpha = false;  ///< photos have transparent parts
 };

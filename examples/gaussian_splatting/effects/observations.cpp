@@ -18,13 +18,8 @@ constexpr double spacings = 2.5;                  ///< so far off in the picture
 constexpr double nearer = 0.03;                   ///< by this share of the depth
 constexpr int least_value = 6, most_value = 249;  ///< of a byte that is not saturated
 
-struct projected {
-    std::uint32_t point;
-    double x, y, depth;
-};
-
-std::vector<projected> project(const camera& c, const std::vector<coloured_point>& points) {
-    std::vector<projected> seen;
+std::vector<place_in_photo> project(const camera& c, const std::vector<coloured_point>& points) {
+    std::vector<place_in_photo> seen;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto p = c.see(points[i].position);
         if (p && p->x >= 2 && p->y >= 2 && p->x < c.width - 2 && p->y < c.height - 2)
@@ -36,18 +31,18 @@ std::vector<projected> project(const camera& c, const std::vector<coloured_point
 /// The depth of the nearest point in cells of the picture, as wide as points hide each other.
 class nearest_depths {
   public:
-    nearest_depths(const camera& c, const std::vector<projected>& seen)
+    nearest_depths(const camera& c, const std::vector<place_in_photo>& seen)
         : cell_(std::max(2.0, spacings * std::sqrt(double(c.width) * c.height / double(seen.size() + 1)))),
           across_(static_cast<int>(c.width / cell_) + 3),
           depth_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(c.height / cell_ + 3),
                  std::numeric_limits<double>::infinity()) {
-        for (const projected& p : seen) {
+        for (const place_in_photo& p : seen) {
             double& d = depth_[at(p.x, p.y, 0, 0)];
             d = std::min(d, p.depth);
         }
     }
     /// Whether no point of this cell and its neighbours is clearly nearer.
-    bool shows(const projected& p) const {
+    bool shows(const place_in_photo& p) const {
         for (int dy = -1; dy <= 1; ++dy)
             for (int dx = -1; dx <= 1; ++dx)
                 if (depth_[at(p.x, p.y, dx, dy)] < (1 - nearer) * p.depth) return false;
@@ -65,7 +60,7 @@ class nearest_depths {
     std::vector<double> depth_;
 };
 
-std::optional<observation> look(const image& photo, const projected& p) {
+std::optional<observation> look(const image& photo, const place_in_photo& p) {
     const auto pixel = [&](int x, int y) {
         return &photo.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(photo.width) +
                                 static_cast<std::size_t>(x))];
@@ -91,15 +86,20 @@ std::optional<observation> look(const image& photo, const projected& p) {
 
 }  // namespace
 
+std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<coloured_point>& points) {
+    std::vector<place_in_photo> seen = project(camera, points);
+    const nearest_depths depths(camera, seen);
+    std::erase_if(seen, [&](const place_in_photo& p) { return !depths.shows(p); });
+    return seen;
+}
+
 std::vector<std::vector<observation>> observe_points(const scene& of) {
     const std::size_t step = of.points.size() / most_points + 1;
     std::vector<std::vector<std::pair<std::uint32_t, observation>>> by_view(of.train.size());
     for_each_in_parallel(of.train.size(), [&](std::size_t v) {
         const view& photo = of.train[v];
-        const std::vector<projected> seen = project(photo.camera, of.points);
-        const nearest_depths depths(photo.camera, seen);
-        for (const projected& p : seen) {
-            if (p.point % step != 0 || !depths.shows(p)) continue;
+        for (const place_in_photo& p : points_in_sight(photo.camera, of.points)) {
+            if (p.point % step != 0) continue;
             std::optional<observation> o = look(photo.pixels, p);
             if (!o) continue;
             o->view = static_cast<std::uint32_t>(v);

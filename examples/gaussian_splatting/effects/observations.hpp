@@ -19,10 +19,18 @@ struct observation {
     float roughness = 0;     ///< by which share of the brightest of these pixels the darkest differs
 };
 
+/// Where a photo shows one of the points, in pixels, and how far along the camera's axis.
+struct place_in_photo {
+    std::uint32_t point;
+    double x, y, depth;
+};
+
+/// The points that a camera sees: all but where a nearer one, a few spacings off in the picture, may hide it.
+std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<coloured_point>& points);
+
 /// What the training photos have of the scene's points, by point; some thousands of the points stand for all.
-/// Left out: where a point in front of it, a few spacings off in the picture, may hide it, and where the
-/// photo is transparent or a channel is saturated. Cost: that of projecting all
-/// points into all photos.
+/// Left out: what is not `points_in_sight`, and where the photo is transparent or a channel is saturated.
+/// Cost: that of projecting all points into all photos.
 std::vector<std::vector<observation>> observe_points(const scene& of);
 
 }  // namespace gs::effects

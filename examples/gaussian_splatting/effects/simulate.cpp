@@ -63,6 +63,7 @@ selection parse_selection(const std::string& text) {
 
 void simulation::leave_out(effect e, const std::string& reason) {
     if (e == effect::sky) sky.clear();
+    if (e == effect::depth) depth_fits.clear();
     outcome& o = outcomes[static_cast<std::size_t>(e)];
     o.on = false;
     o.reason = reason;
@@ -76,7 +77,7 @@ simulation simulate(const scene& scene, const selection& selection, const std::o
     const auto begins_from_photos = [&](effect e) { return open && selection.of(e).value_or(true); };
     const bool looks = asks_direction || begins_from_photos(effect::exposure) ||
                        begins_from_photos(effect::sky) || not_said(effect::antialiasing) ||
-                       not_said(effect::masks);
+                       not_said(effect::masks) || not_said(effect::depth);
     const evidence found = looks ? gather(scene) : evidence{};
     const std::vector<decision> decisions = looks ? decide(found) : std::vector<decision>{};
     simulation s;
@@ -107,6 +108,11 @@ simulation simulate(const scene& scene, const selection& selection, const std::o
         if (scene.has_alpha) s.leave_out(effect::sky, "photos have transparent parts");
     }
     if (settle(effect::masks) && !has_masks(scene)) s.leave_out(effect::masks, no_masks);
+    if (settle(effect::depth)) {
+        const depth_evidence depth = looks ? found.depth : compare_depths(scene);
+        s.depth_fits = depth.fits;
+        if (depth.agreeing == 0) s.leave_out(effect::depth, say(depth));
+    }
 
     s.reviews_bands = asks_direction;
     s.sh_degree = !direction ? 0 : asks_direction ? effects::sh_degree(found) : 3;

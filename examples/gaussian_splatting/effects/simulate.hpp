@@ -13,10 +13,10 @@
 namespace gs::effects {
 
 /// What a training can simulate or leave. docs/effects.md says what another one needs.
-enum class effect { direction, exposure, antialiasing, sky, masks, count };
+enum class effect { direction, exposure, antialiasing, sky, masks, depth, count };
 
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(effect::count)> effect_names{
-    "direction", "exposure", "antialiasing", "sky", "masks"};
+    "direction", "exposure", "antialiasing", "sky", "masks", "depth"};
 
 /// What --effects says.
 struct selection {
@@ -30,8 +30,8 @@ struct selection {
     std::array<std::optional<bool>, effect_names.size()> said;  ///< of single effects
 
     const std::optional<bool>& of(effect e) const { return said[static_cast<std::size_t>(e)]; }
-    /// Whether masks are to be read, if there are any.
-    bool takes_masks() const { return of(effect::masks).value_or(from != base::none); }
+    /// Whether an effect is not ruled out: whether masks or depth maps are to be read, if there are any.
+    bool takes(effect e) const { return of(e).value_or(from != base::none); }
 };
 
 /// From "auto", "all", "none", a list of effects, or any of the first three with what is to be added or left
@@ -54,14 +54,17 @@ struct simulation {
     std::vector<float> exposures;
     /// What it begins from, see `gaussians::sky`: zeros where nobody has looked, and none without the effect.
     std::vector<float> sky;
+    /// Of the training photos' depth maps; without a scale where they do not agree with the points. None
+    /// without the effect.
+    std::vector<depth_fit> depth_fits;
     std::vector<outcome> outcomes;  ///< one an effect
 
     /// Whatever was decided: for this reason.
     void leave_out(effect e, const std::string& reason);
 };
 
-/// `scene`: with masks if they are to be taken. `sh_degree`: the one that was said. Looks at the photos only
-/// if something depends on them.
+/// `scene`: with masks and depth maps if they are to be taken. `sh_degree`: the one that was said. Looks at
+/// the photos only if something depends on them.
 simulation simulate(const scene& scene, const selection& selection, const std::optional<int>& sh_degree);
 
 }  // namespace gs::effects

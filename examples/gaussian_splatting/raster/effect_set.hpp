@@ -4,25 +4,32 @@
 
 namespace gs {
 
-/// What the projection of Gaussians simulates on demand. Kernels have it as a template parameter: what is off
-/// is not compiled in. See docs/effects.md.
+/// What the projection of Gaussians, or its gradient, simulates on demand. Kernels have it as a template
+/// parameter: what is off is not compiled in. See docs/effects.md.
 struct effect_set {
     bool antialiasing = false;  ///< a Gaussian that a pixel's filter widens becomes fainter by as much
     bool fisheye = false;       ///< the camera has such a lens
+    bool depth = false;         ///< inverse depths have gradients, too
 };
 
 namespace raster {
 
+/// Calls `f.template operator()<flag>()`.
+template <class F>
+decltype(auto) with_flag(bool flag, const F& f) {
+    if (flag) return f.template operator()<true>();
+    return f.template operator()<false>();
+}
 /// Calls `f.template operator()<set>()`.
 template <class F>
 decltype(auto) with_effects(const effect_set& set, const F& f) {
-    const auto with_lens = [&]<bool Antialiasing>() -> decltype(auto) {
-        if (set.fisheye)
-            return f.template operator()<effect_set{.antialiasing = Antialiasing, .fisheye = true}>();
-        return f.template operator()<effect_set{.antialiasing = Antialiasing}>();
-    };
-    if (set.antialiasing) return with_lens.template operator()<true>();
-    return with_lens.template operator()<false>();
+    return with_flag(set.antialiasing, [&]<bool Antialiasing>() -> decltype(auto) {
+        return with_flag(set.fisheye, [&]<bool Fisheye>() -> decltype(auto) {
+            return with_flag(set.depth, [&]<bool Depth>() -> decltype(auto) {
+                return f.template operator()<effect_set{Antialiasing, Fisheye, Depth}>();
+            });
+        });
+    });
 }
 
 }  // namespace raster

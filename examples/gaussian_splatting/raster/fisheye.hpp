@@ -72,6 +72,11 @@ struct fisheye_projection {
         return by_at * camera.rotation;
     }
 
+    WARPAGG_HD vec3<Real> inverse_depth_gradient(const Real& by_inverse,
+                                                 const device_camera<Real>& camera) const {
+        return (-by_inverse * near * near * ray) * camera.rotation;
+    }
+
   private:
     /// H and its derivatives.
     WARPAGG_HD void bend(const device_camera<Real>& camera) {

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "../error.hpp"
+#include "depth_splats.hpp"
 #include "with_policy.hpp"
 
 namespace gs::raster {
@@ -37,23 +38,25 @@ class gradient_sums {
         device_.zero(fault_.data(), 1);
     }
 
-    /// Makes sums of zero for so many Gaussians and gives them to the kernel, a `blend_backward`.
+    /// Makes sums of zero for so many Gaussians and gives them to the kernel, a `blend_backward`. Where it
+    /// `goes_on` they are what the kernel before made them, which `set_depths_aside` has seen.
     /// `largest`: the magnitude of a pixel's gradient, about; for fixed point, which leaves out what is more
     /// than `headroom` times that. `warps`: how many may add to a sum. Throws `error` if those are too many
     /// for fixed point.
     template <class Kernel>
-    void begin(Kernel& kernel, std::size_t gaussians, float largest, std::size_t warps) {
+    void begin(Kernel& kernel, std::size_t gaussians, float largest, std::size_t warps,
+               bool goes_on = false) {
         using in_memory = std::remove_pointer_t<decltype(kernel.sums)>;
         const std::size_t n = gaussians * record_stride;
         sums_.resize(n);
         if constexpr (std::is_same_v<in_memory, Real>) {
             kernel.sums = sums_.data();
-            device_.zero(sums_.data(), n);
+            if (!goes_on) device_.zero(sums_.data(), n);
         } else {
             static_assert(sizeof(in_memory) % sizeof(std::uint64_t) == 0);
             const std::size_t words = n * (sizeof(in_memory) / sizeof(std::uint64_t));
             cells_.resize(words);
-            device_.zero(cells_.data(), words);
+            if (!goes_on) device_.zero(cells_.data(), words);
             kernel.sums = reinterpret_cast<in_memory*>(cells_.data());
         }
         if constexpr (requires { kernel.how.accumulating().fault; }) {
@@ -64,6 +67,12 @@ class gradient_sums {
             kernel.how = typename Kernel::policy(
                 {}, {}, {fixed_sums{fault_.data(), fixed_sums::scale_to_fit(headroom * largest)}});
         }
+    }
+    /// After a kernel that blended `depth_splats`, in place of `end`: another one goes on from there.
+    template <class Kernel>
+    void set_depths_aside(const Kernel& kernel) {
+        using in_memory = std::remove_pointer_t<decltype(kernel.sums)>;
+        device_.for_each_index(sums_.size() / record_stride, set_red_aside<in_memory>{kernel.sums});
     }
     /// After the kernel: what the sums are as `Real`.
     template <class Kernel>

@@ -49,6 +49,12 @@ struct pinhole_projection {
         by_at.y += dv * rz;
         return by_at * camera.rotation;
     }
+
+    WARPAGG_HD vec3<Real> inverse_depth_gradient(const Real& by_inverse,
+                                                 const device_camera<Real>& camera) const {
+        const Real rz = 1 / at.z;
+        return vec3<Real>(Real(0), Real(0), -by_inverse * rz * rz) * camera.rotation;
+    }
 };
 
 }  // namespace gs::raster

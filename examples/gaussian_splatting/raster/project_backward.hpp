@@ -20,6 +20,8 @@ namespace gs::raster {
 /// record is 12 values apart from the next, so that one commit touches two sectors.
 enum sum { sum_red, sum_green, sum_blue, sum_s, sum_su, sum_sv, sum_suu, sum_suv, sum_svv, sum_count };
 inline constexpr unsigned record_stride = 12;
+/// Behind them, with depth maps: of the inverse of its depth.
+inline constexpr unsigned sum_inverse_depth = sum_count;
 
 /// What densification wants to know of a Gaussian, over the iterations since it last asked.
 struct visibility {
@@ -82,17 +84,25 @@ struct project_backward {
         gaussian_row<W> row{std::size_t{warp_index} * W::size, i < static_cast<unsigned>(count), false};
         const mask_t<W> drawn =
             w.load_row(tiles, static_cast<std::ptrdiff_t>(row.first), row.inside) != value_t<W, unsigned>(0);
-        real s[sum_count];
+        real s[sum_count + (Effects.depth ? 1 : 0)];
         for (unsigned k = 0; k < sum_count; ++k) {
             s[k] = w.load(sums, i * record_stride + k, drawn);
             row.active = row.active || s[k] != real(0);
         }
+        if constexpr (Effects.depth) row.active = load_depth_sum(w, i, drawn, s) || row.active;
         vec2<real> centre(real(0));
         if (Sink::takes_zeros || w.any(row.active)) centre = differentiate(w, row, i, s);
         if (seen != nullptr) note(w, i, drawn, row.active, centre);
     }
 
   private:
+    /// Returns where it is not zero.
+    WARPAGG_HD mask_t<W> load_depth_sum(const W& w, const value_t<W, unsigned>& i, const mask_t<W>& drawn,
+                                        real* s) const {
+        s[sum_inverse_depth] = w.load(sums, i * record_stride + sum_inverse_depth, drawn);
+        return s[sum_inverse_depth] != real(0);
+    }
+
     /// Returns the gradient of the centre, in pixels.
     WARPAGG_HD vec2<real> differentiate(const W& w, const gaussian_row<W>& row, const value_t<W, unsigned>& i,
                                         const real* s) const {
@@ -117,9 +127,12 @@ struct project_backward {
         if constexpr (Effects.antialiasing) add_opacity_left_gradient(axes, s[sum_s], nx, ny);
         const vec3<real> dax = p * nx + r * ny, day = q * ny;
 
-        // The mean moves the centre and the Jacobian, and the direction that the colour is seen from.
-        const vec3<real> by_position = f.seen.position_gradient(centre, f.rotation * (dax * f.scale),
-                                                                f.rotation * (day * f.scale), camera);
+        // The mean moves the centre and the Jacobian, the depth, and the direction that the colour is seen
+        // from.
+        vec3<real> by_position = f.seen.position_gradient(centre, f.rotation * (dax * f.scale),
+                                                          f.rotation * (day * f.scale), camera);
+        if constexpr (Effects.depth)
+            by_position += f.seen.inverse_depth_gradient(s[sum_inverse_depth], camera);
         put(parameter::log_scale, 0, 3, log_scale, nx * axes.x + ny * axes.y);
         put(parameter::quaternion, 0, 4, quaternion, turn(f, dax * f.scale, day * f.scale));
         put(parameter::opacity, 0, 1, opacity, glm::vec<1, real>(s[sum_s] * sigmoid(-opacity.x)));

@@ -15,6 +15,7 @@ namespace gs::raster {
 ///     is_drawn(at, camera) not nearer than `near_plane`, and where the camera sees anything at all
 ///     x, y                 where, in pixels
 ///     px, py               the rows of the Jacobian of that, by the place in the world
+///     inverse_depth_gradient(by_inverse, camera)   by the place in the world, from that by 1 / depth
 ///     position_gradient(centre, dpx, dpy, camera)  by the place in the world, from those by (x, y), px and
 ///     py
 template <class Real, effect_set Effects>

@@ -12,6 +12,7 @@
 #include "bin.hpp"
 #include "blend_backward.hpp"
 #include "blend_forward.hpp"
+#include "depth_splats.hpp"
 #include "gradient_sums.hpp"
 #include "project.hpp"
 #include "project_backward.hpp"
@@ -64,6 +65,12 @@ class renderer {
     /// behind all, in place of the background; until `backward`.
     void forward(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
                  const std::array<float, 3>& background, const Real* backdrop = nullptr) {
+        list(gaussians, count, view, sh_degree);
+        blend(background, backdrop);
+    }
+
+    /// The first part of `forward`: who is in the picture, and where.
+    void list(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         using device::stage;
         device_.begin(stage::project);
         project_all(gaussians, count, view, sh_degree);
@@ -77,12 +84,40 @@ class renderer {
         last_.resize(pixels);
         checkpoints_.resize(segments() * checkpoint_values);
         camera_ = view;
-        background_ = {colour(background)};
-        backdrop_ = {backdrop};
-        backdrop == nullptr ? blend_forward_by<Cut>(background_) : blend_forward_by<Cut>(backdrop_);
         count_ = count;
         gaussians_ = gaussians;
         sh_degree_ = sh_degree;
+        effects_.depth = false;
+    }
+    /// The rest of it.
+    void blend(const std::array<float, 3>& background, const Real* backdrop = nullptr) {
+        background_ = {colour(background)};
+        backdrop_ = {backdrop};
+        backdrop == nullptr ? blend_forward_by<Cut>(background_, lists())
+                            : blend_forward_by<Cut>(backdrop_, lists());
+    }
+
+    /// Between both: draws the inverse depths, sum w_i / z_i with the weights that colours have, and zero
+    /// behind. They are the first plane of `picture()` until `blend`. What this and the next function take
+    /// counts as blending forward.
+    void blend_depths() {
+        with_flag(camera_.fisheye.has_value(), [&]<bool Fisheye> {
+            device_.for_each_index(count_, depth_splats<Real, effect_set{.fisheye = Fisheye}>{
+                                               gaussians_.mean, for_device<Real>(camera_), splats_.data(),
+                                               reserve(near_, count_).data()});
+        });
+        background_ = {};
+        blend_forward_by<Cut>(background_, depth_lists());
+    }
+    /// From the gradient by these, three planes of which the last two are zero, for `backward` to go on from
+    /// with the same `largest` and `policy`.
+    void backward_depths(const Real* gradient, float largest, gradient_policy policy) {
+        with_policy<Real, Cut>(policy, [&](auto kernel) {
+            sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()));
+            launch_backward(kernel, depth_lists(), gradient);
+            sums_.set_depths_aside(kernel);
+        });
+        effects_.depth = true;
     }
 
     /// From the gradient of the last `forward`'s picture to those of its parameters, colours up to a degree,
@@ -123,19 +158,9 @@ class renderer {
     /// `project_backward`.
     template <class Kernel>
     const buffer<Real>& blend_backward_by(Kernel kernel, const Real* picture_gradient, float largest) {
-        sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()));
+        sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()), effects_.depth);
         device_.begin(device::stage::blend_backward);
-        kernel.lists = lists();
-        const auto view = [&](const auto& background) {
-            return blended{background,   picture_.data(),     transmittance_.data(),
-                           last_.data(), checkpoints_.data(), picture_gradient};
-        };
-        if constexpr (std::is_same_v<decltype(kernel.view.background), colour_a_pixel<Real>>)
-            kernel.view = view(backdrop_);
-        else
-            kernel.view = view(background_);
-        kernel.tile_of_segment = tile_of_segment_.data();
-        device_.for_each_warp(kernel.template warps<warp>(tiles(), segments()), kernel);
+        launch_backward(kernel, lists(), picture_gradient);
         return sums_.end(kernel);
     }
     /// See `gradient_sums`.
@@ -167,11 +192,25 @@ class renderer {
     }
 
     std::size_t tiles() const { return std::size_t{tiles_across_} * tiles_down_; }
+    template <class Kernel>
+    void launch_backward(Kernel& kernel, const tile_lists<Real>& lists, const Real* picture_gradient) {
+        kernel.lists = lists;
+        const auto view = [&](const auto& background) {
+            return blended{background,   picture_.data(),     transmittance_.data(),
+                           last_.data(), checkpoints_.data(), picture_gradient};
+        };
+        if constexpr (std::is_same_v<decltype(kernel.view.background), colour_a_pixel<Real>>)
+            kernel.view = view(backdrop_);
+        else
+            kernel.view = view(background_);
+        kernel.tile_of_segment = tile_of_segment_.data();
+        device_.for_each_warp(kernel.template warps<warp>(tiles(), segments()), kernel);
+    }
     /// Lower patches are shorter work: they are taken where higher ones would leave the device idle.
     template <class Shape, class Backdrop>
-    void blend_forward_by(const Backdrop& background) {
+    void blend_forward_by(const Backdrop& background, const tile_lists<Real>& lists) {
         using shorter = lower<Shape>;
-        const blend_forward<Real, Shape, Backdrop> blend{lists(),
+        const blend_forward<Real, Shape, Backdrop> blend{lists,
                                                          order(),
                                                          background,
                                                          picture_.data(),
@@ -181,7 +220,7 @@ class renderer {
                                                          pairs_.data()};
         const std::size_t n = blend.template warps<warp>(tiles());
         if constexpr (!std::is_same_v<Shape, shorter>) {
-            if (n < device_.resident_warps()) return blend_forward_by<shorter>(background);
+            if (n < device_.resident_warps()) return blend_forward_by<shorter>(background, lists);
         }
         device_.for_each_warp(n, blend);
     }
@@ -191,6 +230,11 @@ class renderer {
         return {splats_.data(), gaussian_of_.data(), ranges_.data(),
                 tiles_across_,  camera_.width,       camera_.height};
     }
+    tile_lists<Real> depth_lists() const {
+        tile_lists<Real> all = lists();
+        all.splats = near_.data();
+        return all;
+    }
 
     void project_all(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         require_drawable(view);
@@ -198,7 +242,8 @@ class renderer {
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
         using narrow = typename Device::narrow_warp;
         with_effects(effects_of(view), [&]<effect_set Effects> {
-            using projection = project<narrow, Real, Effects>;
+            constexpr effect_set seen{Effects.antialiasing, Effects.fisheye};
+            using projection = project<narrow, Real, seen>;
             device_.template for_each_warp<narrow>(
                 projection::warps(count),
                 projection{gaussians, count, for_device<value_t<narrow, Real>>(view), sh_degree,
@@ -233,7 +278,7 @@ class renderer {
     static vec3<Real> colour(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
 
     Device& device_;
-    buffer<splat<Real>> splats_;
+    buffer<splat<Real>> splats_, near_;  ///< the second as `depth_splats` has them
     buffer<tile_box> boxes_;
     buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_;
     buffer<std::uint64_t> needed_;

@@ -53,7 +53,8 @@ const colmap_camera& camera_of(const colmap_image& taken, const colmap_model& mo
 }
 
 std::vector<recorded_view> recorded_views(const colmap_model& model, const std::filesystem::path& photos,
-                                          const std::filesystem::path& masks) {
+                                          const std::filesystem::path& masks,
+                                          const std::filesystem::path& depths) {
     std::vector<recorded_view> recorded;
     recorded.reserve(model.images.size());
     for (const colmap_image& taken : model.images) {
@@ -62,8 +63,9 @@ std::vector<recorded_view> recorded_views(const colmap_model& model, const std::
         if (name.size() > longest_path)
             throw error(model.images_file.string() + ": the name of the image " + clipped(name) +
                         " is too long");
-        recorded_view one{photos / name, std::string(name), by.camera(), by.distortion, by.model, {}};
-        if (!masks.empty()) one.mask = mask_of(masks, one.name);
+        recorded_view one{photos / name, std::string(name), by.camera(), by.distortion, by.model, {}, {}};
+        if (!masks.empty()) one.mask = beside_photo(masks, one.name);
+        if (!depths.empty()) one.depths = beside_photo(depths, one.name);
         one.camera.rotation = glm::mat3_cast(taken.rotation);
         one.camera.translation = taken.translation;
         recorded.push_back(std::move(one));
@@ -98,7 +100,8 @@ scene load_colmap_scene(const load_options& options, const log_function& log) {
     const std::filesystem::path data = options.data, photos = data / options.images;
     colmap_model model = read_colmap_model(model_folder(data));
     const auto recorded =
-        recorded_views(model, photos, options.masks ? data / "masks" : std::filesystem::path());
+        recorded_views(model, photos, options.masks ? data / "masks" : std::filesystem::path(),
+                       options.depths ? data / "depths" : std::filesystem::path());
     if (!std::filesystem::is_directory(photos))
         throw error("the folder of photos " + photos.string() + " does not exist");
     scene result;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cerrno>
 #include <cmath>
 #include <csetjmp>
@@ -119,17 +120,22 @@ class png_reader {
     /// Whatever the file holds, `read_rows` will then yield 8-bit RGBA.
     bool read_header(std::FILE* file) {
         if (setjmp(png_jmpbuf(png_))) return false;
-        png_set_user_limits(png_, largest_side, largest_side);
-        // But those that make the pixels: texts and profiles may be compressed, and swell to megabytes each.
-        png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
-        png_init_io(png_, file);
-        png_read_info(png_, info_);
+        begin(file);
         png_set_expand(png_);
         png_set_scale_16(png_);
         png_set_gray_to_rgb(png_);
         png_set_add_alpha(png_, 255, PNG_FILLER_AFTER);
-        png_set_interlace_handling(png_);
-        png_read_update_info(png_, info_);
+        end_header();
+        return true;
+    }
+
+    /// `read_rows` will then yield 16 bit a channel, as many as the file has.
+    bool read_deep_header(std::FILE* file) {
+        if (setjmp(png_jmpbuf(png_))) return false;
+        begin(file);
+        png_set_expand_16(png_);
+        if constexpr (std::endian::native == std::endian::little) png_set_swap(png_);
+        end_header();
         return true;
     }
 
@@ -145,6 +151,18 @@ class png_reader {
     std::string failure() const { return failure_.message.data(); }
 
   private:
+    void begin(std::FILE* file) {
+        png_set_user_limits(png_, largest_side, largest_side);
+        // But those that make the pixels: texts and profiles may be compressed, and swell to megabytes each.
+        png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+        png_init_io(png_, file);
+        png_read_info(png_, info_);
+    }
+    void end_header() {
+        png_set_interlace_handling(png_);
+        png_read_update_info(png_, info_);
+    }
+
     png_failure failure_;
     png_structp png_;
     png_infop info_;
@@ -370,6 +388,25 @@ image read_image(const std::filesystem::path& file) {
     check_density(file, found.png_width, found.png_height);
     return read_png(file, opened.get(), static_cast<int>(found.png_width),
                     static_cast<int>(found.png_height));
+}
+
+std::vector<std::uint16_t> read_grey_png(const std::filesystem::path& file, int& width, int& height) {
+    const open_file opened = open_to_read(file);
+    const first_bytes found = look_at(file, opened.get());
+    if (!found.is_png) refuse(file, "it is no PNG");
+    check_density(file, found.png_width, found.png_height);
+    png_reader reader;
+    if (!reader.ready()) throw std::bad_alloc();
+    const auto give_up = [&] { refuse(file, "it is damaged or truncated (" + reader.failure() + ")"); };
+    if (!reader.read_deep_header(opened.get())) give_up();
+    if (reader.row_bytes() != 2 * found.png_width) refuse(file, "it has more than one channel");
+    std::vector<std::uint16_t> values(found.png_width * found.png_height);
+    auto rows = row_pointers(reinterpret_cast<std::uint8_t*>(values.data()), reader.row_bytes(),
+                             static_cast<std::size_t>(found.png_height));
+    if (!reader.read_rows(rows.data())) give_up();
+    width = static_cast<int>(found.png_width);
+    height = static_cast<int>(found.png_height);
+    return values;
 }
 
 void read_image_size(const std::filesystem::path& file, int& width, int& height) {

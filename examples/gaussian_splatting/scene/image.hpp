@@ -33,6 +33,10 @@ struct image {
 /// else.
 image read_image(const std::filesystem::path& file);
 
+/// The one channel of a PNG that has one, without alpha, rows from the top; what has fewer than 16 bit is
+/// spread over them. Errors as `read_image`, and where it has more.
+std::vector<std::uint16_t> read_grey_png(const std::filesystem::path& file, int& width, int& height);
+
 /// Width and height from the header alone, without decoding. Errors as `read_image`.
 void read_image_size(const std::filesystem::path& file, int& width, int& height);
 

@@ -9,7 +9,7 @@
 
 namespace gs {
 
-std::filesystem::path mask_of(const std::filesystem::path& folder, const std::string& photo) {
+std::filesystem::path beside_photo(const std::filesystem::path& folder, const std::string& photo) {
     const auto name = std::filesystem::path(photo).lexically_normal();
     if (name.empty() || name.is_absolute() || *name.begin() == "..") return {};
     for (const auto& file : {folder / (name.string() + ".png"), (folder / name).replace_extension(".png")})
@@ -37,6 +37,11 @@ void apply_mask(const image& mask, image& photo) {
     for (std::size_t i = 0; i < mask.rgba.size() / 4; ++i)
         if (mask.rgba[4 * i] < 128) photo.leave_out(i);
     photo.has_alpha = photo.has_transparent_pixel();
+}
+
+void forget_left_out(const image& photo, depth_map& depths) {
+    for (std::size_t i = 0; i < depths.values.size(); ++i)
+        if (photo.leaves_out(i)) depths.values[i] = 0;
 }
 
 }  // namespace gs

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera.hpp"
+#include "depth_map.hpp"
 #include "frame.hpp"
 #include "image.hpp"
 
@@ -20,6 +21,7 @@ struct view {
     std::string name;  ///< the file's name below the images folder, with its ending
     gs::camera camera;
     image pixels;
+    depth_map depths{};  ///< of the photo's size, or none
 };
 
 struct coloured_point {
@@ -56,6 +58,7 @@ struct load_options {
     std::string data;               ///< a folder, or "synthetic:NAME[,PARAMETER=VALUE...]"
     std::string images = "images";  ///< COLMAP: the folder of photos, relative to `data`
     bool masks = true;              ///< COLMAP: leave out what the files in `masks` do
+    bool depths = true;             ///< COLMAP: read the depth maps in `depths`
     int resolution = 1;      ///< 1, 2, 4, 8 divide the size; any other number is the longer side in pixels
     bool eval = false;       ///< hold out test views
     int test_every = 8;      ///< COLMAP: every n-th view, sorted by name, from the first

@@ -16,7 +16,9 @@
 #include <utility>
 
 #include "../error.hpp"
+#include "../parallel.hpp"
 #include "look_at.hpp"
+#include "mask.hpp"
 #include "synthetic_parameters.hpp"
 
 namespace gs {
@@ -27,7 +29,6 @@ constexpr int largest_size = 2048;  // 48 pictures of it are 0.8 GB
 constexpr int view_count = 48;
 constexpr int views_per_test_view = 6;
 constexpr int samples_per_side = 4;
-constexpr int point_count = 3000;
 constexpr double field_of_view = 45 * std::numbers::pi / 180;
 constexpr double camera_distance = 3.3;
 constexpr double nearest_hit = 1e-6;
@@ -334,6 +335,28 @@ void paint_passer(const world& w, std::size_t photo, bool masks, image& pixels) 
         }
 }
 
+/// What a network might make of a photo: the inverse of the true depth, with noise, up to a scale and an
+/// offset. Where nothing is hit, it is infinitely far.
+depth_map estimated_depths(const world& w, const camera& c, std::size_t photo) {
+    std::mt19937_64 random(photo + (std::uint64_t{1} << 62));  // none of exposures, passers or noise
+    const double offset = 0.1 + 0.2 * uniform(random), scale = 0.3 + 0.3 * uniform(random);
+    std::vector<double> inverse;
+    for (int row = 0; row < c.height; ++row)
+        for (int column = 0; column < c.width; ++column) {
+            const std::optional<surface_point> hit = first_hit(w, c.centre(), c.ray(column + 0.5, row + 0.5));
+            const auto seen = hit ? c.see(hit->position) : std::nullopt;
+            inverse.push_back(seen ? 1 / seen->depth : 0);
+        }
+    const double nearest = *std::ranges::max_element(inverse);
+    depth_map map{c.width, c.height, {}};
+    for (const double x : inverse) {
+        const double seen = nearest > 0 ? x / nearest * (1 + w.how.depths * normal(random)) : 0;
+        map.values.push_back(static_cast<std::uint16_t>(
+            std::lround(std::clamp(65535 * (offset + scale * seen), 1.0, 65535.0))));
+    }
+    return map;
+}
+
 std::vector<view> spiral_views(int size, const synthetic_parameters& how) {
     std::vector<view> views(view_count);
     for (int i = 0; i < view_count; ++i) {
@@ -366,6 +389,14 @@ void take_photos(const world& w, std::vector<view>& views, bool masks = true) {
     }
     if (w.how.passers > 0)
         for (std::size_t i = 0; i < views.size(); ++i) paint_passer(w, i, masks, views[i].pixels);
+}
+
+/// So many of them, spread evenly.
+std::vector<view> spread(std::vector<view> all, std::size_t count) {
+    std::vector<view> some;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if ((i + 1) * count / all.size() > i * count / all.size()) some.push_back(std::move(all[i]));
+    return some;
 }
 
 /// Where rays through random places of random views meet a surface: seen by a camera by construction, and
@@ -411,6 +442,11 @@ scene make_synthetic_scene(const std::string& name, const load_options& options,
     const int size = size_at(options.resolution);
     std::vector<view> views = spiral_views(size, w.how);
     take_photos(w, views, options.masks);
+    if (w.how.depths >= 0 && options.depths)
+        for_each_in_parallel(views.size(), [&](std::size_t i) {
+            views[i].depths = estimated_depths(w, views[i].camera, i);
+            forget_left_out(views[i].pixels, views[i].depths);
+        });
 
     scene result;
     result.source = "synthetic";
@@ -420,7 +456,9 @@ scene make_synthetic_scene(const std::string& name, const load_options& options,
         const bool held_out = options.eval && i % views_per_test_view == views_per_test_view / 2;
         (held_out ? result.test : result.train).push_back(std::move(views[i]));
     }
-    result.points = seen_points(w, result.train, point_count, options.seed);
+    const std::size_t most = std::min(result.train.size(), static_cast<std::size_t>(w.how.views));
+    result.train = spread(std::move(result.train), most);
+    result.points = seen_points(w, result.train, static_cast<std::size_t>(w.how.points), options.seed);
     if (log) {
         log("synthetic scene '" + name + "': " + std::to_string(result.train.size()) + " training and " +
             std::to_string(result.test.size()) + " test views of " + std::to_string(size) + "x" +

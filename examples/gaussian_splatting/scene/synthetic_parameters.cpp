@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <set>
 #include <sstream>
@@ -17,6 +18,7 @@ struct parameter {
     const char* name;
     double synthetic_parameters::*value;
     double least, most;
+    bool is_whole = false;
 };
 constexpr parameter parameters[] = {{"gloss", &synthetic_parameters::gloss, 0, 1},
                                     {"exposure", &synthetic_parameters::exposure, 0, 2},
@@ -25,6 +27,9 @@ constexpr parameter parameters[] = {{"gloss", &synthetic_parameters::gloss, 0, 1
                                     {"passers", &synthetic_parameters::passers, 0, 0.5},
                                     {"sky", &synthetic_parameters::sky, 0, 1},
                                     {"fisheye", &synthetic_parameters::fisheye, 0, 240},
+                                    {"depths", &synthetic_parameters::depths, 0, 10},
+                                    {"points", &synthetic_parameters::points, 1, 100000, true},
+                                    {"views", &synthetic_parameters::views, 1, 48, true},
                                     {"noise", &synthetic_parameters::noise, 0, 0.5}};
 
 const parameter& parameter_called(const std::string& name) {
@@ -53,11 +58,11 @@ synthetic_parameters parse_synthetic(const std::string& text) {
         double& value = result.*p.value;
         const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), value);
         if (problem != std::errc() || end != number.data() + number.size() ||
-            !(value >= p.least && value <= p.most)) {
+            !(value >= p.least && value <= p.most) || (p.is_whole && value != std::floor(value))) {
             char range[64];
             std::snprintf(range, sizeof range, "%g to %g", p.least, p.most);
-            throw error("the '" + name + "' of a synthetic scene is a number from " + range + ", not '" +
-                        number + "'");
+            throw error("the '" + name + "' of a synthetic scene is a " + (p.is_whole ? "whole " : "") +
+                        "number from " + range + ", not '" + number + "'");
         }
     }
     return result;

@@ -131,4 +131,17 @@ image undistort(const image& photo, const camera& taken_with, const lens& distor
     return result;
 }
 
+depth_map undistort(const depth_map& depths, const camera& taken_with, const lens& distortion,
+                    const camera& wanted) {
+    depth_map result{wanted.width, wanted.height, {}};
+    for (int y = 0; y < wanted.height; ++y)
+        for (int x = 0; x < wanted.width; ++x) {
+            const glm::dvec2 at = to_photo(taken_with, distortion, to_ray(wanted, {x + 0.5, y + 0.5}));
+            const auto column = static_cast<std::size_t>(into_range(at.x, depths.width - 1.0));
+            const auto row = static_cast<std::size_t>(into_range(at.y, depths.height - 1.0));
+            result.values.push_back(depths.values[row * static_cast<std::size_t>(depths.width) + column]);
+        }
+    return result;
+}
+
 }  // namespace gs

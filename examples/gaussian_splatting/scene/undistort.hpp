@@ -30,5 +30,8 @@ std::optional<camera> straightened(const camera& taken_with, const lens& distort
 
 /// The photo as the pinhole camera `wanted` would have taken it, interpolated bilinearly.
 image undistort(const image& photo, const camera& taken_with, const lens& distortion, const camera& wanted);
+/// The same of its depth map, by the nearest pixels.
+depth_map undistort(const depth_map& depths, const camera& taken_with, const lens& distortion,
+                    const camera& wanted);
 
 }  // namespace gs

@@ -180,7 +180,8 @@ bool is_sound_place(const glm::dvec3& place) {
 view shrunk(const view& full, int divisor) {
     const camera& c = full.camera;
     const camera small = at_size(c, divided(c.width, divisor), divided(c.height, divisor));
-    return {full.name, small, shrink(full.pixels, small.width, small.height)};
+    return {full.name, small, shrink(full.pixels, small.width, small.height),
+            resized(full.depths, small.width, small.height)};
 }
 
 std::vector<view> load_views(const std::vector<recorded_view>& recorded, const load_options& options,
@@ -190,22 +191,30 @@ std::vector<view> load_views(const std::vector<recorded_view>& recorded, const l
     const std::vector<camera> scaled = scale_to_resolution(straight, recorded, options.resolution, log);
     std::vector<view> views(recorded.size());
     for_each_in_parallel(recorded.size(), [&](std::size_t i) {
-        const auto& [file, name, _, distortion, model, mask] = recorded[i];
+        const auto& [file, name, _, distortion, model, mask, depth_file] = recorded[i];
         image photo = read_image(file);
         image counts = mask.empty() ? image() : read_mask(mask, photo);
+        depth_map depths =
+            depth_file.empty() ? depth_map() : read_depth_map(depth_file, photo.width, photo.height);
         if (!distortion.is_straight()) {
             photo = undistort(photo, fitted[i], distortion, straight[i]);
             if (!mask.empty()) counts = undistort(counts, fitted[i], distortion, straight[i]);
+            if (depths.is_there()) depths = undistort(depths, fitted[i], distortion, straight[i]);
         }
         apply_mask(counts, photo);  // before shrinking, so that what it leaves out is in no average
+        forget_left_out(photo, depths);
         photo = shrink(photo, scaled[i].width, scaled[i].height);
         if (photo.leaves_all_out()) throw error("the mask " + mask.string() + " leaves nothing of its photo");
-        views[i] = {name, scaled[i], std::move(photo)};
+        views[i] = {name, scaled[i], std::move(photo), resized(depths, scaled[i].width, scaled[i].height)};
     });
-    const auto masks = std::ranges::count_if(recorded, [](const auto& one) { return !one.mask.empty(); });
-    if (masks > 0)
-        log(count_text(static_cast<std::size_t>(masks), "photo") + " of " + std::to_string(recorded.size()) +
-            (masks == 1 ? " has a mask" : " have masks"));
+    const auto say = [&](std::filesystem::path recorded_view::*file, const char* one, const char* several) {
+        const auto count = std::ranges::count_if(recorded, [&](const auto& r) { return !(r.*file).empty(); });
+        if (count > 0)
+            log(count_text(static_cast<std::size_t>(count), "photo") + " of " +
+                std::to_string(recorded.size()) + (count == 1 ? one : several));
+    };
+    say(&recorded_view::mask, " has a mask", " have masks");
+    say(&recorded_view::depths, " has a depth map", " have depth maps");
     return views;
 }
 

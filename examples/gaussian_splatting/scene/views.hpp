@@ -20,8 +20,9 @@ struct recorded_view {
     std::string name;
     gs::camera camera;  ///< of the size that was recorded
     lens distortion;
-    std::string model;           ///< the camera model's name, for messages
-    std::filesystem::path mask;  ///< see `mask_of`; empty: all of it counts
+    std::string model;             ///< the camera model's name, for messages
+    std::filesystem::path mask;    ///< see `beside_photo`; empty: all of it counts
+    std::filesystem::path depths;  ///< its depth map, likewise; empty: it has none
 };
 
 /// Opens the photos, in parallel and shrinking each at once; the views come in the order of `recorded`.
@@ -29,7 +30,8 @@ struct recorded_view {
 std::vector<view> load_views(const std::vector<recorded_view>& recorded, const load_options& options,
                              const log_function& log);
 
-/// The view with its sides divided by `divisor`, to the nearest pixel: the photo averaged over areas.
+/// The view with its sides divided by `divisor`, to the nearest pixel: photo and depth map averaged over
+/// areas.
 view shrunk(const view& full, int divisor);
 
 /// Whether the focal lengths lie between 1e-6 and 1e9 pixels and the rest is finite and at most 1e9: what no

@@ -14,6 +14,7 @@
 #include "adam.hpp"
 #include "colour_spread.hpp"
 #include "densification.hpp"
+#include "depth_gradient.hpp"
 #include "engine.hpp"
 #include "exposures.hpp"
 #include "photometric.hpp"
@@ -90,21 +91,27 @@ class device_engine final : public engine {
             const std::size_t level = i / train.size(), which = i % train.size();
             shrunk[level][which] = gs::shrunk(train[which], 2 << level);
         });
-        std::size_t bytes = 0;
+        std::size_t bytes = 0, depths = 0;
         const auto count = [&](const std::vector<view>& views) {
-            for (const view& v : views) bytes += v.pixels.rgba.size();
+            for (const view& v : views) {
+                bytes += v.pixels.rgba.size();
+                depths += v.depths.values.size();
+            }
         };
         count(train);
         count(test);
         for (const auto& views : shrunk) count(views);
         photos_.resize(bytes);
-        bytes = 0;
+        depths_.resize(depths);
+        bytes = depths = 0;
         const auto put = [&](const std::vector<view>& views, std::vector<photo>& to) {
             to.clear();
             for (const view& v : views) {
                 device_.upload(photos_.data() + bytes, v.pixels.rgba.data(), v.pixels.rgba.size());
-                to.push_back({v.camera, bytes, v.pixels.has_mask});
+                device_.upload(depths_.data() + depths, v.depths.values.data(), v.depths.values.size());
+                to.push_back({v.camera, bytes, v.pixels.has_mask, depths, v.depths.is_there()});
                 bytes += v.pixels.rgba.size();
+                depths += v.depths.values.size();
             }
         };
         train_.resize(1 + levels);
@@ -119,6 +126,7 @@ class device_engine final : public engine {
         set_downscales(0);
         exposures_.set(std::vector<exposure>(train.size(), unexposed));
         test_exposures_.set({});
+        depth_fits_.assign(train.size(), {});
         device_.wait();
     }
 
@@ -160,14 +168,14 @@ class device_engine final : public engine {
 
     void step(const step_plan& plan) override {
         const gs::camera& camera = train_[downscales_][plan.view].camera;
-        const device::iteration_shape shape{count_,
-                                            renderer_.reserved_instances(),
-                                            static_cast<std::size_t>(camera.width),
-                                            static_cast<std::size_t>(camera.height),
-                                            static_cast<std::size_t>(plan.gradient),
-                                            (plan.exposure_rate > 0 ? std::size_t{1} : 0) +
-                                                (sky_.is_there() ? std::size_t{2} : 0) +
-                                                (camera.fisheye ? std::size_t{4} : 0)};
+        const device::iteration_shape shape{
+            count_,
+            renderer_.reserved_instances(),
+            static_cast<std::size_t>(camera.width),
+            static_cast<std::size_t>(camera.height),
+            static_cast<std::size_t>(plan.gradient),
+            (plan.exposure_rate > 0 ? std::size_t{1} : 0) + (sky_.is_there() ? std::size_t{2} : 0) +
+                (learns_depth(plan) ? std::size_t{4} : 0) + (camera.fisheye ? std::size_t{8} : 0)};
         device_.iteration(shape, [&] { iterate(plan); });
         lengths_of_[plan.view] = count_;
     }
@@ -196,6 +204,8 @@ class device_engine final : public engine {
     void set_exposures(const std::vector<exposure>& all) override { exposures_.set(all); }
     void set_test_exposures(const std::vector<exposure>& all) override { test_exposures_.set(all); }
     void centre_exposures() override { exposures_.centre(); }
+
+    void set_depth_fits(const std::vector<depth_fit>& all) override { depth_fits_ = all; }
 
     void clear_cameras() override {
         device_.for_each_index(
@@ -310,6 +320,8 @@ class device_engine final : public engine {
         gs::camera camera;
         std::size_t first;  ///< byte in `photos_`
         bool masked;
+        std::size_t first_depth;  ///< in `depths_`
+        bool has_depths;
     };
 
     static std::size_t values_of(const camera& c) {
@@ -326,11 +338,13 @@ class device_engine final : public engine {
     void iterate(const step_plan& plan) {
         using device::stage;
         const photo& shot = train_[downscales_][plan.view];
-        renderer_.forward(trained_.values.read(), count_, shot.camera, plan.sh_degree, plan.background,
-                          sky_.draw(shot.camera));
-        device_.begin(stage::loss);
+        const float* backdrop = sky_.draw(shot.camera);
         photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
                                plan.background, shot.masked);
+        renderer_.list(trained_.values.read(), count_, shot.camera, plan.sh_degree);
+        if (learns_depth(plan)) learn_depth(plan);
+        renderer_.blend(plan.background, backdrop);
+        device_.begin(stage::loss);
         const bool exposes = plan.exposure_rate > 0;
         const std::size_t pixels = values_of(shot.camera) / 3;
         const float* shown =
@@ -347,6 +361,24 @@ class device_engine final : public engine {
                            plan.watch ? seen_.data() : nullptr);
         device_.for_each_index(1, close_step{renderer_.room(), skipped_.data(), lengths_.data() + plan.view,
                                              photometric_.totals(), renderer_.fault(), watch});
+    }
+
+    bool learns_depth(const step_plan& plan) const {
+        return plan.depth_weight > 0 && train_[downscales_][plan.view].has_depths &&
+               depth_fits_[plan.view].scale > 0;
+    }
+
+    /// Between the renderer's `list` and `blend`.
+    void learn_depth(const step_plan& plan) {
+        const photo& shot = train_[downscales_][plan.view];
+        const std::size_t n = values_of(shot.camera);
+        by_depths_.resize(n);
+        renderer_.blend_depths();
+        device_.for_each_index(
+            n / 3,
+            depth_gradient{renderer_.picture(), depths_.data() + shot.first_depth, depth_fits_[plan.view],
+                           3 * plan.depth_weight / static_cast<float>(n), n / 3, by_depths_.data()});
+        renderer_.backward_depths(by_depths_.data(), photometric_.largest_gradient(), plan.gradient);
     }
 
     adam<float> descent(const step_plan& plan, const train::watch& watch) {
@@ -399,6 +431,9 @@ class device_engine final : public engine {
     train::exposures<Device> exposures_, test_exposures_;
     train::sky<Device> sky_;
     buffer<std::uint8_t> photos_;
+    buffer<std::uint16_t> depths_;
+    std::vector<depth_fit> depth_fits_;  ///< one a training view
+    buffer<float> by_depths_;
     std::vector<std::vector<photo>> train_{1};  ///< by how often they were shrunk
     std::vector<photo> test_;
     buffer<glm::vec3> cameras_;  ///< where those to learn from were taken

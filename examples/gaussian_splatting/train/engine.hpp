@@ -31,6 +31,7 @@ struct step_plan {
     bool watch = false;       ///< note what `densify` and `prune` want to know
     float exposure_rate = 0;  ///< of Adam; 0: photos are as the scene is, and all of this costs nothing
     float sky_rate = 0;       ///< of Adam, for a model that has a sky
+    float depth_weight = 0;   ///< of the mean error of inverse depths, for photos whose depth map has a fit
 };
 
 /// See `exposure_kernels.hpp`.
@@ -72,6 +73,8 @@ class engine {
     virtual void set_exposures(const std::vector<exposure>& all) = 0;
     virtual void centre_exposures() = 0;
     /// @}
+    /// Of the training photos' depth maps, one each; after `set_views` none has any.
+    virtual void set_depth_fits(const std::vector<depth_fit>& all) = 0;
     /// Hides Gaussians nearer to a training camera than the near plane, by an opacity of zero. That camera
     /// does not draw them, so its photo cannot speak against them, and other views' pictures suffer.
     virtual void clear_cameras() = 0;

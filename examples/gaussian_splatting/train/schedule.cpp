@@ -40,6 +40,10 @@ float schedule::sky_rate_at(int iteration) const {
     return static_cast<float>(0.01 * std::pow(0.01, static_cast<double>(iteration) / iterations));
 }
 
+float schedule::depth_weight_at(int iteration) const {
+    return static_cast<float>(std::pow(0.01, static_cast<double>(iteration) / iterations));
+}
+
 int schedule::densify_until() const {
     return std::min(densify_until_iter.value_or(std::min(15000, iterations / 2)), iterations);
 }

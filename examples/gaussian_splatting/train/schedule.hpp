@@ -62,6 +62,9 @@ struct schedule {
     float exposure_rate_at(int iteration, int views) const;
     /// Adam's rate of a sky's coefficients, which falls to a hundredth.
     float sky_rate_at(int iteration) const;
+    /// Of the mean error of inverse depths, in the frame whose extent is `internal_extent`: falls from 1 to a
+    /// hundredth, as in Kerbl et al. 2024's implementation, whose unit is that of structure from motion.
+    float depth_weight_at(int iteration) const;
     int densify_until() const;
     /// A Gaussian grows from this mean gradient of its centre, in halves of the picture. Where it is not
     /// said, it is 8e-5 if densification lasts 15,000 iterations, and more, by the fourth root, if it is

@@ -131,6 +131,7 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     int drop_bands_after = std::max(review_after, schedule.count_is_final_after(views));
     const bool exposes = !options.exposures.empty();
     if (exposes) engine.set_exposures(options.exposures);
+    if (!options.depth_fits.empty()) engine.set_depth_fits(options.depth_fits);
     engine.take_findings();  // of steps that are not ours
     int downscales = schedule.downscales_at(1);
     engine.set_downscales(downscales);
@@ -157,6 +158,7 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
         plan.iteration = iteration;
         if (exposes) plan.exposure_rate = schedule.exposure_rate_at(iteration, views);
         plan.sky_rate = schedule.sky_rate_at(iteration);
+        if (!options.depth_fits.empty()) plan.depth_weight = schedule.depth_weight_at(iteration);
         engine.step(plan);
         watch.shows(plan.view);
 

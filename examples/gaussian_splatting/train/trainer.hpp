@@ -32,6 +32,7 @@ struct train_options {
     background_choice background;
     /// Of the training photos, to begin from; none: photos are as the scene is. See exposure_kernels.hpp.
     std::vector<train::exposure> exposures;
+    std::vector<depth_fit> depth_fits;  ///< of the training photos' depth maps, if these are learnt from
     /// Asked half-way, with the degree so far, up to which colours are to depend on direction from then on;
     /// may be none, and the schedule's stays.
     std::function<int(int sh_degree)> review_bands;
