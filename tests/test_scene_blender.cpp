@@ -209,6 +209,36 @@ TEST_CASE("a camera model in a transforms file is that of its frame, or of all")
     CHECK(says(error_of_loading(folder.path()), {"camera_model is not a string"}));
 }
 
+TEST_CASE("masks of a transforms file leave out where they are black") {
+    const temporary_folder folder;
+    json file = transforms(folder.path(), "train", 2);
+    file["frames"][1]["mask_path"] = "masks/second.png";
+    write_json(folder / "transforms_train.json", file);
+    CHECK(says(error_of_loading(folder.path()), {"frame 1", "masks/second.png", "missing"}));
+    const gs::camera c = [&] {
+        auto options = options_for(folder.path());
+        options.masks = false;
+        return gs::load_scene(options, [](const std::string&) {}).train[1].camera;
+    }();
+    std::vector<float> planes;
+    for (int plane = 0; plane < 3; ++plane)
+        for (int y = 0; y < c.height; ++y)
+            for (int x = 0; x < c.width; ++x) planes.push_back(x < c.width / 2 ? 0.0f : 1.0f);
+    std::filesystem::create_directories(folder / "masks");
+    gs::write_png(folder / "masks/second.png", c.width, c.height, planes);
+    const gs::scene scene = load(folder.path());
+    CHECK_FALSE(scene.train[0].pixels.has_mask);
+    REQUIRE(scene.train[1].pixels.has_mask);
+    const auto alpha = [&](int x) {
+        return int{scene.train[1].pixels.rgba[4 * static_cast<std::size_t>(x) + 3]};
+    };
+    CHECK(alpha(0) == 0);
+    CHECK(alpha(c.width - 1) == 255);
+    file["frames"][1]["mask_path"] = 3;
+    write_json(folder / "transforms_train.json", file);
+    CHECK(says(error_of_loading(folder.path()), {"mask_path is not a string"}));
+}
+
 TEST_CASE("a rotation that is slightly off is made exact") {
     const temporary_folder folder;
     json file = transforms(folder.path(), "train", 1);

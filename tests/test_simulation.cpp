@@ -314,7 +314,7 @@ TEST_CASE("an inverse depth is drawn to what its map says, and to nothing that i
 TEST_CASE("with depth maps, few photos with few points make a better scene") {
     for (const auto make : engines()) {
         double gain = 0;
-        for (const std::uint64_t seed : {0, 1}) {
+        for (const std::uint64_t seed : {0, 1, 2, 3}) {
             gs::load_options from;
             from.data = "synthetic:spheres,views=4,points=300,depths=0.02";
             from.resolution = 48;
@@ -328,6 +328,7 @@ TEST_CASE("with depth maps, few photos with few points make a better scene") {
                 o.schedule.sh_degree = 0;
                 o.max_cap = 4000;
                 o.seed = seed;
+                o.gradient = gs::gradient_policy::fixed;  // the same whenever it is run: runs differ by a dB
                 o.depth_fits = fits;
                 e->set_views(scene.train, scene.test, o.schedule.num_downscales);
                 e->set_model(gs::from_points(scene.points, 0, 4000, seed));
@@ -336,7 +337,7 @@ TEST_CASE("with depth maps, few photos with few points make a better scene") {
             };
             const depth_evidence found = compare_depths(scene);
             CHECK(found.agreeing >= 3);
-            gain += psnr_with(found.fits) / 2 - psnr_with({}) / 2;
+            gain += psnr_with(found.fits) / 4 - psnr_with({}) / 4;
         }
         MESSAGE("depth maps bring " << gain << " dB");
         CHECK(gain > 0.3);

@@ -150,7 +150,7 @@ int sh_degree(const evidence& e) {
 }
 
 std::vector<decision> decide(const evidence& e) {
-    return {direction(e), exposure(e), antialiasing(e), sky(e), masks(e), depth(e), background(e), lens(e)};
+    return {direction(e), exposure(e), antialiasing(e), sky(e), masks(e), depth(e), lens(e), background(e)};
 }
 
 }  // namespace gs::effects

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "../clipped.hpp"
 #include "../error.hpp"
 #include "transforms.hpp"
 #include "views.hpp"
@@ -69,8 +70,17 @@ void set_intrinsics(recorded_view& recorded, const transforms& all, std::size_t 
         throw error(all.where_is(index) + unsound_intrinsics);
 }
 
+/// None where the frame has none.
+std::filesystem::path find_mask(const std::filesystem::path& data, const transforms& all, std::size_t index) {
+    if (all.frames[index].mask.empty()) return {};
+    auto file = data / all.frames[index].mask;
+    if (!std::filesystem::is_regular_file(file))
+        throw error(all.where_is(index) + ": the mask " + clipped(file.string()) + " is missing");
+    return file;
+}
+
 std::vector<recorded_view> recorded_views(const std::filesystem::path& data,
-                                          const std::filesystem::path& file) {
+                                          const std::filesystem::path& file, bool masks) {
     const transforms all = read_transforms(file);
     std::vector<recorded_view> recorded;
     recorded.reserve(all.frames.size());
@@ -81,15 +91,16 @@ std::vector<recorded_view> recorded_views(const std::filesystem::path& data,
         if (view.name.empty()) view.name = view.file.generic_string();  // absolute, where the scene's is not
         view.camera.rotation = all.frames[i].rotation;
         view.camera.translation = all.frames[i].translation;
+        if (masks) view.mask = find_mask(data, all, i);
         set_intrinsics(view, all, i);
         recorded.push_back(std::move(view));
     }
     return recorded;
 }
 
-std::vector<recorded_view> recorded_test_views(const std::filesystem::path& data) {
+std::vector<recorded_view> recorded_test_views(const std::filesystem::path& data, bool masks) {
     for (const char* name : {"transforms_test.json", "transforms_val.json"})
-        if (std::filesystem::exists(data / name)) return recorded_views(data, data / name);
+        if (std::filesystem::exists(data / name)) return recorded_views(data, data / name, masks);
     return {};
 }
 
@@ -97,9 +108,9 @@ std::vector<recorded_view> recorded_test_views(const std::filesystem::path& data
 
 scene load_blender_scene(const load_options& options, const log_function& log) {
     const std::filesystem::path data = options.data;
-    std::vector<recorded_view> recorded = recorded_views(data, data / "transforms_train.json");
+    std::vector<recorded_view> recorded = recorded_views(data, data / "transforms_train.json", options.masks);
     const std::size_t train_count = recorded.size();
-    std::ranges::move(recorded_test_views(data), std::back_inserter(recorded));
+    std::ranges::move(recorded_test_views(data, options.masks), std::back_inserter(recorded));
     std::vector<view> views = load_views(recorded, options, log);
     scene result;
     result.source = "Blender";

@@ -182,6 +182,9 @@ class reader final : public json::json_sax_t {
         } else if (field_ == "transform_matrix") {
             frame_.has_matrix = true;
             frame_.is_sound = false;
+        } else if (field_ == "mask_path") {
+            if (!text) throw error(where() + ": mask_path is not a string");
+            all_.frames.back().mask = *text;
         } else if (field_ == "camera_model") {
             all_.frames.back().lens = lens_called(text, where());
         } else {

@@ -32,6 +32,7 @@ struct said_number {
 
 struct transforms_frame {
     std::string path;        ///< of its photo, whose ending may have been left out
+    std::string mask;        ///< its path; empty: none
     glm::dmat3 rotation{1};  ///< of `camera`
     glm::dvec3 translation{0};
     transforms_lens lens = transforms_lens::unsaid;

@@ -338,12 +338,11 @@ class device_engine final : public engine {
     void iterate(const step_plan& plan) {
         using device::stage;
         const photo& shot = train_[downscales_][plan.view];
-        const float* backdrop = sky_.draw(shot.camera);
         photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
                                plan.background, shot.masked);
         renderer_.list(trained_.values.read(), count_, shot.camera, plan.sh_degree);
         if (learns_depth(plan)) learn_depth(plan);
-        renderer_.blend(plan.background, backdrop);
+        renderer_.blend(plan.background, sky_.draw(shot.camera));
         device_.begin(stage::loss);
         const bool exposes = plan.exposure_rate > 0;
         const std::size_t pixels = values_of(shot.camera) / 3;
