@@ -30,7 +30,7 @@ PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"pass
 SKYLESS = "alpha"  # what no surface hides is transparent there
 RIGHT_DEPTHS = 0.05  # of what has more noise nobody can tell what is nearer
 MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "sky": (0.3, 1), "passers": (0.05, 0.2),
-         "depths": (0.01, 0.02)}
+         "depths": (0.01, 0.02), "fisheye": (50, 70)}
 
 
 def synthetic(kind, world, parameters):
