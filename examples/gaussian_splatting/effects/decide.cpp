@@ -45,9 +45,9 @@ constexpr const char* antialiasing = "no time; 1 to 7 dB from other distances, -
 constexpr const char* sky =
     "2 to 15 % of an iteration; 4 dB where a third of the photos is sky, 0.5 dB on photos";
 constexpr const char* masks = "no time; 2 dB where a tenth of each photo is something that passed";
-constexpr const char* lens = "a little of an iteration; without, no photo that is wider than a hemisphere";
+constexpr const char* lens = "3 % of an iteration; without, photos as wide as a hemisphere are of no use";
 constexpr const char* depth =
-    "70 to 90 % of an iteration; 1 dB where photos and points are few, nothing where either are many";
+    "35 to 90 % of an iteration; up to 1 dB where photos and points are few, else nothing";
 constexpr const char* background = "nothing";
 }  // namespace expected
 
