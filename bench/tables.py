@@ -375,7 +375,7 @@ EXAMPLES = {
 TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability, hard_cases,
                                  against_double, backward_ladder, backward_contenders, roofline, schedules, tradeoff, tradeoff_default, decisions, effects, effects_photos, accuracy, accuracy_gpu,
                                  accuracy_active, accumulations)}
-TABLES.update({name: lambda name=name: paper.tables(results(name)) for name in ("paper_cpu", "paper_h200")})
+TABLES.update({name: lambda name=name: paper.tables(results(name)) for name in ("paper_cpu", "paper_h200", "paper_h200_20s")})
 TABLES.update({f"{name}_{m}": example(m, title) for name, title in EXAMPLES.items() for m in ("emulator", "gpu")})
 
 
