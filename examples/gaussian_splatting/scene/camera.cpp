@@ -41,7 +41,17 @@ double fisheye::reach(double angle) const {
 
 double fisheye::angle(double reach) const {
     if (reach >= this->reach(end_)) return end_;
-    return bisect(0, end_, [&](double t) { return this->reach(t) <= reach; });
+    // Newton's steps, and halves where these leave what is left.
+    double low = 0, high = end_, angle = std::min(reach, end_);
+    for (int step = 0; step < 60; ++step) {
+        const double off = this->reach(angle) - reach;
+        (off > 0 ? high : low) = angle;
+        const double tangent = angle - off / slope(k_, angle);
+        const double next = tangent >= low && tangent <= high ? tangent : std::midpoint(low, high);
+        if (std::abs(next - angle) <= 1e-15 * angle) return next;
+        angle = next;
+    }
+    return angle;
 }
 
 std::optional<camera::image_point> camera::see(const glm::dvec3& point) const {
