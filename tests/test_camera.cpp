@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -35,6 +36,17 @@ const std::vector<double> angles = {0,           1e-9,          1e-5,         1e
                                     0.2,         41.4 * degree, 0.7227342478, 41.5 * degree,
                                     89 * degree, 90 * degree,   91 * degree,  115 * degree};
 
+struct lens_case {
+    gs::camera camera;
+    std::vector<double> angles;
+};
+/// That lens, and one that bends nothing, which sees farther.
+std::vector<lens_case> lens_cases() {
+    gs::camera wide = fisheye_camera();
+    wide.fisheye = gs::fisheye({0, 0, 0, 0});
+    return {{fisheye_camera(), angles}, {wide, {150 * degree, 170 * degree}}};
+}
+
 template <class Real>
 using projection = gs::raster::projection_of<Real, gs::effect_set{.fisheye = true}>;
 
@@ -53,15 +65,16 @@ TEST_CASE("fisheye: angle and reach are each other's inverse, up to where the le
 }
 
 TEST_CASE("fisheye: a ray through where a point is seen meets it") {
+    for (const auto& [c, angles] : lens_cases())
+        for (const double angle : angles) {
+            const glm::dvec3 point = glm::transpose(c.rotation) * (place_at(angle, 0.8, 2.5) - c.translation);
+            const auto seen = c.see(point);
+            REQUIRE(seen);
+            CHECK(seen->depth == doctest::Approx(2.5));
+            const glm::dvec3 to = glm::normalize(point - c.centre()), ray = c.ray(seen->x, seen->y);
+            CHECK(glm::length(ray - to) < 1e-9);
+        }
     const gs::camera c = fisheye_camera();
-    for (const double angle : angles) {
-        const glm::dvec3 point = glm::transpose(c.rotation) * (place_at(angle, 0.8, 2.5) - c.translation);
-        const auto seen = c.see(point);
-        REQUIRE(seen);
-        CHECK(seen->depth == doctest::Approx(2.5));
-        const glm::dvec3 to = glm::normalize(point - c.centre()), ray = c.ray(seen->x, seen->y);
-        CHECK(glm::length(ray - to) < 1e-9);
-    }
     CHECK_FALSE(c.see(c.centre() - glm::transpose(c.rotation) * glm::dvec3(0, 0, 1)));  // behind it
 }
 
@@ -96,63 +109,68 @@ TEST_CASE("angle over sine: value and derivatives against those of long double")
 }
 
 TEST_CASE("fisheye: kernels see what the camera sees, with the derivatives of central differences") {
-    const gs::camera c = fisheye_camera();
-    const auto camera = gs::raster::for_device<double>(c);
-    std::mt19937 random(1);
-    std::normal_distribution<double> normal;
-    const auto some = [&] { return glm::dvec3(normal(random), normal(random), normal(random)); };
-    const auto at = [&](const glm::dvec3& point) {
-        return projection<double>(c.rotation * point + c.translation, camera);
-    };
-    for (const double angle : angles)
-        for (const double around : {0.0, 0.8, 4.0}) {
-            CAPTURE(angle);
-            CAPTURE(around);
-            const glm::dvec3 point =
-                glm::transpose(c.rotation) * (place_at(angle, around, 2.5) - c.translation);
-            const auto p = at(point);
-            const auto seen = c.see(point);
-            CHECK(p.x == doctest::Approx(seen->x).epsilon(1e-12));
-            CHECK(p.y == doctest::Approx(seen->y).epsilon(1e-12));
-            CHECK(projection<double>::depth(c.rotation * point + c.translation) == doctest::Approx(2.5));
+    for (const lens_case& of : lens_cases()) {
+        const gs::camera& c = of.camera;
+        const auto camera = gs::raster::for_device<double>(c);
+        std::mt19937 random(1);
+        std::normal_distribution<double> normal;
+        const auto some = [&] { return glm::dvec3(normal(random), normal(random), normal(random)); };
+        const auto at = [&](const glm::dvec3& point) {
+            return projection<double>(c.rotation * point + c.translation, camera);
+        };
+        for (const double angle : of.angles)
+            for (const double around : {0.0, 0.8, 4.0}) {
+                CAPTURE(angle);
+                CAPTURE(around);
+                const glm::dvec3 point =
+                    glm::transpose(c.rotation) * (place_at(angle, around, 2.5) - c.translation);
+                const auto p = at(point);
+                const auto seen = c.see(point);
+                CHECK(p.x == doctest::Approx(seen->x).epsilon(1e-12));
+                CHECK(p.y == doctest::Approx(seen->y).epsilon(1e-12));
+                CHECK(projection<double>::depth(c.rotation * point + c.translation) == doctest::Approx(2.5));
 
-            const glm::dvec2 by_centre(normal(random), normal(random));
-            const glm::dvec3 by_px = some(), by_py = some();
-            const glm::dvec3 gradient = p.position_gradient(by_centre, by_px, by_py, camera);
-            constexpr double step = 1e-5;
-            for (int k = 0; k < 3; ++k) {
-                glm::dvec3 aside(0);
-                aside[k] = step;
-                const auto more = at(point + aside), less = at(point - aside);
-                CHECK(p.px[k] == doctest::Approx((more.x - less.x) / (2 * step)).epsilon(1e-6));
-                CHECK(p.py[k] == doctest::Approx((more.y - less.y) / (2 * step)).epsilon(1e-6));
-                const double change = glm::dot(by_centre, glm::dvec2(more.x - less.x, more.y - less.y)) +
-                                      glm::dot(by_px, more.px - less.px) + glm::dot(by_py, more.py - less.py);
-                CHECK(gradient[k] == doctest::Approx(change / (2 * step)).epsilon(1e-6).scale(100));
+                const glm::dvec2 by_centre(normal(random), normal(random));
+                const glm::dvec3 by_px = some(), by_py = some();
+                const glm::dvec3 gradient = p.position_gradient(by_centre, by_px, by_py, camera);
+                constexpr double step = 1e-5;
+                for (int k = 0; k < 3; ++k) {
+                    glm::dvec3 aside(0);
+                    aside[k] = step;
+                    const auto more = at(point + aside), less = at(point - aside);
+                    CHECK(p.px[k] == doctest::Approx((more.x - less.x) / (2 * step)).epsilon(1e-6));
+                    CHECK(p.py[k] == doctest::Approx((more.y - less.y) / (2 * step)).epsilon(1e-6));
+                    const double change = glm::dot(by_centre, glm::dvec2(more.x - less.x, more.y - less.y)) +
+                                          glm::dot(by_px, more.px - less.px) +
+                                          glm::dot(by_py, more.py - less.py);
+                    CHECK(gradient[k] == doctest::Approx(change / (2 * step)).epsilon(1e-6).scale(100));
+                }
             }
-        }
+    }
 }
 
 TEST_CASE("fisheye: float is near double, on the axis as well") {
-    const gs::camera c = fisheye_camera();
-    const auto wide = gs::raster::for_device<double>(c);
-    const auto narrow = gs::raster::for_device<float>(c);
-    for (const double angle : angles)
-        for (const double around : {0.3, 2.0}) {
-            CAPTURE(angle);
-            const glm::vec3 at(place_at(angle, around, 2.5));
-            const projection<double> exact(glm::dvec3(at), wide);
-            const projection<float> rounded(at, narrow);
-            const double size = glm::length(exact.px) + glm::length(exact.py);
-            CHECK(std::abs(rounded.x - exact.x) < 2e-4);
-            CHECK(std::abs(rounded.y - exact.y) < 2e-4);
-            CHECK(glm::length(glm::dvec3(rounded.px) - exact.px) < 1e-5 * size);
-            CHECK(glm::length(glm::dvec3(rounded.py) - exact.py) < 1e-5 * size);
-            const glm::vec3 a(0.3, -0.5, 0.8), b(-0.7, 0.1, 0.4);
-            const glm::dvec3 g = exact.position_gradient({0.2, 0.3}, a, b, wide);
-            const glm::dvec3 h(rounded.position_gradient({0.2f, 0.3f}, a, b, narrow));
-            CHECK(glm::length(g - h) < 1e-4 * size);
-        }
+    for (const lens_case& of : lens_cases()) {
+        const gs::camera& c = of.camera;
+        const auto wide = gs::raster::for_device<double>(c);
+        const auto narrow = gs::raster::for_device<float>(c);
+        for (const double angle : of.angles)
+            for (const double around : {0.3, 2.0}) {
+                CAPTURE(angle);
+                const glm::vec3 at(place_at(angle, around, 2.5));
+                const projection<double> exact(glm::dvec3(at), wide);
+                const projection<float> rounded(at, narrow);
+                const double size = glm::length(exact.px) + glm::length(exact.py);
+                CHECK(std::abs(rounded.x - exact.x) < 2e-4);
+                CHECK(std::abs(rounded.y - exact.y) < 2e-4);
+                CHECK(glm::length(glm::dvec3(rounded.px) - exact.px) < 1e-5 * size);
+                CHECK(glm::length(glm::dvec3(rounded.py) - exact.py) < 1e-5 * size);
+                const glm::vec3 a(0.3, -0.5, 0.8), b(-0.7, 0.1, 0.4);
+                const glm::dvec3 g = exact.position_gradient({0.2, 0.3}, a, b, wide);
+                const glm::dvec3 h(rounded.position_gradient({0.2f, 0.3f}, a, b, narrow));
+                CHECK(glm::length(g - h) < 1e-4 * size);
+            }
+    }
 }
 
 TEST_CASE("fisheye: what is too near or beyond the picture's cone is not drawn") {
@@ -167,7 +185,14 @@ TEST_CASE("fisheye: what is too near or beyond the picture's cone is not drawn")
     const double cone = c.fisheye->angle(std::hypot((410 + 120) / 260.0, (310 + 90) / 250.0));
     CHECK(is_drawn(cone - 0.01, 2));
     CHECK_FALSE(is_drawn(cone + 0.01, 2));
-    CHECK(is_drawn(100 * degree, 2) == (cone > 100 * degree));
+    const auto narrow = gs::raster::for_device<float>(c);
+    const float infinite = std::numeric_limits<float>::infinity();
+    for (const glm::vec3& at : {glm::vec3(0), glm::vec3(0, 0, -1), glm::vec3(infinite, 0, 0)})
+        CHECK_FALSE(projection<float>::is_drawn(at, narrow));
+    gs::camera at_origin = c;
+    at_origin.rotation = glm::dmat3(1);
+    at_origin.translation = {0, 0, 0};
+    CHECK_FALSE(at_origin.see({0, 0, 0}));
 }
 
 TEST_CASE("fisheye: kernels' rays are the camera's") {

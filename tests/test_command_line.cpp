@@ -485,7 +485,7 @@ TEST_CASE("inspect says what a scene calls for, and writes it") {
     CAPTURE(o.err);
     CHECK(o.code == 0);
     const auto json = nlohmann::json::parse(read_file(file));
-    REQUIRE(json.at("effects").size() == 7);
+    REQUIRE(json.at("effects").size() == 8);
     for (const auto& effect : json.at("effects")) {
         const auto name = effect.at("name").get<std::string>();
         CHECK(effect.at("called_for").get<bool>() == (name == "direction" || name == "exposure"));

@@ -201,6 +201,12 @@ TEST_CASE("a camera model in a transforms file is that of its frame, or of all")
     const gs::scene scene = load(folder.path());
     CHECK(scene.train[0].camera.fisheye.value().k() == std::array{0.1, -0.02, 0.003, -0.0004});
     CHECK_FALSE(scene.train[1].camera.fisheye);
+    file["frames"][1]["camera_model"] = nullptr;  // not said
+    write_json(folder / "transforms_train.json", file);
+    CHECK(load(folder.path()).train[1].camera.fisheye);
+    file["k1"] = -50;
+    write_json(folder / "transforms_train.json", file);
+    CHECK(says(error_of_loading(folder.path()), {"train_0.png", "folds", "4 degrees"}));
     file["frames"][1]["camera_model"] = "EQUIRECTANGULAR";
     write_json(folder / "transforms_train.json", file);
     CHECK(says(error_of_loading(folder.path()), {"frame 1", "EQUIRECTANGULAR", "OPENCV_FISHEYE"}));
@@ -214,7 +220,7 @@ TEST_CASE("masks of a transforms file leave out where they are black") {
     json file = transforms(folder.path(), "train", 2);
     file["frames"][1]["mask_path"] = "masks/second.png";
     write_json(folder / "transforms_train.json", file);
-    CHECK(says(error_of_loading(folder.path()), {"frame 1", "masks/second.png", "missing"}));
+    CHECK(says(error_of_loading(folder.path()), {"frame 1", "masks/second.png", "no file"}));
     const gs::camera c = [&] {
         auto options = options_for(folder.path());
         options.masks = false;

@@ -19,6 +19,7 @@
 #include "../examples/gaussian_splatting/evaluate/test_exposures.hpp"
 #include "../examples/gaussian_splatting/evaluate/test_views.hpp"
 #include "../examples/gaussian_splatting/model/initialise.hpp"
+#include "../examples/gaussian_splatting/raster/effect_set.hpp"
 #include "../examples/gaussian_splatting/train/depth_gradient.hpp"
 #include "../examples/gaussian_splatting/train/exposures.hpp"
 #include "../examples/gaussian_splatting/train/sky.hpp"
@@ -207,10 +208,14 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
     gs::device::cpu device;
     using warp = gs::device::cpu::warp;
     std::mt19937 random(3);
-    for (const auto& [width, height] : {std::pair{1, 1}, {37, 19}, {64, 8}}) {
+    for (const auto& [width, height, world] : {std::tuple{1, 1, "spheres"},
+                                               {37, 19, "spheres"},
+                                               {64, 8, "spheres"},
+                                               {37, 19, "spheres,fisheye=150"}}) {
         CAPTURE(width);
+        CAPTURE(world);
         const auto pixels = static_cast<std::size_t>(width * height);
-        gs::camera camera = small_scene("synthetic:spheres", 32).train[7].camera;
+        gs::camera camera = small_scene((std::string("synthetic:") + world).c_str(), 32).train[7].camera;
         camera.width = width;
         camera.height = height;
         camera.cx = 0.4 * width;
@@ -229,9 +234,12 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
         };
         gs::train::learned_numbers<gs::device::cpu, gs::sky_width> numbers(device);
         const auto sums = numbers.sums(gs::train::sky_patch<warp, false>::count(width, height));
-        device.for_each_warp(sums.warps, gs::train::sky_backward<warp, false>{
-                                             gs::raster::for_device<warpagg::value_t<warp, float>>(camera),
-                                             through.data(), weights.data(), sums});
+        gs::raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
+            device.for_each_warp(
+                sums.warps, gs::train::sky_backward<warp, Fisheye>{
+                                gs::raster::for_device<warpagg::value_t<warp, float>>(camera), through.data(),
+                                weights.data(), sums});
+        });
         for (const unsigned k : {0u, 4u, 20u, 47u}) {
             double by = 0;
             for (std::size_t part = 0; part < sums.warps; ++part) by += static_cast<double>(*sums(k, part));

@@ -213,6 +213,7 @@ void train(const settings& s) {
     const output_folder output(s.output);
     for (std::size_t v = 0; v < scene.train.size(); ++v)
         if (options.depth_fits.empty() || options.depth_fits[v].scale == 0) scene.train[v].depths = {};
+    for (view& v : scene.test) v.depths = {};
     engine->set_views(scene.train, scene.test, options.schedule.num_downscales);
     engine->set_model(model);
     const double load_seconds = loading.seconds();

@@ -19,7 +19,7 @@ struct observation {
     float roughness = 0;     ///< by which share of the brightest of these pixels the darkest differs
 };
 
-/// Where a photo shows one of the points, in pixels, and how far along the camera's axis.
+/// Where a photo shows one of the points, in pixels, and how deep: see `camera::image_point`.
 struct place_in_photo {
     std::uint32_t point;
     double x, y, depth;

@@ -36,6 +36,7 @@ scene residual_of(const scene& of, train::engine& engine, const std::array<float
     scene residual;
     residual.points = of.points;
     residual.train = of.train;
+    for (view& v : residual.train) v.depths = {};
     const std::vector<train::exposure> exposures = engine.exposures();
     std::vector<std::vector<float>> pictures(static_cast<std::size_t>(omp_get_max_threads()));
     for (std::size_t first = 0; first < of.train.size(); first += pictures.size()) {

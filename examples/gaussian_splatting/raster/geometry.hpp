@@ -44,8 +44,8 @@ struct footprint {
     Real inverse_length;  ///< of the quaternion
     vec3<Real> scale;
     mat3<Real> rotation;  ///< of the Gaussian
-    vec3<Real> ax,
-        ay;  ///< the Jacobian's rows times rotation times scale: the covariance is their Gram matrix
+    /// The Jacobian's rows times rotation times scale: the covariance is their Gram matrix.
+    vec3<Real> ax, ay;
     ellipse<Real> shape;
     flag_of<Real> drawable;  ///< finite
 

@@ -30,7 +30,7 @@ class renderer {
     using model = parameter_arrays<const Real>;
 
     explicit renderer(Device& device) : device_(device), sums_(device) {
-        device_.zero(reserve(pairs_, 1).data(), 1);
+        device_.zero(reserve(pairs_, 2).data(), 2);
         device_.zero(reserve(needed_, 1).data(), 1);
     }
 
@@ -93,8 +93,8 @@ class renderer {
     void blend(const std::array<float, 3>& background, const Real* backdrop = nullptr) {
         background_ = {colour(background)};
         backdrop_ = {backdrop};
-        backdrop == nullptr ? blend_forward_by<Cut>(background_, lists())
-                            : blend_forward_by<Cut>(backdrop_, lists());
+        backdrop == nullptr ? blend_forward_by<Cut>(background_, lists(), pairs_.data())
+                            : blend_forward_by<Cut>(backdrop_, lists(), pairs_.data());
     }
 
     /// Between both: draws the inverse depths, sum w_i / z_i with the weights that colours have, and zero
@@ -107,7 +107,7 @@ class renderer {
                                                reserve(near_, count_).data()});
         });
         background_ = {};
-        blend_forward_by<Cut>(background_, depth_lists());
+        blend_forward_by<Cut>(background_, depth_lists(), pairs_.data() + 1);
     }
     /// From the gradient by these, three planes of which the last two are zero, for `backward` to go on from
     /// with the same `largest` and `policy`.
@@ -208,7 +208,8 @@ class renderer {
     }
     /// Lower patches are shorter work: they are taken where higher ones would leave the device idle.
     template <class Shape, class Backdrop>
-    void blend_forward_by(const Backdrop& background, const tile_lists<Real>& lists) {
+    void blend_forward_by(const Backdrop& background, const tile_lists<Real>& lists,
+                          unsigned long long* pairs) {
         using shorter = lower<Shape>;
         const blend_forward<Real, Shape, Backdrop> blend{lists,
                                                          order(),
@@ -217,10 +218,10 @@ class renderer {
                                                          transmittance_.data(),
                                                          last_.data(),
                                                          checkpoints_.data(),
-                                                         pairs_.data()};
+                                                         pairs};
         const std::size_t n = blend.template warps<warp>(tiles());
         if constexpr (!std::is_same_v<Shape, shorter>) {
-            if (n < device_.resident_warps()) return blend_forward_by<shorter>(background, lists);
+            if (n < device_.resident_warps()) return blend_forward_by<shorter>(background, lists, pairs);
         }
         device_.for_each_warp(n, blend);
     }
@@ -286,7 +287,7 @@ class renderer {
     buffer<Real> picture_, transmittance_, checkpoints_;
     gradient_sums<Device, Real> sums_;
     buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
-    buffer<unsigned long long> pairs_;
+    buffer<unsigned long long> pairs_;  ///< of colours, and of depths, which nobody asks for
     std::uint64_t capacity_ = 0;
 
     unsigned tiles_across_ = 0, tiles_down_ = 0;

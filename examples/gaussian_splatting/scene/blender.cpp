@@ -65,7 +65,7 @@ void set_intrinsics(recorded_view& recorded, const transforms& all, std::size_t 
         taken_with.fisheye = fisheye({bend(k1), bend(k2), bend(k3), bend(k4)});
     else
         recorded.distortion = {bend(k1), bend(k2), bend(p1), bend(p2)};
-    recorded.model = "OPENCV";
+    recorded.model = all.is_fisheye(index) ? "OPENCV_FISHEYE" : "OPENCV";
     if (!has_sound_intrinsics(taken_with, recorded.distortion))
         throw error(all.where_is(index) + unsound_intrinsics);
 }
@@ -75,7 +75,7 @@ std::filesystem::path find_mask(const std::filesystem::path& data, const transfo
     if (all.frames[index].mask.empty()) return {};
     auto file = data / all.frames[index].mask;
     if (!std::filesystem::is_regular_file(file))
-        throw error(all.where_is(index) + ": the mask " + clipped(file.string()) + " is missing");
+        throw error(all.where_is(index) + ": the mask " + clipped(file.string()) + " is no file");
     return file;
 }
 

@@ -61,7 +61,7 @@ std::optional<camera::image_point> camera::see(const glm::dvec3& point) const {
         return image_point{fx * p.x / p.z + cx, fy * p.y / p.z + cy, p.z};
     }
     const double across = std::hypot(p.x, p.y), angle = std::atan2(across, p.z);
-    if (angle >= fisheye->end()) return std::nullopt;
+    if (p == glm::dvec3(0) || angle >= fisheye->end()) return std::nullopt;
     const double out = across > 0 ? fisheye->reach(angle) / across : 0;
     return image_point{fx * out * p.x + cx, fy * out * p.y + cy, glm::length(p)};
 }

@@ -31,9 +31,13 @@ struct covered {
 
 depth_map read_depth_map(const std::filesystem::path& file, int width, int height) {
     depth_map map;
-    map.values = read_grey_png(file, map.width, map.height);
+    try {
+        map.values = read_grey_png(file, map.width, map.height);
+    } catch (const error& problem) {
+        throw error(std::string(problem.what()) + "; --effects auto,-depth trains without depth maps");
+    }
     const double x = static_cast<double>(map.width) / width, y = static_cast<double>(map.height) / height;
-    if (std::abs(x / y - 1) > 0.01)
+    if (std::abs(x / y - 1) > 0.03)
         throw error("the depth map " + file.string() + " is of another shape than its photo: it has " +
                     std::to_string(map.width) + "x" + std::to_string(map.height) + " pixels, the photo " +
                     std::to_string(width) + "x" + std::to_string(height));

@@ -25,7 +25,8 @@ struct depth_fit {
 };
 
 /// Reads a PNG of one channel, of 8 or 16 bit, and brings it to the size of its photo. Throws `error` naming
-/// the file where it is none, or of another shape.
+/// the file where it is none, or of another shape by more than 3 %: networks round sides to multiples of
+/// theirs.
 depth_map read_depth_map(const std::filesystem::path& file, int width, int height);
 
 /// Each pixel is the mean of what it covers and is known, fractions of pixels included; not known where that

@@ -57,8 +57,8 @@ constexpr bool divides_size(int resolution) {
 struct load_options {
     std::string data;               ///< a folder, or "synthetic:NAME[,PARAMETER=VALUE...]"
     std::string images = "images";  ///< COLMAP: the folder of photos, relative to `data`
-    bool masks =
-        true;  ///< leave out what masks do: files in COLMAP's `masks`, or mask_path of a transforms file
+    /// Leave out what masks do: files in COLMAP's `masks`, or mask_path of a transforms file.
+    bool masks = true;
     bool depths = true;      ///< COLMAP: read the depth maps in `depths`
     int resolution = 1;      ///< 1, 2, 4, 8 divide the size; any other number is the longer side in pixels
     bool eval = false;       ///< hold out test views

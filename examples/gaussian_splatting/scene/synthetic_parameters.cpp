@@ -26,7 +26,7 @@ constexpr parameter parameters[] = {{"gloss", &synthetic_parameters::gloss, 0, 1
                                     {"distance", &synthetic_parameters::distance, 0.25, 16},
                                     {"passers", &synthetic_parameters::passers, 0, 0.5},
                                     {"sky", &synthetic_parameters::sky, 0, 1},
-                                    {"fisheye", &synthetic_parameters::fisheye, 0, 240},
+                                    {"fisheye", &synthetic_parameters::fisheye, 0, 190},
                                     {"depths", &synthetic_parameters::depths, 0, 10},
                                     {"points", &synthetic_parameters::points, 1, 100000, true},
                                     {"views", &synthetic_parameters::views, 1, 48, true},

@@ -21,7 +21,7 @@ struct synthetic_parameters {
     double sky = 0;        ///< brightness of what no surface hides, which depends on direction alone: 0 to 1
     double points = 3000;  ///< of its surfaces: 1 to 100000
     double views = 48;     ///< of which as many are for training, spread over those there are: 1 to 48
-    double fisheye = 0;    ///< degrees across the picture of such a lens; 0: a pinhole camera. 0 to 240
+    double fisheye = 0;    ///< degrees across the picture of such a lens; 0: a pinhole camera. 0 to 190
     double noise = 0;      ///< standard deviation of values in [0, 1] where a photo shows something: 0 to 0.5
 };
 

@@ -43,12 +43,13 @@ class said_numbers {
 
 transforms_lens lens_called(const std::string* name, const std::string& where) {
     constexpr std::string_view opencv[] = {"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV"};
+    constexpr std::string_view fisheyes[] = {"SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE", "OPENCV_FISHEYE"};
     if (!name) throw error(where + ": camera_model is not a string");
-    if (*name == "OPENCV_FISHEYE") return transforms_lens::fisheye;
+    if (std::ranges::find(fisheyes, *name) != std::end(fisheyes)) return transforms_lens::fisheye;
     if (std::ranges::find(opencv, *name) == std::end(opencv))
         throw error(where + ": the camera model " + clipped(*name) +
                     " is unknown; supported are SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, "
-                    "OPENCV_FISHEYE");
+                    "SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE, OPENCV_FISHEYE");
     return transforms_lens::opencv;
 }
 
@@ -69,7 +70,11 @@ class reader final : public json::json_sax_t {
         all_.numbers = numbers_.list();
     }
 
-    bool null() override { return value(not_a_number, nullptr); }
+    bool null() override {
+        const bool is_text = field_ == "camera_model" || field_ == "mask_path";  // then it is not said
+        return (unread_ == 0 && (at_ == level::top || at_ == level::frame) && is_text) ||
+               value(not_a_number, nullptr);
+    }
     bool boolean(bool) override { return value(not_a_number, nullptr); }
     bool number_integer(number_integer_t number) override {
         return value(static_cast<double>(number), nullptr);

@@ -23,16 +23,16 @@ std::string count_text(std::size_t count, const std::string& noun) {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-camera at_size(camera pinhole, int width, int height) {
-    const double x = static_cast<double>(width) / pinhole.width;
-    const double y = static_cast<double>(height) / pinhole.height;
-    pinhole.width = width;
-    pinhole.height = height;
-    pinhole.fx *= x;
-    pinhole.cx *= x;
-    pinhole.fy *= y;
-    pinhole.cy *= y;
-    return pinhole;
+camera at_size(camera taken_with, int width, int height) {
+    const double x = static_cast<double>(width) / taken_with.width;
+    const double y = static_cast<double>(height) / taken_with.height;
+    taken_with.width = width;
+    taken_with.height = height;
+    taken_with.fx *= x;
+    taken_with.cx *= x;
+    taken_with.fy *= y;
+    taken_with.cy *= y;
+    return taken_with;
 }
 
 [[noreturn]] void refuse_size(const recorded_view& recorded, int width, int height) {
@@ -124,6 +124,20 @@ std::vector<camera> straighten(const std::vector<recorded_view>& recorded, const
     return straight;
 }
 
+/// A lens whose model ends before the photo does anywhere is a wrong one; corners may lie beyond its end.
+void require_wide_lenses(const std::vector<recorded_view>& recorded, const std::vector<camera>& fitted) {
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+        const camera& c = fitted[i];
+        if (!c.fisheye) continue;
+        const double to_edge =
+            std::min({std::max(c.cx, c.width - c.cx) / c.fx, std::max(c.cy, c.height - c.cy) / c.fy});
+        if (c.fisheye->reach(c.fisheye->end()) < to_edge)
+            throw error(
+                "the fisheye lens of " + recorded[i].file.string() + " folds the photo over inside of it, " +
+                std::to_string(static_cast<int>(57.29578 * c.fisheye->end())) + " degrees from the axis");
+    }
+}
+
 int divided(int side, int divisor) { return std::max(1, (2 * side + divisor) / (2 * divisor)); }
 
 camera at_resolution(const camera& full, int resolution) {
@@ -187,6 +201,7 @@ view shrunk(const view& full, int divisor) {
 std::vector<view> load_views(const std::vector<recorded_view>& recorded, const load_options& options,
                              const log_function& log) {
     const std::vector<camera> fitted = fit_to_photos(recorded, log);
+    require_wide_lenses(recorded, fitted);
     const std::vector<camera> straight = straighten(recorded, fitted, log);
     const std::vector<camera> scaled = scale_to_resolution(straight, recorded, options.resolution, log);
     std::vector<view> views(recorded.size());

@@ -14,9 +14,10 @@ namespace gs::train {
 struct densify_rule {
     float gradient = 1e-4f;  ///< grows at this mean gradient of its centre, in halves of the picture
     float dense_scale = 0;   ///< world units: a growing Gaussian up to this is copied, a larger one split
-    float least_opacity = 0.005f;                                       ///< drops below it
-    std::size_t cap = 0;                                                ///< no growth past this many
-    std::size_t most_births = std::numeric_limits<std::size_t>::max();  ///< at once, the most urgent first
+    float least_opacity = 0.005f;  ///< drops below it
+    std::size_t cap = 0;           ///< no growth past this many
+    /// At once, the most urgent first.
+    std::size_t most_births = std::numeric_limits<std::size_t>::max();
     /// A copied Gaussian and its copy are together as opaque as it was alone (Rota Bulo et al. 2024).
     bool revised_opacity = true;
     std::uint64_t seed = 0;  ///< where the halves of a split come to lie

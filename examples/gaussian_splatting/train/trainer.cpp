@@ -164,7 +164,9 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
 
         const bool prunes = iteration == schedule.prune_after(views);
         const bool reviews = options.review_bands && iteration == review_after;
-        if (schedule.densifies(iteration) || prunes || reviews || iteration == drop_bands_after ||
+        const bool may_drop_bands =
+            options.band_change && iteration == drop_bands_after && iteration < schedule.iterations;
+        if (schedule.densifies(iteration) || prunes || reviews || may_drop_bands ||
             iteration % reserve_every == 0) {
             engine.wait();
             const auto from = clock::now();
@@ -180,9 +182,10 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
                 if (schedule.sh_degree > before)  // new ones have their time first
                     drop_bands_after = std::max(drop_bands_after, iteration + schedule.sh_degree_interval);
             }
-            if (options.band_change && schedule.sh_degree > 0 && iteration == drop_bands_after &&
-                iteration < schedule.iterations)
-                result.banded = engine.drop_bands(*options.band_change, options.gradient);
+            if (may_drop_bands && iteration == drop_bands_after && schedule.sh_degree > 0) {
+                const std::size_t banded = engine.drop_bands(*options.band_change, options.gradient);
+                if (banded < engine.count()) result.banded = banded;
+            }
             engine.reserve();
             result.densify_seconds += seconds_since(from);
         }
