@@ -91,6 +91,15 @@ gaussians half_banded(const gs::scene& scene, std::size_t count) {
     return model;
 }
 
+/// One Gaussian, which is all that pixels show.
+gaussians one_before_all(const gs::scene& scene) {
+    gaussians one = banded_model(scene, 1);
+    one.mean = {0, 0, 0};
+    one.log_scale = {1, 1, 1};
+    one.opacity = {10};
+    return one;
+}
+
 }  // namespace
 
 TEST_CASE("Gaussians lose their bands as long as views change by no more than was said, and no sooner") {
@@ -116,10 +125,7 @@ TEST_CASE("Gaussians lose their bands as long as views change by no more than wa
         CHECK(last == 0);
 
         // Where one Gaussian is all that pixels show, what is said is what comes.
-        gaussians one = banded_model(scene, 1);
-        one.mean = {0, 0, 0};
-        one.log_scale = {1, 1, 1};
-        one.opacity = {10};
+        const gaussians one = one_before_all(scene);
         const auto e = engine_with(make, scene, one), before = engine_with(make, scene, one);
         CHECK(e->drop_bands(1, how) == 0);
         const double differs = difference(*e, *before, scene);
@@ -132,10 +138,7 @@ TEST_CASE("Gaussians lose their bands as long as views change by no more than wa
 TEST_CASE("a Gaussian without bands has the colour that pixels of the training views show on average") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {
-        gaussians one = banded_model(scene, 1);
-        one.mean = {0, 0, 0};
-        one.log_scale = {1, 1, 1};
-        one.opacity = {10};
+        const gaussians one = one_before_all(scene);
         const auto e = engine_with(make, scene, one), before = engine_with(make, scene, one);
         CHECK(e->drop_bands(1, how) == 0);
         for (std::size_t c = 0; c < 3; ++c) {

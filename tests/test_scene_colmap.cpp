@@ -165,6 +165,15 @@ model_record plain_model() {
     return model;
 }
 
+/// Images of one place by one camera, and one point.
+model_record photos_by(const camera_record& camera, const std::vector<std::string>& names) {
+    model_record model;
+    model.cameras = {camera};
+    for (const std::string& name : names) model.images.push_back({{1, 0, 0, 0}, {0, 0, 0}, 1, name, {}});
+    model.points = {{{0, 0, 1}, {1, 2, 3}, 0}};
+    return model;
+}
+
 void write_photo(const std::filesystem::path& file, int width, int height) {
     std::filesystem::create_directories(file.parent_path());
     std::vector<float> planes(static_cast<std::size_t>(3 * width * height), 0.5F);
@@ -655,12 +664,7 @@ TEST_CASE("masks leave out where they are black, in photos that were bent and sh
         const distorted_case lens = radial(-bent, bent / 2);
         const gs::camera c = intrinsics_of(lens.camera);
         const temporary_folder folder;
-        model_record model;
-        model.cameras = {lens.camera};
-        for (const char* name : {"a.png", "b/c.png", "d.png"})
-            model.images.push_back({{1, 0, 0, 0}, {0, 0, 0}, 1, name, {}});
-        model.points = {{{0, 0, 1}, {1, 2, 3}, 0}};
-        write_binary(folder / "sparse/0", model);
+        write_binary(folder / "sparse/0", photos_by(lens.camera, {"a.png", "b/c.png", "d.png"}));
         // Photos are red where the mask is black, and else blue; the masks are 1 of 255 where they are not
         // black.
         const auto write = [&](const std::filesystem::path& file, const std::array<float, 3>& left_out,
@@ -734,12 +738,7 @@ TEST_CASE("depth maps come with their photos, bent and shrunk as these, and some
         const distorted_case lens = radial(-bent, bent / 2);
         const gs::camera c = intrinsics_of(lens.camera);
         const temporary_folder folder;
-        model_record model;
-        model.cameras = {lens.camera};
-        for (const char* name : {"a.jpg", "b.png", "c.png"})
-            model.images.push_back({{1, 0, 0, 0}, {0, 0, 0}, 1, name, {}});
-        model.points = {{{0, 0, 1}, {1, 2, 3}, 0}};
-        write_binary(folder / "sparse/0", model);
+        write_binary(folder / "sparse/0", photos_by(lens.camera, {"a.jpg", "b.png", "c.png"}));
         // Bright above, dark below, not known at the left; photos are as the maps.
         const auto write = [&](int width, int height) {
             std::vector<std::uint16_t> values;
