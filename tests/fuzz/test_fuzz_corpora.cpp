@@ -103,6 +103,7 @@ std::vector<dense_file> dense_files() {
          "{" + frame.substr(1) + ",\"frames\":[" + repeated("{},", 100000) + "{}]}"},
         {"frames with long paths", transforms,
          frames(R"({"file_path":")" + std::string(100, 'a') + frame.substr(14) + "}")},
+        {"frames with masks", transforms, frames(frame + R"(,"mask_path":")" + std::string(16, 'a') + "\"}")},
         {"long texts", transforms, unread(repeated('"' + std::string(4090, 'a') + "\",", 300) + "1]}")},
         {"a long path", transforms, "{\"frames\":[{\"file_path\":\"" + repeated("a/", 500000)},
         {"a long number", transforms, unread(repeated("1", 1000000))},

@@ -63,7 +63,7 @@ std::vector<recorded_view> recorded_views(const colmap_model& model, const std::
         if (name.size() > longest_path)
             throw error(model.images_file.string() + ": the name of the image " + clipped(name) +
                         " is too long");
-        recorded_view one{photos / name, std::string(name), by.camera(), by.distortion, by.model, {}, {}};
+        recorded_view one{photos / name, std::string(name), by.camera(), by.distortion(), by.model, {}, {}};
         if (!masks.empty()) one.mask = beside_photo(masks, one.name);
         if (!depths.empty()) one.depths = beside_photo(depths, one.name);
         one.camera.rotation = glm::mat3_cast(taken.rotation);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/gtc/quaternion.hpp>
@@ -13,19 +14,25 @@
 
 namespace gs {
 
+/// As small as a text file's shortest cameras are to allow for, see `read_colmap_model`.
 struct colmap_camera {
     std::uint32_t id = 0;
     int width = 0, height = 0;
+    bool is_fisheye = false;
     const char* model = "";  ///< its name, for messages
     double fx = 0, fy = 0, cx = 0, cy = 0;
-    lens distortion;
-    std::optional<gs::fisheye> fisheye;
+    std::array<double, 4> coefficients{};  ///< of `lens`, or of `fisheye`
 
     /// At the origin.
     gs::camera camera() const {
         gs::camera c{width, height, fx, fy, cx, cy};
-        c.fisheye = fisheye;
+        if (is_fisheye) c.fisheye = fisheye(coefficients);
         return c;
+    }
+
+    lens distortion() const {
+        const auto& [k1, k2, p1, p2] = coefficients;
+        return is_fisheye ? lens{} : lens{k1, k2, p1, p2};
     }
 };
 

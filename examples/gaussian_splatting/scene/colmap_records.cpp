@@ -63,15 +63,9 @@ void add_camera(colmap_model& model, std::uint32_t id, const colmap_camera_model
     added.fy = kind.two_focal_lengths ? *next++ : added.fx;
     added.cx = *next++;
     added.cy = *next++;
-    std::array<double, 4> coefficients{};
-    std::copy_n(next, kind.distortion_count, coefficients.begin());
-    if (kind.is_fisheye) {
-        added.fisheye = fisheye(coefficients);
-    } else {
-        const auto& [k1, k2, p1, p2] = coefficients;
-        added.distortion = {k1, k2, p1, p2};
-    }
-    if (!has_sound_intrinsics(added.camera(), added.distortion)) throw error(name + unsound_intrinsics);
+    added.is_fisheye = kind.is_fisheye;
+    std::copy_n(next, kind.distortion_count, added.coefficients.begin());
+    if (!has_sound_intrinsics(added.camera(), added.distortion())) throw error(name + unsound_intrinsics);
     model.cameras.push_back(added);
 }
 

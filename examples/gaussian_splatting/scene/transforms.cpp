@@ -32,6 +32,8 @@ class said_numbers {
 
     std::vector<said_number> list() const {
         std::vector<said_number> said;
+        said.reserve(static_cast<std::size_t>(
+            std::ranges::count_if(values_, [](const auto& value) { return value.has_value(); })));
         for (std::size_t i = 0; i < values_.size(); ++i)
             if (values_[i]) said.push_back({static_cast<transforms_number>(i), *values_[i]});
         return said;
