@@ -11,10 +11,11 @@
 #include <random>
 #include <utility>
 
+#include "spherical_harmonics.hpp"
+
 namespace gs {
 namespace {
 
-constexpr float sh_c0 = 0.28209479177387814F;  ///< the constant spherical harmonic, 1 / (2 sqrt(pi))
 constexpr double initial_opacity = 0.1;
 constexpr std::size_t neighbours = 3;
 /// Keeps points that coincide from having no size; by an extent of `internal_extent`.
@@ -95,8 +96,6 @@ std::pair<glm::dvec3, double> box_looked_at(const scene& s) {
 }
 
 }  // namespace
-
-float sh_from_colour(float colour) { return (colour - 0.5F) / sh_c0; }
 
 gaussians from_points(const std::vector<coloured_point>& points, int sh_degree, std::size_t most,
                       std::uint64_t seed) {

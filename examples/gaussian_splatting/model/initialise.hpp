@@ -9,9 +9,6 @@
 
 namespace gs {
 
-/// The degree 0 SH coefficient of a colour in [0, 1]: what solves colour = 0.5 + C0 * coefficient.
-float sh_from_colour(float colour);
-
 /// One Gaussian a point: isotropic, as wide as the root mean square distance to the 3 nearest other points,
 /// opacity 0.1, colour of the point, higher SH zero. Precondition: at least one point.
 /// Where there are fewer than 3 other points, those there are count; a width is at least sqrt(1e-7), also

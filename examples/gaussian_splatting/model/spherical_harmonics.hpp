@@ -8,13 +8,20 @@
 
 namespace gs {
 
+inline constexpr double sh_c0 = 0.28209479177387814;  ///< the constant one, 1 / (2 sqrt(pi))
+
+/// The degree 0 coefficient of a colour from all directions: what solves colour = 0.5 + C0 * coefficient.
+WARPAGG_HD constexpr float sh_from_colour(float colour) {
+    return (colour - 0.5f) / static_cast<float>(sh_c0);
+}
+
 /// The real spherical harmonics up to degree 3 at a unit vector, in the order and with the signs of the
 /// reference implementation (Kerbl et al. 2023). `basis` has room for 16.
 template <class Real>
 WARPAGG_HD void sh_basis(int degree, const glm::vec<3, Real>& d, Real* basis) {
     const auto c = [](double x) { return constant<Real>(x); };
     const Real x = d.x, y = d.y, z = d.z;
-    basis[0] = c(0.28209479177387814);
+    basis[0] = c(sh_c0);
     if (degree < 1) return;
     basis[1] = c(-0.4886025119029199) * y;
     basis[2] = c(0.4886025119029199) * z;

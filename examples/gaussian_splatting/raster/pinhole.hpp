@@ -7,6 +7,8 @@
 
 namespace gs::raster {
 
+using warpagg::math::select;
+
 /// How a pinhole camera sees a place: see `projection_of`.
 template <class Real>
 struct pinhole_projection {

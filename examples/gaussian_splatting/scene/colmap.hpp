@@ -14,7 +14,6 @@
 
 namespace gs {
 
-/// As small as a text file's shortest cameras are to allow for, see `read_colmap_model`.
 struct colmap_camera {
     std::uint32_t id = 0;
     int width = 0, height = 0;

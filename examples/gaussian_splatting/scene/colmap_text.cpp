@@ -27,8 +27,11 @@ class text_reader {
     explicit text_reader(const std::filesystem::path& file) : file_(file) {}
 
     /// The number of records, each of so many lines, in all of the file: never more than there is room for,
-    /// if each takes at least `record_size` bytes.
-    std::size_t count_records(int lines, std::size_t record_size) {
+    /// if none is shorter than this one.
+    template <class Record, std::size_t Size>
+    std::size_t count_records(int lines, const char (&)[Size]) {
+        constexpr std::size_t shortest = Size - 1;
+        static_assert(sizeof(Record) <= 4 * shortest, "see read_colmap_model");
         std::size_t count = 0;
         while (next_record()) {
             for (int i = 1; i < lines; ++i) next_line();
@@ -37,7 +40,7 @@ class text_reader {
         file_.in.clear();
         file_.in.seekg(0);
         line_ = 0;
-        return std::min(count, static_cast<std::size_t>(file_.size) / record_size + 1);
+        return std::min(count, static_cast<std::size_t>(file_.size) / shortest + 1);
     }
 
     /// Goes to the next line, whatever it holds.
@@ -114,7 +117,7 @@ class text_reader {
 
 void read_text_cameras(const std::filesystem::path& file, colmap_model& model) {
     text_reader reader(file);
-    model.cameras.reserve(reader.count_records(1, std::string_view("1 PINHOLE 1 1 1 1 1 1\n").size()));
+    model.cameras.reserve(reader.count_records<colmap_camera>(1, "1 PINHOLE 1 1 1 1 1 1\n"));
     while (reader.next_record()) {
         const auto id = reader.number<std::uint32_t>("the camera's id");
         const auto kind = camera_model_called(reader.word("the camera model"), reader.where());
@@ -132,7 +135,7 @@ void read_text_cameras(const std::filesystem::path& file, colmap_model& model) {
 
 void read_text_images(const std::filesystem::path& file, colmap_model& model) {
     text_reader reader(file);
-    model.images.reserve(reader.count_records(2, std::string_view("1 1 0 0 0 0 0 0 1 a\n\n").size()));
+    model.images.reserve(reader.count_records<colmap_image>(2, "1 1 0 0 0 0 0 0 1 a\n\n"));
     while (reader.next_record()) {
         reader.number<std::uint32_t>("the image's id");
         const auto quaternion = reader.doubles<4>("a part of the rotation");
@@ -146,7 +149,7 @@ void read_text_images(const std::filesystem::path& file, colmap_model& model) {
 
 void read_text_points(const std::filesystem::path& file, colmap_model& model) {
     text_reader reader(file);
-    model.points.reserve(reader.count_records(1, std::string_view("1 0 0 0 0 0 0 0\n").size()));
+    model.points.reserve(reader.count_records<coloured_point>(1, "1 0 0 0 0 0 0 0\n"));
     while (reader.next_record()) {
         reader.number<std::uint64_t>("the point's id");
         const auto position = reader.doubles<3>("a coordinate");

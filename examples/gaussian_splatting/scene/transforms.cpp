@@ -10,6 +10,7 @@
 
 #include "../clipped.hpp"
 #include "../error.hpp"
+#include "colmap_files.hpp"
 #include "json_text.hpp"
 #include "transforms_pose.hpp"
 
@@ -44,15 +45,8 @@ class said_numbers {
 };
 
 transforms_lens lens_called(const std::string* name, const std::string& where) {
-    constexpr std::string_view opencv[] = {"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV"};
-    constexpr std::string_view fisheyes[] = {"SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE", "OPENCV_FISHEYE"};
     if (!name) throw error(where + ": camera_model is not a string");
-    if (std::ranges::find(fisheyes, *name) != std::end(fisheyes)) return transforms_lens::fisheye;
-    if (std::ranges::find(opencv, *name) == std::end(opencv))
-        throw error(where + ": the camera model " + clipped(*name) +
-                    " is unknown; supported are SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, "
-                    "SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE, OPENCV_FISHEYE");
-    return transforms_lens::opencv;
+    return camera_model_called(*name, where).is_fisheye ? transforms_lens::fisheye : transforms_lens::opencv;
 }
 
 /// How deep the reader is in what it reads: each level is a bracket within the one before.

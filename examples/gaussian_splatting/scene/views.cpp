@@ -130,7 +130,7 @@ void require_wide_lenses(const std::vector<recorded_view>& recorded, const std::
         const camera& c = fitted[i];
         if (!c.fisheye) continue;
         const double to_edge =
-            std::min({std::max(c.cx, c.width - c.cx) / c.fx, std::max(c.cy, c.height - c.cy) / c.fy});
+            std::min(std::max(c.cx, c.width - c.cx) / c.fx, std::max(c.cy, c.height - c.cy) / c.fy);
         if (c.fisheye->reach(c.fisheye->end()) < to_edge)
             throw error(
                 "the fisheye lens of " + recorded[i].file.string() + " folds the photo over inside of it, " +

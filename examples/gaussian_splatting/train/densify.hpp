@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "../device/atomic.hpp"
+#include "../model/spherical_harmonics.hpp"
 #include "../raster/bits.hpp"
 #include "../raster/geometry.hpp"
 #include "../raster/project_backward.hpp"
@@ -109,8 +110,7 @@ struct take_mean_colour {
 
     WARPAGG_HD void operator()(std::size_t i) const {
         if (keeps[i] != 0 || !(spreads[i].weight > 0)) return;
-        for (std::size_t c = 0; c < 3; ++c)
-            sh0[place(i, c, 3)] = (spreads[i].mean[c] - 0.5f) / 0.28209479177387814f;  // see `sh_basis`
+        for (std::size_t c = 0; c < 3; ++c) sh0[place(i, c, 3)] = sh_from_colour(spreads[i].mean[c]);
     }
 };
 

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "../raster/effect_set.hpp"
 #include "learned_numbers.hpp"
 #include "sky_kernels.hpp"
 
@@ -28,7 +29,10 @@ class sky {
         if (!is_there()) return nullptr;
         raster::require_drawable(camera);
         planes_.resize(3 * static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
-        camera.fisheye ? draw<true>(camera) : draw<false>(camera);
+        raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
+            device_.for_each_warp(patches(camera), draw_sky<warp, Fisheye>{raster::for_device<real>(camera),
+                                                                           numbers_.row(0), planes_.data()});
+        });
         return planes_.data();
     }
 
@@ -36,22 +40,16 @@ class sky {
     void learn(const camera& camera, const float* transmittance, const float* by_picture, float rate,
                const raster::list_room& room) {
         const picture_sums sums = numbers_.sums(patches(camera));
-        const auto sum = [&]<bool Fisheye> {
+        raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
             device_.for_each_warp(sums.warps, sky_backward<warp, Fisheye>{raster::for_device<real>(camera),
                                                                           transmittance, by_picture, sums});
-        };
-        camera.fisheye ? sum.template operator()<true>() : sum.template operator()<false>();
+        });
         numbers_.learn(0, sums, rate, room);
     }
 
   private:
     static std::size_t patches(const camera& camera) {
         return sky_patch<warp, false>::count(camera.width, camera.height);
-    }
-    template <bool Fisheye>
-    void draw(const camera& camera) {
-        device_.for_each_warp(patches(camera), draw_sky<warp, Fisheye>{raster::for_device<real>(camera),
-                                                                       numbers_.row(0), planes_.data()});
     }
 
     Device& device_;
