@@ -26,7 +26,7 @@ using nlohmann::ordered_json;
 
 constexpr double u = 0x1p-24;
 
-/// See warpagg/accumulate/accumulate.hpp and warpagg/ordered.hpp.
+/// See warpagg/accumulator.hpp and warpagg/segmented_sum.hpp.
 double bound(way how, const sizes& s, float scale, unsigned lanes) {
     switch (how) {
         case way::native:

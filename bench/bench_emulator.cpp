@@ -17,7 +17,7 @@
 #include <random>
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 
 #if !defined(__AVX2__)
 #error "to be compiled for AVX2 at least"

@@ -15,7 +15,7 @@
 #include <random>
 #include <string>
 #include <vector>
-#include <warpagg/match.hpp>
+#include <warpagg/match_reduce_atomic.hpp>
 
 namespace {
 

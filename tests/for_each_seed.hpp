@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdint>
-#include <warpagg/simt/checked/seeds.hpp>
+#include <warpagg/warp/checked/seeds.hpp>
 
 /// The library's, with doctest told of the seed, whose CHECK neither throws nor returns.
 template <class F>

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/checked.hpp>
+#include <warpagg/warp/checked.hpp>
 
 #include "for_each_seed.hpp"
 

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <random>
 #include <vector>
-#include <warpagg/ordered.hpp>
+#include <warpagg/segmented_sum.hpp>
 
 namespace {
 

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <thread>
 #include <vector>
-#include <warpagg/simt/lanes.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/simd.hpp>
+#include <warpagg/warp/serial.hpp>
 
 namespace {
 

@@ -3,7 +3,7 @@
 
 /// What lanes do wrong together.
 
-#include <warpagg/simt/iterations.hpp>
+#include <warpagg/iterations.hpp>
 
 #include "misuse.hpp"
 

@@ -19,9 +19,9 @@
 #include <thread>
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/checked.hpp>
-#include <warpagg/simt/iterations.hpp>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/checked.hpp>
+#include <warpagg/iterations.hpp>
+#include <warpagg/warp/simd.hpp>
 
 #include "for_each_seed.hpp"
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 
 namespace {
 

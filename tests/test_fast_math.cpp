@@ -17,8 +17,8 @@
 #include <random>
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/lanes.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/simd.hpp>
+#include <warpagg/warp/serial.hpp>
 
 #if !defined(__FAST_MATH__)
 #error "to be compiled with -ffast-math"

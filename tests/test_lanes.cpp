@@ -15,7 +15,7 @@
 #include <random>
 #include <type_traits>
 #include <vector>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <random>
 #include <vector>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 
 namespace {
 

@@ -7,8 +7,8 @@
 
 #include <cstdint>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/checked.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/checked.hpp>
+#include <warpagg/warp/serial.hpp>
 
 namespace {
 

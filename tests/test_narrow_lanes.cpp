@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 
 namespace {
 

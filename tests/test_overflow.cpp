@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <limits>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/checked.hpp>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/checked.hpp>
+#include <warpagg/warp/simd.hpp>
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/serial.hpp>
 
 namespace {
 

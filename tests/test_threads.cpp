@@ -9,9 +9,9 @@
 #include <thread>
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/checked.hpp>
-#include <warpagg/simt/lanes.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/checked.hpp>
+#include <warpagg/warp/simd.hpp>
+#include <warpagg/warp/serial.hpp>
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <warpagg/simt/lanes.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/simd.hpp>
+#include <warpagg/warp/serial.hpp>
 
 #include "raster/tile_reach.hpp"
 

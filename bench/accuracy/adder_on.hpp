@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <warpagg/match.hpp>
-#include <warpagg/ordered.hpp>
+#include <warpagg/match_reduce_atomic.hpp>
+#include <warpagg/segmented_sum.hpp>
 
 #include "adder.hpp"
 #include "device/stages.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 
 namespace example {
 

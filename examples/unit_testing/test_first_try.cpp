@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 #include <vector>
-#include <warpagg/simt/checked.hpp>
+#include <warpagg/warp/checked.hpp>
 
 #include "first_try.hpp"
 

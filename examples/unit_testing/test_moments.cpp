@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <vector>
-#include <warpagg/simt/checked.hpp>
+#include <warpagg/warp/checked.hpp>
 
 #include "moments.hpp"
 

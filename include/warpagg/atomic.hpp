@@ -7,19 +7,19 @@
 /// even that when no lane has anything to add. This is the one header to include: under nvcc it brings
 /// `cuda::warp`, and `simt/lanes.hpp`, `simt/checked.hpp` and `simt/serial.hpp` bring the emulators.
 
-#include "accumulate/take_apart.hpp"
-#include "commit/commit.hpp"
-#include "commit/stage.hpp"
-#include "components.hpp"
+#include "detail/accumulate/decompose.hpp"
+#include "detail/commit/commit.hpp"
+#include "stage.hpp"
+#include "aggregate.hpp"
 #include "default_policy.hpp"
 #include "policy.hpp"
-#include "reduce/scatter.hpp"
-#include "reduce/tree.hpp"
-#include "simt/call_site.hpp"
-#include "simt/iterations.hpp"
-#include "simt/warp.hpp"
+#include "detail/reduce/scatter.hpp"
+#include "detail/reduce/tree.hpp"
+#include "detail/call_site.hpp"
+#include "iterations.hpp"
+#include "warp/concept.hpp"
 #if defined(__CUDACC__)
-#include "simt/cuda.hpp"
+#include "warp/cuda.hpp"
 #endif
 
 /// Warp-aggregated atomics.
@@ -208,4 +208,4 @@ requires(!std::is_same_v<Next, call_site>)
 
 }  // namespace warpagg
 
-#include "match.hpp"
+#include "match_reduce_atomic.hpp"

@@ -6,10 +6,10 @@
 /// How `warp_reduce_atomic` works: one tag per axis, in any order, e.g. `policy{shfl_down, skip}`. What no
 /// tag names is chosen for the values' type and number: see default_policy.hpp.
 
-#include "accumulate/accumulate.hpp"
+#include "accumulator.hpp"
 #include "operation.hpp"
-#include "simt/warp.hpp"
-#include "tag.hpp"
+#include "warp/concept.hpp"
+#include "detail/tag.hpp"
 
 namespace warpagg {
 

@@ -4,7 +4,7 @@
 
 #include <span>
 #include <stdexcept>
-#include <warpagg/simt/checked.hpp>
+#include <warpagg/warp/checked.hpp>
 
 #include "host_memory.hpp"
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
-#include <warpagg/simt/cuda.hpp>
+#include <warpagg/warp/cuda.hpp>
 
 namespace {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <span>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/serial.hpp>
 
 #include "host_memory.hpp"
 

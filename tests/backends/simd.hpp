@@ -3,7 +3,7 @@
 #pragma once
 
 #include <span>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 
 #include "host_memory.hpp"
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/serial.hpp>
 
 struct particle {
     float position[3], charge;

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/serial.hpp>
 
 void wrong(std::array<float, 1> sums) {
     const float value[1] = {1};

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/serial.hpp>
 
 void wrong(warpagg::cell<warpagg::accumulate::binned<2>>* to, const float (&v)[3]) {
     const auto base = [to](unsigned key, unsigned i) { return to + (3 * key + i); };

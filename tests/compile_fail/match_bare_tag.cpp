@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/serial.hpp>
 
 void wrong(float* to, const float (&v)[3]) {
     warpagg::warp_match_reduce_atomic(warpagg::emulator::serial{}, to, 7u, v, true, warpagg::shfl_down);

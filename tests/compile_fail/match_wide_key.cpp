@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/serial.hpp>
 
 void wrong(float* sums, unsigned long key) {
     const float value[1] = {1};

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 
 /// Every other lane of a warp adds its number, and twice its number, to one record.
 int main() {

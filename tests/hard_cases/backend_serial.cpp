@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/serial.hpp>
 
 #include "device/cpu.hpp"
 #include "on_device.hpp"

@@ -4,9 +4,9 @@
 // The kernels that have effects as a template parameter, for compare.py to compile: with g++ on the
 // emulator's warps, with nvcc -x cu on those of a GPU.
 #if defined(__CUDACC__)
-#include <warpagg/simt/cuda.hpp>
+#include <warpagg/warp/cuda.hpp>
 #else
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 #endif
 
 #include "raster/project.hpp"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 
 using warpagg::cell;
 using warpagg::lanes;

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/checked.hpp>
+#include <warpagg/warp/checked.hpp>
 
 //! [kernel]
 /// Ordinary scalar code, as one lane runs it: the sum of n numbers.

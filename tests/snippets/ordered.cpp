@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <vector>
-#include <warpagg/ordered.hpp>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/segmented_sum.hpp>
+#include <warpagg/warp/simd.hpp>
 
 TEST_CASE("ordered") {
     //! [ordered]

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 
 using warpagg::lanes;
 

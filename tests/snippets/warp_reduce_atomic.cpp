@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <warpagg/atomic.hpp>
-#include <warpagg/simt/lanes.hpp>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/simd.hpp>
+#include <warpagg/warp/serial.hpp>
 
 namespace {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <warpagg/simt/serial.hpp>
+#include <warpagg/warp/serial.hpp>
 
 namespace gs::device {
 

@@ -18,7 +18,7 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
-#include <warpagg/simt/lanes.hpp>
+#include <warpagg/warp/simd.hpp>
 
 #include "distribute.hpp"
 #include "scratch.hpp"

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <vector>
-#include <warpagg/simt/target.hpp>
+#include <warpagg/compiler.hpp>
 
 namespace gs {
 

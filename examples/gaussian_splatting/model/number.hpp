@@ -7,7 +7,7 @@
 #include <limits>
 #include <type_traits>
 #include <utility>
-#include <warpagg/simt/warp.hpp>
+#include <warpagg/warp/concept.hpp>
 
 namespace gs {
 

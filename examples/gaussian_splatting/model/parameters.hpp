@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
-#include <warpagg/simt/target.hpp>
+#include <warpagg/compiler.hpp>
 
 namespace gs {
 

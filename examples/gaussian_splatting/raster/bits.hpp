@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
-#include <warpagg/simt/target.hpp>
+#include <warpagg/compiler.hpp>
 
 namespace gs::raster {
 

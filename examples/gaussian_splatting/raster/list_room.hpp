@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <warpagg/simt/target.hpp>
+#include <warpagg/compiler.hpp>
 
 namespace gs::raster {
 

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <type_traits>
-#include <warpagg/simt/warp.hpp>
+#include <warpagg/warp/concept.hpp>
 
 #include "tile_lists.hpp"
 

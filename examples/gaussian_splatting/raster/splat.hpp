@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <warpagg/simt/warp.hpp>
+#include <warpagg/warp/concept.hpp>
 
 namespace gs::raster {
 

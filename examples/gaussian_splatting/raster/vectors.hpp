@@ -7,7 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <warpagg/simt/math.hpp>
+#include <warpagg/math.hpp>
 
 #include "../model/layout.hpp"
 #include "../model/number.hpp"

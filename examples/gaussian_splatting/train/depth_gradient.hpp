@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <warpagg/simt/warp.hpp>
+#include <warpagg/warp/concept.hpp>
 
 #include "../scene/depth_map.hpp"
 

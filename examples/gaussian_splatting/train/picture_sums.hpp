@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <warpagg/simt/warp.hpp>
+#include <warpagg/warp/concept.hpp>
 
 #include "../raster/list_room.hpp"
 

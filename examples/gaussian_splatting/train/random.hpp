@@ -6,7 +6,7 @@
 #include <glm/exponential.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
-#include <warpagg/simt/warp.hpp>
+#include <warpagg/warp/concept.hpp>
 
 namespace gs::train {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cmath>
-#include <warpagg/simt/warp.hpp>
+#include <warpagg/warp/concept.hpp>
 
 namespace gs::train {
 

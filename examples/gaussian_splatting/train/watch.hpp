@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <warpagg/simt/warp.hpp>
+#include <warpagg/warp/concept.hpp>
 
 #include "../device/atomic.hpp"
 #include "finding.hpp"

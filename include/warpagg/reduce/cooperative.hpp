@@ -10,7 +10,7 @@
 #include <cooperative_groups/reduce.h>
 
 #include "../policy.hpp"
-#include "../simt/cuda.hpp"
+#include "../warp/cuda.hpp"
 
 namespace warpagg {
 namespace reduce {

@@ -8,7 +8,7 @@
 #include <cub/warp/warp_reduce.cuh>
 
 #include "../policy.hpp"
-#include "../simt/cuda.hpp"
+#include "../warp/cuda.hpp"
 
 namespace warpagg {
 namespace reduce {

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "../accumulate/decompose.hpp"
+#include "../reduce/scatter.hpp"
+#include "destination.hpp"
+
+namespace warpagg::commit {
+
+namespace detail {
+
+/// Whether groups of neighbours can go by one instruction each, as far as types tell.
+template <class Op, class Commit, class W, class Dst, class V>
+inline constexpr bool packs = false;
+template <unsigned K, class W, class T>
+inline constexpr bool packs<operation::sum, packed<K>, W, contiguous_record<T>, T> =
+    requires(const W& w, T* to, const T* v, bool active) {
+    w.template packs<K>(to);
+    w.template atomic_add_packed<K>(to, v, active);
+};
+
+/// Commits v[I] to v[N - 1] by groups of K, what is left of them by smaller groups.
+WARPAGG_EXEC_CHECK_DISABLE
+template <unsigned K, int I, warp W, class T, int N>
+WARPAGG_HD void by_groups(const W& w, T* to, const T (&v)[N], bool active) {
+    constexpr int group = static_cast<int>(K);
+    if constexpr (I + group <= N) {
+        w.template atomic_add_packed<K>(to + I, v + I, active);
+        by_groups<K, I + group>(w, to, v, active);
+    } else if constexpr (I < N) {
+        by_groups<K / 2, I>(w, to, v, active);
+    }
+}
+
+}  // namespace detail
+
+/// Whether `packed<K>` applies to this record: in all lanes alike.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, class Commit, class V, warp W, class Dst>
+WARPAGG_HD bool is_packed(const W& w, Dst dst) {
+    if constexpr (detail::packs<Op, Commit, W, Dst, V>) {
+        return w.template packs<Commit::neighbours>(dst(0));
+    } else {
+        return false;
+    }
+}
+
+/// Every active lane commits its own values: N atomics a lane, or as few as N / K where `packed<K>` applies.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, class Commit, warp W, class Dst, class V, int N>
+WARPAGG_HD void each_lane(const W& w, Dst dst, const V (&v)[N], const mask_t<W>& active) {
+    if constexpr (detail::packs<Op, Commit, W, Dst, V>) {
+        if (is_packed<Op, Commit, V>(w, dst)) {
+            detail::by_groups<Commit::neighbours, 0>(w, dst(0), v, active);
+            return;
+        }
+    }
+    WARPAGG_UNROLL
+    for (int i = 0; i < N; ++i)
+        warpagg::detail::commit_value<Op>(w, dst, value_t<W, unsigned>(static_cast<unsigned>(i)), v[i],
+                                          active);
+}
+
+/// Lane i commits v[i], which is the same in all lanes: one atomic instruction for W values.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, warp W, class Dst, class V, int N>
+WARPAGG_HD void own_value(const W& w, Dst dst, const V (&v)[N]) {
+    using math::select;
+    WARPAGG_UNROLL
+    for (int base = 0; base < N; base += static_cast<int>(W::size)) {
+        const auto index = w.lane() + static_cast<unsigned>(base);
+        V own = v[base];
+        for (int i = base + 1; i < N && i < base + static_cast<int>(W::size); ++i)
+            own = select(index == static_cast<unsigned>(i), v[i], own);
+        warpagg::detail::commit_value<Op>(w, dst, index, own, index < static_cast<unsigned>(N));
+    }
+}
+
+/// Each lane commits what `scatter` left it: one atomic instruction for W values.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, warp W, class Dst, class V, int N>
+WARPAGG_HD void scattered(const W& w, Dst dst, const V (&v)[N]) {
+    constexpr int held = reduce::held_after_scatter<W>(N);
+    WARPAGG_UNROLL
+    for (int k = 0; k < held; ++k) {
+        const auto index = reduce::scattered_index(w, k);
+        warpagg::detail::commit_value<Op>(w, dst, index, v[k], index < static_cast<unsigned>(N));
+    }
+}
+
+/// Commits the results of a reduction from wherever it left them.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, class Reduce, class Commit, warp W, class Dst, class V, int N>
+WARPAGG_HD void results(const W& w, Dst dst, const V (&v)[N]) {
+    if constexpr (Reduce::leaves == reduce::results_in::spread) {
+        scattered<Op>(w, dst, v);
+    } else if constexpr (std::is_same_v<Commit, contiguous>) {
+        own_value<Op>(w, dst, v);
+    } else {
+        each_lane<Op, Commit>(w, dst, v, w.lane() == 0u);
+    }
+}
+
+}  // namespace warpagg::commit

@@ -1,0 +1,438 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// `lanes<T, L>`: L values of T in SIMD registers, by the GCC and Clang vector extension, in chunks of 256
+/// bits. Arrays that one hopes will vectorise were measured 1.7 times slower (and at -O2 no faster than
+/// scalar code). Not for nvcc, which rejects vector types in host-device templates: keep such code in `.cpp`
+/// files.
+
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
+
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include "../warp/concept.hpp"
+
+namespace warpagg {
+
+namespace detail {
+
+constexpr int chunk_bytes = 32;
+
+/// A chunk holds flags as 32-bit all-ones or zero, the form that comparisons of 32-bit values give.
+template <class T>
+struct element {
+    using type = T;
+};
+template <>
+struct element<bool> {
+    using type = std::int32_t;
+};
+template <class T>
+using element_t = typename element<T>::type;
+
+template <class T>
+struct chunk {
+    typedef element_t<T> type __attribute__((vector_size(chunk_bytes)));
+};
+template <class T>
+using chunk_t = typename chunk<T>::type;
+
+}  // namespace detail
+
+/// L values of T, one per lane: `float`, `double`, integers of 32 and 64 bits, `bool`. Has T's arithmetic and
+/// bitwise operators, and comparisons, which give `lanes<bool, L>`; all work lane by lane, and a plain T
+/// stands for the same value in every lane.
+template <class T, int L>
+struct lanes {
+    /// What a lane holds, and how chunks of lanes are laid out.
+    /// @{
+    using scalar = T;
+    using element = detail::element_t<T>;
+    using chunk = detail::chunk_t<T>;
+    static constexpr int width = detail::chunk_bytes / static_cast<int>(sizeof(element));  // lanes a chunk
+    static constexpr int chunks = L / width;
+    static constexpr bool has_order = !std::is_same_v<T, bool>;
+    static_assert(L % width == 0);
+
+    chunk part[chunks];
+    /// @}
+
+    /// Of no particular value.
+    lanes() = default;
+    /// The same value in every lane.
+    WARPAGG_HD lanes(T value) {  // NOLINT: implicit, so that uniform values mix with lane values
+        element e;
+        if constexpr (std::is_same_v<T, bool>) {
+            e = value ? -1 : 0;
+        } else {
+            e = value;
+        }
+        WARPAGG_UNROLL
+        for (auto& p : part) p = e - chunk{};
+    }
+
+    /// The value of one lane, as it is stored: of a flag, -1 or 0.
+    WARPAGG_HD element raw(int lane) const { return part[lane / width][lane % width]; }
+    /// The value of one lane, 0 <= lane < L.
+    WARPAGG_HD T operator[](int lane) const {
+        if constexpr (std::is_same_v<T, bool>) {
+            return raw(lane) != 0;
+        } else {
+            return raw(lane);
+        }
+    }
+    /// Gives one lane a value.
+    WARPAGG_HD void set(int lane, T value) {
+        if constexpr (std::is_same_v<T, bool>) {
+            part[lane / width][lane % width] = value ? -1 : 0;
+        } else {
+            part[lane / width][lane % width] = value;
+        }
+    }
+
+/// Defines an operator, lane by lane.
+#define WARPAGG_LANES_OPERATOR(op)                                           \
+    friend WARPAGG_HD lanes operator op(const lanes& a, const lanes& b) {    \
+        lanes r;                                                             \
+        WARPAGG_UNROLL                                                       \
+        for (int i = 0; i < chunks; ++i) r.part[i] = a.part[i] op b.part[i]; \
+        return r;                                                            \
+    }                                                                        \
+    WARPAGG_HD lanes& operator op##=(const lanes& b) { return *this = *this op b; }
+    WARPAGG_LANES_OPERATOR(+)
+    WARPAGG_LANES_OPERATOR(-)
+    WARPAGG_LANES_OPERATOR(*)
+    WARPAGG_LANES_OPERATOR(/)
+    WARPAGG_LANES_OPERATOR(%)
+    WARPAGG_LANES_OPERATOR(&)
+    WARPAGG_LANES_OPERATOR(|)
+    WARPAGG_LANES_OPERATOR(^)
+    WARPAGG_LANES_OPERATOR(<<)
+    WARPAGG_LANES_OPERATOR(>>)
+#undef WARPAGG_LANES_OPERATOR
+
+    /// Lane by lane; flags are all looked at, without short-circuit.
+    /// @{
+    friend WARPAGG_HD lanes operator-(const lanes& a) {
+        lanes r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < chunks; ++i) r.part[i] = -a.part[i];
+        return r;
+    }
+    friend WARPAGG_HD lanes operator!(const lanes& a) requires std::is_same_v<T, bool> {
+        lanes r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < chunks; ++i) r.part[i] = ~a.part[i];
+        return r;
+    }
+    friend WARPAGG_HD lanes operator&&(const lanes& a, const lanes& b) requires std::is_same_v<T, bool> {
+        return a & b;
+    }
+    friend WARPAGG_HD lanes operator||(const lanes& a, const lanes& b) requires std::is_same_v<T, bool> {
+        return a | b;
+    }
+    /// @}
+
+/// Defines a comparison, lane by lane, where `allowed`.
+#define WARPAGG_LANES_COMPARISON(op, allowed)                                                        \
+    friend WARPAGG_HD lanes<bool, L> operator op(const lanes& a, const lanes& b) requires(allowed) { \
+        lanes<bool, L> r;                                                                            \
+        WARPAGG_UNROLL                                                                               \
+        for (int i = 0; i < chunks; ++i) narrow_mask(r, i, a.part[i] op b.part[i]);                  \
+        return r;                                                                                    \
+    }
+    WARPAGG_LANES_COMPARISON(<, has_order)
+    WARPAGG_LANES_COMPARISON(<=, has_order)
+    WARPAGG_LANES_COMPARISON(>, has_order)
+    WARPAGG_LANES_COMPARISON(>=, has_order)
+    WARPAGG_LANES_COMPARISON(==, true)
+    WARPAGG_LANES_COMPARISON(!=, true)
+#undef WARPAGG_LANES_COMPARISON
+
+    /// Chunk `i` of lanes of 64 bits, converted from lanes of 32 bits.
+    template <class From>
+    static WARPAGG_HD void widen(const lanes<From, L>& from, int i, chunk& to) {
+        const auto& both = from.part[i / 2];
+        if (i % 2 == 0) {
+            to = __builtin_convertvector(__builtin_shufflevector(both, both, 0, 1, 2, 3), chunk);
+        } else {
+            to = __builtin_convertvector(__builtin_shufflevector(both, both, 4, 5, 6, 7), chunk);
+        }
+    }
+
+  private:
+    template <class Chunk>
+    static WARPAGG_HD void narrow_mask(lanes<bool, L>& to, int i, const Chunk& from) {
+        if constexpr (sizeof(element) == sizeof(std::int32_t)) {
+            to.part[i] = from;
+        } else {
+            WARPAGG_UNROLL
+            for (int k = 0; k < width; ++k) to.set(i * width + k, from[k] != 0);
+        }
+    }
+};
+
+/// What `math` has for scalars, lane by lane.
+/// @{
+template <class T, int L>
+WARPAGG_HD lanes<T, L> select(const lanes<bool, L>& mask, const lanes<T, L>& yes, const lanes<T, L>& no) {
+    lanes<T, L> r;
+    WARPAGG_UNROLL
+    for (int i = 0; i < r.chunks; ++i) {
+        if constexpr (sizeof(typename lanes<T, L>::element) == sizeof(std::int32_t)) {
+            r.part[i] = mask.part[i] ? yes.part[i] : no.part[i];
+        } else {
+            typename lanes<std::int64_t, L>::chunk wide;
+            lanes<std::int64_t, L>::widen(mask, i, wide);
+            r.part[i] = wide ? yes.part[i] : no.part[i];
+        }
+    }
+    return r;
+}
+template <class T, int L>
+WARPAGG_HD lanes<T, L> select(const lanes<bool, L>& mask, const lanes<T, L>& yes,
+                              std::type_identity_t<T> no) {
+    return select(mask, yes, lanes<T, L>(no));
+}
+
+template <class T, int L>
+requires(!std::is_same_v<T, bool>) WARPAGG_HD lanes<T, L> min(const lanes<T, L>& a, const lanes<T, L>& b) {
+    lanes<T, L> r;
+    WARPAGG_UNROLL
+    for (int i = 0; i < r.chunks; ++i) {
+#if defined(__AVX__)
+        if constexpr (std::is_same_v<T, float>) {  // of a constant GCC would make a comparison and a blend
+            r.part[i] = reinterpret_cast<typename lanes<T, L>::chunk>(
+                _mm256_min_ps(reinterpret_cast<__m256>(b.part[i]), reinterpret_cast<__m256>(a.part[i])));
+            continue;
+        }
+#endif
+        r.part[i] = b.part[i] < a.part[i] ? b.part[i] : a.part[i];
+    }
+    return r;
+}
+template <class T, int L>
+requires(!std::is_same_v<T, bool>) WARPAGG_HD lanes<T, L> max(const lanes<T, L>& a, const lanes<T, L>& b) {
+    lanes<T, L> r;
+    WARPAGG_UNROLL
+    for (int i = 0; i < r.chunks; ++i) {
+#if defined(__AVX__)
+        if constexpr (std::is_same_v<T, float>) {  // of a constant GCC would make a comparison and a blend
+            r.part[i] = reinterpret_cast<typename lanes<T, L>::chunk>(
+                _mm256_max_ps(reinterpret_cast<__m256>(b.part[i]), reinterpret_cast<__m256>(a.part[i])));
+            continue;
+        }
+#endif
+        r.part[i] = a.part[i] < b.part[i] ? b.part[i] : a.part[i];
+    }
+    return r;
+}
+template <class T, int L>
+requires(!std::is_same_v<T, bool>)
+    WARPAGG_HD lanes<T, L> min(const lanes<T, L>& a, std::type_identity_t<T> b) {
+    return min(a, lanes<T, L>(b));
+}
+template <class T, int L>
+requires(!std::is_same_v<T, bool>)
+    WARPAGG_HD lanes<T, L> max(const lanes<T, L>& a, std::type_identity_t<T> b) {
+    return max(a, lanes<T, L>(b));
+}
+
+/// a * b + c, rounded once.
+template <class T, int L>
+WARPAGG_HD lanes<T, L> fma(const lanes<T, L>& a, const lanes<T, L>& b, const lanes<T, L>& c) {
+    lanes<T, L> r;
+    WARPAGG_UNROLL
+    for (int i = 0; i < r.chunks; ++i) {
+#if defined(__FMA__)
+        if constexpr (std::is_same_v<T, float>) {
+            r.part[i] = reinterpret_cast<typename lanes<T, L>::chunk>(
+                _mm256_fmadd_ps(reinterpret_cast<__m256>(a.part[i]), reinterpret_cast<__m256>(b.part[i]),
+                                reinterpret_cast<__m256>(c.part[i])));
+            continue;
+        }
+#endif
+        WARPAGG_UNROLL
+        for (int k = 0; k < r.width; ++k) r.part[i][k] = math::fma(a.part[i][k], b.part[i][k], c.part[i][k]);
+    }
+    return r;
+}
+
+template <class T, int L>
+WARPAGG_HD lanes<T, L> sqrt(const lanes<T, L>& a) {
+    lanes<T, L> r;
+    WARPAGG_UNROLL
+    for (int i = 0; i < r.chunks; ++i) {
+#if defined(__AVX__)
+        if constexpr (std::is_same_v<T, float>) {
+            r.part[i] = reinterpret_cast<typename lanes<T, L>::chunk>(
+                _mm256_sqrt_ps(reinterpret_cast<__m256>(a.part[i])));
+            continue;
+        }
+#endif
+        WARPAGG_UNROLL
+        for (int k = 0; k < r.width; ++k) r.part[i][k] = math::sqrt(a.part[i][k]);
+    }
+    return r;
+}
+
+template <class T, int L>
+WARPAGG_HD lanes<T, L> abs(const lanes<T, L>& a) {
+    return max(a, -a);
+}
+template <class T, int L>
+WARPAGG_HD lanes<T, L> inverse_sqrt(const lanes<T, L>& a) {
+    return lanes<T, L>(T(1)) / sqrt(a);
+}
+template <class T, int L>
+WARPAGG_HD lanes<T, L> divide(const lanes<T, L>& a, const lanes<T, L>& b) {
+    return a / b;
+}
+
+template <class To, class From, int L>
+WARPAGG_HD lanes<To, L> convert(const lanes<From, L>& a) {
+    lanes<To, L> r;
+    if constexpr (sizeof(To) == sizeof(From)) {
+        WARPAGG_UNROLL
+        for (int i = 0; i < r.chunks; ++i)
+            r.part[i] = __builtin_convertvector(a.part[i], typename lanes<To, L>::chunk);
+    } else if constexpr (sizeof(To) == 2 * sizeof(From)) {
+        WARPAGG_UNROLL
+        for (int i = 0; i < r.chunks; ++i) lanes<To, L>::widen(a, i, r.part[i]);
+    } else {
+        WARPAGG_UNROLL
+        for (int k = 0; k < L; ++k) r.set(k, static_cast<To>(a[k]));
+    }
+    return r;
+}
+
+/// 2^a, within 1 ulp for a in [-126, 128); beyond, the nearest of these counts, as no caller needs denormals
+/// and they make x86 several times slower. 2^a = 2^n 2^f with n = round(a), f in [-1/2, 1/2]; 2^f by the
+/// polynomial of degree 6 with p(0) = 1 and least relative error, 2e-9.
+template <int L>
+WARPAGG_HD lanes<float, L> exp2(const lanes<float, L>& x) {
+    using real = lanes<float, L>;
+    using integer = lanes<std::uint32_t, L>;  // shifting a negative exponent is defined
+    const real a = min(max(x, -126.0f), 0x1.fffffep6f);
+    constexpr float round = 0x1.8p23f;  // adding it leaves the nearest integer in the low bits
+    const real shifted = a + real(round);
+    const real f = a - (shifted - real(round));
+    real p(0x1.41fba2p-13f);
+    p = fma(p, f, real(0x1.5f3e32p-10f));
+    p = fma(p, f, real(0x1.3b2d66p-7f));
+    p = fma(p, f, real(0x1.c6af2p-5f));
+    p = fma(p, f, real(0x1.ebfbdcp-3f));
+    p = fma(p, f, real(0x1.62e43p-1f));
+    p = fma(p, f, real(1.0f));
+    integer bits, exponent;
+    static_assert(sizeof bits == sizeof p);
+    std::memcpy(&bits, &p, sizeof p);
+    std::memcpy(&exponent, &shifted, sizeof shifted);
+    bits += exponent << integer(23);
+    std::memcpy(&p, &bits, sizeof p);
+    return p;
+}
+template <int L>
+WARPAGG_HD lanes<double, L> exp2(const lanes<double, L>& a) {
+    lanes<double, L> r;
+    WARPAGG_UNROLL
+    for (int k = 0; k < L; ++k) r.set(k, math::exp2(a[k]));
+    return r;
+}
+
+/// log2 of a, within 3 ulp for normal a > 0; -127 for zero, and of no meaning for all others. With a = 2^n m
+/// and m in [sqrt(1/2), sqrt(2)), log2(m) is 2 / ln 2 artanh(s) of s = (m - 1) / (m + 1), whose series ends
+/// at s^11, where the rest is 2e-11 of it.
+template <int L>
+WARPAGG_HD lanes<float, L> log2(const lanes<float, L>& a) {
+    using real = lanes<float, L>;
+    using integer = lanes<std::int32_t, L>;
+    constexpr std::int32_t least = 0x3f3504f3;  // sqrt(1/2)
+    integer bits, rest;
+    static_assert(sizeof bits == sizeof a);
+    std::memcpy(&bits, &a, sizeof a);
+    const integer n = (bits - integer(least)) >> integer(23);
+    rest = bits - (n << integer(23));
+    real m;
+    std::memcpy(&m, &rest, sizeof m);
+    const real s = (m - real(1.0f)) / (m + real(1.0f)), ss = s * s;
+    real p(0x1.0c9a84p-2f);  // 2 / (11 ln 2)
+    p = fma(p, ss, real(0x1.484b14p-2f));
+    p = fma(p, ss, real(0x1.a61762p-2f));
+    p = fma(p, ss, real(0x1.2776c6p-1f));
+    p = fma(p, ss, real(0x1.ec709ep-1f));
+    p = fma(p, ss, real(0x1.715476p+1f));
+    return fma(p, s, convert<float>(n));
+}
+template <int L>
+WARPAGG_HD lanes<double, L> log2(const lanes<double, L>& a) {
+    lanes<double, L> r;
+    WARPAGG_UNROLL
+    for (int k = 0; k < L; ++k) r.set(k, math::log2(a[k]));
+    return r;
+}
+
+template <int L>
+WARPAGG_HD lanes<std::uint32_t, L> popcount(const lanes<std::uint32_t, L>& a) {
+    lanes<std::uint32_t, L> r;
+    WARPAGG_UNROLL
+    for (int k = 0; k < L; ++k) r.set(k, math::popcount(a[k]));
+    return r;
+}
+template <int L>
+WARPAGG_HD lanes<std::uint32_t, L> countr_zero(const lanes<std::uint32_t, L>& a) {
+    lanes<std::uint32_t, L> r;
+    WARPAGG_UNROLL
+    for (int k = 0; k < L; ++k) r.set(k, math::countr_zero(a[k]));
+    return r;
+}
+/// a + b; of integers modulo 2^bits, signed ones too.
+template <class T, int L>
+WARPAGG_HD lanes<T, L> wrapping_add(const lanes<T, L>& a, const lanes<T, L>& b) {
+    if constexpr (std::is_integral_v<T> && std::is_signed_v<T>) {
+        using words =
+            typename lanes<std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>, L>::chunk;
+        lanes<T, L> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < r.chunks; ++i)
+            r.part[i] = reinterpret_cast<typename lanes<T, L>::chunk>(reinterpret_cast<words>(a.part[i]) +
+                                                                      reinterpret_cast<words>(b.part[i]));
+        return r;
+    } else {
+        return a + b;
+    }
+}
+
+template <class T, int L>
+WARPAGG_HD T uniform(const lanes<T, L>& a) {
+    return a[0];
+}
+/// @}
+
+/// Beside the scalar ones, for masked code that names them in full. Unqualified calls find them by their
+/// arguments.
+namespace math {
+using warpagg::abs;
+using warpagg::convert;
+using warpagg::countr_zero;
+using warpagg::divide;
+using warpagg::exp2;
+using warpagg::fma;
+using warpagg::inverse_sqrt;
+using warpagg::log2;
+using warpagg::max;
+using warpagg::min;
+using warpagg::popcount;
+using warpagg::select;
+using warpagg::sqrt;
+using warpagg::uniform;
+using warpagg::wrapping_add;
+}  // namespace math
+
+}  // namespace warpagg

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "detail/call_site.hpp"
+
+namespace warpagg {
+
+/// The numbers from 0 to n - 1, for a loop in which the lanes of a warp meet: `for (unsigned i :
+/// iterations(w, n))`. The unit-test machine then knows which iteration a lane is in, and says so when lanes
+/// meet in different ones, as they do after a `continue` that not all of them take. Elsewhere it is an
+/// ordinary loop. `n` may differ from lane to lane.
+template <class W>
+class iterations {
+  public:
+    /// `n`: how many; `at` is given by its default.
+    WARPAGG_EXEC_CHECK_DISABLE
+    WARPAGG_HD iterations(const W& w, unsigned n, call_site at = call_site::here("iterations"))
+        : w_(w), n_(n) {
+        if constexpr (requires { w.enter_loop(at); }) w.enter_loop(at);
+    }
+    iterations(const iterations&) = delete;
+    iterations& operator=(const iterations&) = delete;
+    WARPAGG_EXEC_CHECK_DISABLE
+    WARPAGG_HD ~iterations() {
+        if constexpr (requires { w_.leave_loop(); }) w_.leave_loop();
+    }
+
+    /// What a range-based `for` goes by.
+    class iterator {
+      public:
+        /// @{
+        /// As of any iterator.
+        WARPAGG_HD iterator(const W& w, unsigned i) : w_(w), i_(i) {}
+        WARPAGG_HD unsigned operator*() const { return i_; }
+        WARPAGG_EXEC_CHECK_DISABLE
+        WARPAGG_HD iterator& operator++() {
+            if constexpr (requires { w_.next_iteration(); }) w_.next_iteration();
+            ++i_;
+            return *this;
+        }
+        WARPAGG_HD bool operator!=(const iterator& b) const { return i_ != b.i_; }
+        /// @}
+
+      private:
+        const W& w_;
+        unsigned i_;
+    };
+    /// @{
+    /// For a range-based `for`.
+    WARPAGG_HD iterator begin() const { return {w_, 0}; }
+    WARPAGG_HD iterator end() const { return {w_, n_}; }
+    /// @}
+
+  private:
+    const W& w_;
+    unsigned n_;
+};
+
+}  // namespace warpagg

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "detail/std_for_nvrtc.hpp"
+#include "compiler.hpp"
+
+namespace warpagg {
+
+/// Lane-wise operations, so that masked code reads the same on every model: here for models whose lane values
+/// are scalars. A namespace of its own, since nvcc's own headers stumble over other overloads of sqrt and the
+/// like.
+namespace math {
+
+/// `yes` where the flag is set, `no` elsewhere.
+template <class T>
+WARPAGG_HD T select(bool mask, T yes, T no) {
+    return mask ? yes : no;
+}
+/// a b + c, rounded once.
+/// @{
+WARPAGG_HD float fma(float a, float b, float c) { return ::fmaf(a, b, c); }
+WARPAGG_HD double fma(double a, double b, double c) { return ::fma(a, b, c); }
+/// @}
+/// The square root, rounded to nearest (on CUDA as the compiler's -prec-sqrt says).
+/// @{
+WARPAGG_HD float sqrt(float a) { return ::sqrtf(a); }
+WARPAGG_HD double sqrt(double a) { return ::sqrt(a); }
+/// @}
+/// 1 / sqrt(a). On CUDA the float version is the hardware's approximation: 2 ulp. Precondition there: a is a
+/// positive normal number.
+/// @{
+WARPAGG_HD float inverse_sqrt(float a) {
+#if defined(__CUDA_ARCH__)
+    float r;
+    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(r) : "f"(a));
+    return r;
+#else
+    return 1 / ::sqrtf(a);
+#endif
+}
+WARPAGG_HD double inverse_sqrt(double a) { return 1 / ::sqrt(a); }
+/// @}
+/// Without the sign.
+/// @{
+WARPAGG_HD float abs(float a) { return ::fabsf(a); }
+WARPAGG_HD double abs(double a) { return ::fabs(a); }
+/// @}
+/// The lesser or the greater of two; the first if either is NaN.
+/// @{
+template <class T>
+requires std::is_arithmetic_v<T> WARPAGG_HD T min(T a, T b) { return b < a ? b : a; }
+template <class T>
+requires std::is_arithmetic_v<T> WARPAGG_HD T max(T a, T b) { return a < b ? b : a; }
+/// @}
+/// The lesser of a and an upper bound, the greater of a and a lower bound; the bound if a is NaN. On CUDA one
+/// instruction of floats, where `min` and `max` are two. Precondition: the bound is not NaN.
+/// @{
+template <class V>
+WARPAGG_HD V not_above(const V& a, const V& bound) {
+#if defined(__CUDA_ARCH__)
+    if constexpr (std::is_same_v<V, float>)
+        return ::fminf(a, bound);
+    else
+#endif
+        return min(bound, a);
+}
+template <class V>
+WARPAGG_HD V not_below(const V& a, const V& bound) {
+#if defined(__CUDA_ARCH__)
+    if constexpr (std::is_same_v<V, float>)
+        return ::fmaxf(a, bound);
+    else
+#endif
+        return max(bound, a);
+}
+/// @}
+
+/// 2^a. On CUDA the float version is the hardware's approximation: relative error at most 2^-22.5 (PTX ISA,
+/// ex2.approx), denormal results flushed to zero.
+WARPAGG_HD float exp2(float a) {
+#if defined(__CUDA_ARCH__)
+    float r;
+    asm("ex2.approx.ftz.f32 %0, %1;" : "=f"(r) : "f"(a));
+    return r;
+#else
+    return ::exp2f(a);
+#endif
+}
+/// 2^a.
+WARPAGG_HD double exp2(double a) { return ::exp2(a); }
+/// The logarithm to base 2.
+/// @{
+WARPAGG_HD float log2(float a) { return ::log2f(a); }
+WARPAGG_HD double log2(double a) { return ::log2(a); }
+/// @}
+
+/// a / b. On CUDA the float version is the hardware's approximate reciprocal and one step of Newton's: within
+/// 1 ulp, a / a is 1. Precondition there: b, 1 / b and the quotient are normal numbers.
+/// @{
+WARPAGG_HD float divide(float a, float b) {
+#if defined(__CUDA_ARCH__)
+    float inverse;
+    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(b));
+    const float quotient = a * inverse;
+    return fma(fma(-quotient, b, a), inverse, quotient);
+#else
+    return a / b;
+#endif
+}
+WARPAGG_HD double divide(double a, double b) { return a / b; }
+/// @}
+
+/// Lane-wise conversion.
+template <class To, class From>
+requires std::is_arithmetic_v<From> WARPAGG_HD To convert(From a) { return static_cast<To>(a); }
+
+/// a + b; of integers modulo 2^bits, signed ones too.
+template <class T>
+WARPAGG_HD T wrapping_add(const T& a, const T& b) {
+    if constexpr (std::is_integral_v<T> && sizeof(T) == 4) {
+        return static_cast<T>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+    } else if constexpr (std::is_integral_v<T> && sizeof(T) == 8) {
+        return static_cast<T>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+    } else {
+        return a + b;
+    }
+}
+
+/// How many bits are set.
+constexpr WARPAGG_HD std::uint32_t popcount(std::uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+    if (!__builtin_is_constant_evaluated()) return static_cast<std::uint32_t>(__popc(bits));
+    std::uint32_t n = 0;  // NVRTC lacks the builtin
+    for (; bits != 0; bits &= bits - 1) ++n;
+    return n;
+#else
+    return static_cast<std::uint32_t>(__builtin_popcount(bits));
+#endif
+}
+
+/// The number of the lowest bit that is set; some number below 32 if none is.
+WARPAGG_HD std::uint32_t countr_zero(std::uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+    return static_cast<std::uint32_t>(__clz(__brev(bits))) & 31u;
+#else
+    return static_cast<std::uint32_t>(__builtin_ctz(bits | 0x80000000u));
+#endif
+}
+
+/// The bits of an unsigned of 32 bits in reverse order.
+template <class V>
+WARPAGG_HD V bit_reverse(const V& value) {
+    V bits = value;
+    const auto swap = [&](unsigned distance, unsigned lower) {
+        bits = ((bits >> distance) & lower) | ((bits & lower) << distance);
+    };
+    swap(1, 0x55555555u);
+    swap(2, 0x33333333u);
+    swap(4, 0x0f0f0f0fu);
+    swap(8, 0x00ff00ffu);
+    swap(16, 0x0000ffffu);
+    return bits;
+}
+#if defined(__CUDA_ARCH__)
+WARPAGG_HD std::uint32_t bit_reverse(std::uint32_t bits) { return __brev(bits); }
+#endif
+
+/// A lane value that is the same in every lane, as a scalar.
+template <class T>
+requires std::is_arithmetic_v<T> WARPAGG_HD T uniform(T a) { return a; }
+
+}  // namespace math
+
+}  // namespace warpagg

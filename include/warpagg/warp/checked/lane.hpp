@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "../../detail/call_site.hpp"
+#include "diagnosis.hpp"
+
+namespace warpagg::emulator::detail {
+
+class machine;
+
+inline unsigned first_of(std::uint32_t lanes) { return static_cast<unsigned>(std::countr_zero(lanes)); }
+template <class F>
+void for_each_lane(std::uint32_t lanes, F f) {
+    for (; lanes != 0; lanes &= lanes - 1) f(first_of(lanes));
+}
+
+/// A lane at a collective: what it waits for, and its part in it.
+struct arrival {
+    std::uint32_t mask;   ///< the lanes that are to meet
+    bool all_lanes;       ///< whether lanes of the mask that have returned are missed
+    unsigned value_size;  ///< of the type in question
+    call_site at;         ///< in the library, if the library does it
+    void* operands;       ///< this lane's, of whatever type `complete` knows
+    void (*complete)(machine&, unsigned warp, std::uint32_t lanes);  ///< null for activemask
+};
+
+struct loop_frame {
+    call_site at;
+    std::uint64_t iteration;
+};
+
+struct lane_state {
+    bool waiting = false, returned = false;
+    arrival at{};
+    std::vector<call_site> calls;   ///< of the library, outermost first
+    std::vector<loop_frame> loops;  ///< those over `iterations` that the lane is in, outermost first
+
+    /// The kernel's own line, whatever the library does there.
+    const call_site& kernel_site(const call_site& here) const { return calls.empty() ? here : calls.front(); }
+    const call_site& site() const { return kernel_site(at.at); }
+
+    bool meets(const lane_state& b) const {
+        return waiting && b.waiting && at.mask == b.at.mask && at.value_size == b.at.value_size &&
+               same(at.at.function, b.at.at.function) && same(at.at, b.at.at) && same(site(), b.site());
+    }
+    /// Whether the two are in different iterations of one loop.
+    bool out_of_step(const lane_state& b) const {
+        for (std::size_t depth = 0; depth < loops.size() && depth < b.loops.size(); ++depth) {
+            if (!same(loops[depth].at, b.loops[depth].at)) return false;
+            if (loops[depth].iteration != b.loops[depth].iteration) return true;
+        }
+        return false;
+    }
+};
+
+struct warp_state {
+    static constexpr unsigned size = 32;
+
+    std::array<lane_state, size> lane;
+    std::uint32_t waiting = 0;   ///< at a collective of the warp, or for activemask
+    std::uint32_t returned = 0;  ///< from the kernel
+    std::uint32_t in_barrier = 0;
+
+    /// known[a][b]: how far lane a knows what lane b did, counted in synchronizations of b; its own come
+    /// first.
+    std::array<std::array<std::uint32_t, size>, size> known{};
+
+    warp_state() {
+        for (unsigned a = 0; a < size; ++a) known[a][a] = 1;
+    }
+
+    bool stands() const { return (waiting | returned | in_barrier) == ~std::uint32_t{0}; }
+
+    /// Whatever these lanes have done is before whatever they will do.
+    void synchronize(std::uint32_t lanes) {
+        std::array<std::uint32_t, size> all{};
+        for_each_lane(lanes, [&](unsigned a) {
+            for (unsigned b = 0; b < size; ++b) all[b] = std::max(all[b], known[a][b]);
+        });
+        for_each_lane(lanes, [&](unsigned a) {
+            known[a] = all;
+            ++known[a][a];
+        });
+    }
+};
+
+}  // namespace warpagg::emulator::detail

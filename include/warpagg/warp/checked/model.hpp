@@ -1,0 +1,347 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "../../operation.hpp"
+#include "../../detail/atomic_memory.hpp"
+#include "../concept.hpp"
+#include "simulator.hpp"
+#include "watched.hpp"
+
+namespace warpagg::emulator {
+
+/// A warp of the unit-test machine, as one of its lanes sees it: each lane is a fiber that runs the kernel by
+/// itself, so kernels are ordinary scalar code (`if`, loops, early returns), `value_t<checked, T>` is `T`,
+/// and whatever breaks a rule is diagnosed. `try_launch` makes them; docs/unit_testing.md tells how to use
+/// it.
+///
+/// The operations of the concept, `sync()` and `barrier()` are for all lanes, and a lane that has returned is
+/// missed. Those that end in `_sync`, and `sync(mask)`, are CUDA's: for the lanes of the mask that have not
+/// returned. `load`, `store` and the like are a lane's own and may stand in branches. As on CUDA, only `sync`
+/// and `barrier` order accesses to memory. The last argument of each is the place of the call; nobody gives
+/// it.
+class checked {
+  public:
+    /// The operation of this name of the concept `warp`.
+    /// @{
+    static constexpr unsigned size = 32;
+    template <class T>
+    using value = T;
+    /// @}
+
+    /// Made by `launch`.
+    explicit checked(detail::machine& m) : machine_(&m) {}
+
+    unsigned lane() const { return machine_->lane(); }            ///< in the warp
+    unsigned thread_index() const { return machine_->thread(); }  ///< in the block
+    unsigned block_size() const { return machine_->threads(); }   ///< in threads
+    unsigned block_index() const { return machine_->block(); }    ///< in the grid
+    unsigned grid_size() const { return machine_->blocks(); }     ///< in blocks
+
+    // ------------------------------------------------------------------------------ all lanes together
+
+    /// The operation of this name of the concept `warp`.
+    /// @{
+    std::uint32_t ballot(bool p, call_site at = call_site::here("ballot")) const {
+        return vote(all_lanes, p, at);
+    }
+    bool any(bool p, call_site at = call_site::here("any")) const { return vote(all_lanes, p, at) != 0; }
+    std::uint32_t match(unsigned key, call_site at = call_site::here("match")) const {
+        return equal(all_lanes, key, at);
+    }
+
+    template <class T>
+    T shfl(T v, unsigned from, call_site at = call_site::here("shfl")) const {
+        return exchange(all_lanes, v, from % size, at);
+    }
+    template <class T>
+    T shfl_down(T v, unsigned distance, call_site at = call_site::here("shfl_down")) const {
+        return exchange(all_lanes, v, down(distance), at);
+    }
+    template <class T>
+    T shfl_xor(T v, unsigned distance, call_site at = call_site::here("shfl_xor")) const {
+        return exchange(all_lanes, v, (lane() ^ distance) % size, at);
+    }
+
+    /// @}
+
+    /// All lanes come here; the active ones then commit one after the other, in an order that the seed draws,
+    /// and lanes of other warps in between.
+    template <class Op, class Dst, class T>
+    WARPAGG_OUT_OF_LINE void atomic(Op op, Dst dst, unsigned index, T v, bool active,
+                                    call_site at = call_site::here("atomic")) const {
+        T* const to = active ? dst(index) : nullptr;
+        commit mine{to};
+        meet<T>(all_lanes, at, mine, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+            if (counters* c = m.count()) count_commit(*c, {m, warp, lanes});
+        });
+        if (to == nullptr) return;
+        machine_->write_memory(to, v, detail::access_kind::atomic, at);
+        detail::atomic(op, to, v);
+    }
+
+    /// `__syncwarp()`: what the lanes did to memory is before what they will do.
+    void sync(call_site at = call_site::here("sync")) const { synchronize(all_lanes, at); }
+    /// `__syncthreads()`.
+    void barrier(call_site at = call_site::here("barrier")) const { machine_->barrier(at); }
+
+    // -------------------------------------------------------------------------- the lanes of a mask: CUDA's
+
+    /// CUDA's function of this name, with two underscores before it. All lanes of the mask that have not
+    /// returned call it, with the same mask.
+    /// @{
+    std::uint32_t ballot_sync(std::uint32_t mask, bool p,
+                              call_site at = call_site::here("ballot_sync")) const {
+        return vote({mask}, p, at);
+    }
+    bool any_sync(std::uint32_t mask, bool p, call_site at = call_site::here("any_sync")) const {
+        return vote({mask}, p, at) != 0;
+    }
+    template <class T>
+    std::uint32_t match_any_sync(std::uint32_t mask, T key,
+                                 call_site at = call_site::here("match_any_sync")) const {
+        return equal({mask}, key, at);
+    }
+    /// What is read from a lane that is not in the mask, or has returned, is undefined: memory must not
+    /// depend on it.
+    template <class T>
+    T shfl_sync(std::uint32_t mask, T v, unsigned from, call_site at = call_site::here("shfl_sync")) const {
+        return exchange({mask}, v, from % size, at);
+    }
+    template <class T>
+    T shfl_down_sync(std::uint32_t mask, T v, unsigned distance,
+                     call_site at = call_site::here("shfl_down_sync")) const {
+        return exchange({mask}, v, down(distance), at);
+    }
+    template <class T>
+    T shfl_xor_sync(std::uint32_t mask, T v, unsigned distance,
+                    call_site at = call_site::here("shfl_xor_sync")) const {
+        return exchange({mask}, v, (lane() ^ distance) % size, at);
+    }
+    /// @}
+    /// `__syncwarp(mask)`.
+    void sync(std::uint32_t mask, call_site at = call_site::here("sync")) const { synchronize({mask}, at); }
+
+    /// `__activemask()`: some of the lanes that are here, this one among them. Those that it names get the
+    /// same answer; beyond that it is as the seed draws, for a compiler may take lanes apart as it likes.
+    std::uint32_t activemask(call_site at = call_site::here("activemask")) const {
+        std::uint32_t mask = 0;
+        machine_->meet({~std::uint32_t{0}, false, 0, at, &mask, nullptr});
+        return mask;
+    }
+
+    // ------------------------------------------------------------------------------------ a lane's own
+
+    /// The operation of this name of the concept `warp`.
+    /// @{
+    template <class T>
+    T load(const T* from, unsigned index, bool active, call_site at = call_site::here("load")) const {
+        return active ? read(from + index, at) : T{};
+    }
+    template <class T, int N>
+    void load_packed(const T* from, unsigned index, T (&v)[N], bool active,
+                     call_site at = call_site::here("load_packed")) const {
+        for (unsigned k = 0; k < N; ++k) v[k] = active ? read(from + index + k, at) : T{};
+    }
+    template <class T>
+    void store(T* to, unsigned index, T v, bool active, call_site at = call_site::here("store")) const {
+        if (active) write(to + index, v, at);
+    }
+    template <class T, int N>
+    void store_packed(T* to, unsigned index, const T (&v)[N], bool active,
+                      call_site at = call_site::here("store_packed")) const {
+        for (unsigned k = 0; k < N; ++k)
+            if (active) write(to + index + k, v[k], at);
+    }
+    template <class T>
+    T load_row(const T* from, std::ptrdiff_t first, bool active,
+               call_site at = call_site::here("load_row")) const {
+        return active ? read(from + first + lane(), at) : T{};
+    }
+    template <class T>
+    T load_row(const T* from, std::ptrdiff_t first, call_site at = call_site::here("load_row")) const {
+        return read(from + first + lane(), at);
+    }
+    template <class T>
+    void store_row(T* to, std::ptrdiff_t first, T v, bool active,
+                   call_site at = call_site::here("store_row")) const {
+        if (active) write(to + first + lane(), v, at);
+    }
+    /// @}
+
+    /// The block's array of `n` values that this line declares, as `__shared__ T a[n]` does; not initialized.
+    template <class T>
+    watched<T> shared(std::size_t n, call_site at = call_site::here("shared")) const {
+        return {static_cast<T*>(machine_->shared().at(at, n * sizeof(T))), n};
+    }
+
+    // ------------------------------------------------------------------------- what the library tells
+
+    /// Called by the library, not by kernels.
+    /// @{
+    void enter(const call_site& at) const { machine_->self().calls.push_back(at); }
+    void leave() const { machine_->self().calls.pop_back(); }
+
+    void observe(bool active, call_site at = call_site::here("observe")) const {
+        if (machine_->count() == nullptr) return;
+        meet<bool>(all_lanes, at, active, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+            unsigned busy = 0;
+            group<bool>{m, warp, lanes}.each(
+                [&](unsigned, bool active_there) { busy += active_there ? 1u : 0u; });
+            ++m.count()->active[busy];
+        });
+    }
+    void require_uniform(const void* destination, call_site at = call_site::here("require_uniform")) const {
+        meet<void*>(all_lanes, at, destination, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+            const group<const void*> g{m, warp, lanes};
+            const unsigned first = detail::first_of(lanes);
+            std::uint32_t other = 0;
+            g.each([&](unsigned lane, const void* there) { other |= there != g[first] ? 1u << lane : 0u; });
+            if (other == 0) return;
+            m.diagnose(warp,
+                       [&] { return detail::not_uniform(m.warp(warp).lane[first].site(), other, first); });
+        });
+    }
+    void require_busy(bool busy, call_site at = call_site::here("require_busy")) const {
+        meet<bool>(all_lanes, at, busy, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+            bool some = false;
+            group<bool>{m, warp, lanes}.each([&](unsigned, bool there) { some = some || there; });
+            if (!some) m.diagnose(warp, [&] { return detail::idle_warp(m.self().site(), lanes); });
+        });
+    }
+
+    void enter_loop(const call_site& at) const { machine_->self().loops.push_back({at, 0}); }
+    void next_iteration() const { ++machine_->self().loops.back().iteration; }
+    void leave_loop() const { machine_->self().loops.pop_back(); }
+    /// @}
+
+  private:
+    struct who {
+        std::uint32_t mask;
+        bool all_lanes = false;
+    };
+    static constexpr who all_lanes{~std::uint32_t{0}, true};
+
+    /// What the lanes that have met brought.
+    template <class Operands>
+    struct group {
+        detail::machine& m;
+        unsigned warp;
+        std::uint32_t lanes;
+        Operands& operator[](unsigned lane) const {
+            return *static_cast<Operands*>(m.warp(warp).lane[lane].at.operands);
+        }
+        bool has(unsigned lane) const { return ((lanes >> lane) & 1u) != 0; }
+        template <class F>
+        void each(F f) const {
+            detail::for_each_lane(lanes, [&](unsigned lane) { f(lane, (*this)[lane]); });
+        }
+    };
+
+    template <class T, class Operands, class F>
+    void meet(who w, const call_site& at, Operands& mine, F complete) const {
+        machine_->meet({w.mask, w.all_lanes, sizeof(T), at, const_cast<std::remove_const_t<Operands>*>(&mine),
+                        complete});
+    }
+
+    struct ballot_part {
+        bool p;
+        std::uint32_t bits = 0;
+    };
+    WARPAGG_OUT_OF_LINE std::uint32_t vote(who w, bool p, const call_site& at) const {
+        ballot_part mine{p};
+        meet<bool>(w, at, mine, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+            if (counters* c = m.count()) ++c->votes;
+            const group<ballot_part> g{m, warp, lanes};
+            std::uint32_t bits = 0;
+            g.each([&](unsigned lane, ballot_part& part) { bits |= part.p ? 1u << lane : 0u; });
+            g.each([&](unsigned, ballot_part& part) { part.bits = bits; });
+        });
+        return mine.bits;
+    }
+
+    template <class T>
+    struct match_part {
+        T key;
+        std::uint32_t lanes = 0;
+    };
+    template <class T>
+    std::uint32_t equal(who w, T key, const call_site& at) const {
+        match_part<T> mine{key};
+        meet<T>(w, at, mine, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+            if (counters* c = m.count()) ++c->votes;
+            const group<match_part<T>> g{m, warp, lanes};
+            g.each([&](unsigned, match_part<T>& part) {
+                g.each([&](unsigned lane, const match_part<T>& other) {
+                    part.lanes |= part.key == other.key ? 1u << lane : 0u;
+                });
+            });
+        });
+        return mine.lanes;
+    }
+
+    template <class T>
+    struct shuffle_part {
+        T value;
+        unsigned from;
+        T result;
+    };
+    unsigned down(unsigned distance) const { return distance < size - lane() ? lane() + distance : lane(); }
+    template <class T>
+    WARPAGG_OUT_OF_LINE T exchange(who w, T v, unsigned from, const call_site& at) const {
+        shuffle_part<T> mine{v, from, v};
+        meet<T>(w, at, mine, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+            if (counters* c = m.count()) c->shuffles += (sizeof(T) + 3) / 4;
+            const group<shuffle_part<T>> g{m, warp, lanes};
+            g.each([&](unsigned lane, shuffle_part<T>& part) {
+                part.result = g.has(part.from) ? g[part.from].value : m.undefined<T>(warp, lane, part.from);
+            });
+        });
+        return mine.result;
+    }
+
+    void synchronize(who w, const call_site& at) const {
+        bool nothing = false;
+        meet<bool>(w, at, nothing, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+            m.warp(warp).synchronize(lanes);
+        });
+    }
+
+    struct commit {
+        const void* to;  // null if the lane is not active
+    };
+    static void count_commit(counters& c, const group<commit>& g) {
+        std::uintptr_t sectors[size] = {};
+        unsigned known = 0;
+        g.each([&](unsigned, const commit& part) {
+            if (part.to == nullptr) return;
+            ++c.atomics;
+            const auto sector = reinterpret_cast<std::uintptr_t>(part.to) / 32;
+            unsigned i = 0;
+            while (i < known && sectors[i] != sector) ++i;
+            if (i == known) sectors[known++] = sector;
+        });
+        c.commits += known > 0 ? 1 : 0;
+        c.sectors += known;
+    }
+
+    template <class T>
+    T read(const T* from, const call_site& at) const {
+        machine_->access_memory(from, sizeof(T), detail::access_kind::read, at);
+        return *from;
+    }
+    template <class T>
+    void write(T* to, const T& v, const call_site& at) const {
+        machine_->write_memory(to, v, detail::access_kind::write, at);
+        *to = v;
+    }
+
+    detail::machine* machine_;
+};
+
+static_assert(warpagg::warp<checked>);
+
+}  // namespace warpagg::emulator

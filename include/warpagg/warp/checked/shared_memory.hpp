@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "../../detail/call_site.hpp"
+#include "diagnosis.hpp"
+
+namespace warpagg::emulator::detail {
+
+/// A block's shared arrays, each known by the place that declares it, as a `__shared__` array is.
+class shared_memory {
+  public:
+    /// The next block uses the same memory; `forget(first, size)` is told of it.
+    template <class F>
+    void begin_block(F forget) {
+        for (array& a : arrays_) {
+            forget(a.first.get(), a.size);
+            spoil(a);
+        }
+    }
+
+    /// The memory of the array that `at` declares; the same for all threads of the block.
+    void* at(const call_site& at, std::size_t size) {
+        for (array& a : arrays_)
+            if (same(a.at, at) && a.size == size) return a.first.get();
+        arrays_.push_back({at, size, std::make_unique<std::byte[]>(size)});
+        spoil(arrays_.back());
+        return arrays_.back().first.get();
+    }
+
+  private:
+    struct array {
+        call_site at;
+        std::size_t size;
+        std::unique_ptr<std::byte[]> first;
+    };
+    /// What a block finds there is not zero: floats are NaN.
+    static void spoil(array& a) { std::memset(a.first.get(), 0xff, a.size); }
+
+    std::vector<array> arrays_;
+};
+
+}  // namespace warpagg::emulator::detail

@@ -1,0 +1,325 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <utility>
+#include <vector>
+
+#include "../counters.hpp"
+#include "diagnosis.hpp"
+#include "diagnosis_text.hpp"
+#include "lane.hpp"
+#include "scheduler.hpp"
+#include "shadow_memory.hpp"
+#include "shared_memory.hpp"
+#include "shadow_process.hpp"
+#include "undefined.hpp"
+
+// The library unrolls its loops over a warp's operations: what each does stays one function, for the
+// compiler's time.
+#define WARPAGG_OUT_OF_LINE __attribute__((noinline))
+
+namespace warpagg::emulator::detail {
+
+/// What a launch runs on: the lanes of one block at a time, what they wait for, and what they did to memory.
+class machine {
+  public:
+    machine(unsigned blocks, unsigned threads, std::uint64_t seed, counters* count)
+        : blocks_(blocks), threads_(threads), count_(count), random_(seed), scheduler_(random_) {
+        report_.seed = seed;
+    }
+    machine(const machine&) = delete;
+    machine& operator=(const machine&) = delete;
+
+    /// The one that the calling lane runs on; null outside of kernels.
+    static machine*& running() {
+        static thread_local machine* m = nullptr;
+        return m;
+    }
+
+    /// Runs `body` once per thread, block after block in an order drawn at random, until a diagnosis.
+    template <class F>
+    report run(const F& body) {
+        body_ = [](machine& m, const void* f) { (*static_cast<const F*>(f))(m); };
+        argument_ = &body;
+        machine* const outer = std::exchange(running(), this);
+        std::vector<unsigned> order(blocks_);
+        for (unsigned b = 0; b < blocks_; ++b) {
+            order[b] = b;
+            std::swap(order[b], order[random_.below(b + 1)]);
+        }
+        for (const unsigned block : order) {
+            run_block(block);
+            if (stopped_) break;
+        }
+        running() = outer;
+        if (twin_.is_child()) twin_.hand_over();
+#if defined(__cpp_exceptions)
+        if (exception_) std::rethrow_exception(exception_);
+#endif
+        if (report_.ok() && twin_.differs()) blame_garbage();
+        return std::move(report_);
+    }
+
+    // -------------------------------------------------------------------------- the lane that is running
+
+    unsigned blocks() const { return blocks_; }
+    unsigned threads() const { return threads_; }
+    unsigned block() const { return block_; }
+    unsigned thread() const { return scheduler_.current(); }
+    unsigned lane() const { return thread() % warp_state::size; }
+    unsigned warp_number() const { return thread() / warp_state::size; }
+    warp_state& warp() { return warps_[warp_number()]; }
+    lane_state& self() { return warp().lane[lane()]; }
+    warp_state& warp(unsigned number) { return warps_[number]; }
+    counters* count() const { return count_; }
+    shared_memory& shared() { return shared_; }
+
+    /// Waits until the lanes of the mask are here too; whoever comes last calls `complete` for all of them.
+    WARPAGG_OUT_OF_LINE void meet(const arrival& a) {
+        const std::uint32_t bit = 1u << lane();
+        if ((a.mask & bit) == 0) diagnose([&] { return not_in_mask(self(), a, bit); });
+        self().at = a;
+        self().waiting = true;
+        warp().waiting |= bit;
+        if (!try_complete(warp_number(), lane())) settle(warp_number());
+        scheduler_.sleep();
+    }
+
+    void barrier(const call_site& at) {
+        self().at.at = at;
+        warp().in_barrier |= 1u << lane();
+        ++in_barrier_;
+        settle(warp_number());
+        check_barrier();
+        scheduler_.sleep();
+    }
+
+    /// A lane reads from `from`, which is not there.
+    template <class T>
+    T undefined(unsigned number, unsigned lane, unsigned from) {
+        twin_.split();
+        const unsigned thread = number * warp_state::size + lane;
+        const undefined_read read{warps_[number].lane[lane].site(), block_, thread, from};
+        return undefined_.make<T>(read, random_, twin_.is_child());
+    }
+
+    /// Before an access to memory: others may run first; and the access must not conflict with another.
+    WARPAGG_OUT_OF_LINE void access_memory(const void* address, std::size_t size, access_kind kind,
+                                           const call_site& here) {
+        if (random_.below(8) == 0) scheduler_.let_others_run();
+        if (scheduler_.on_stack(address)) return;
+        const call_site& at = self().kernel_site(here);
+        const access now{block_, thread(), phase_, warp().known[lane()][lane()], kind, 0, at};
+        const access* before =
+            shadow_.note(address, size, now, [this](const access& a) { return ordered(a); });
+        if (before != nullptr) diagnose([&] { return conflict(*before, now); });
+    }
+    /// Before a write, or an atomic whose operand is `value`.
+    template <class T>
+    WARPAGG_OUT_OF_LINE void write_memory(const void* address, const T& value, access_kind kind,
+                                          const call_site& here) {
+        access_memory(address, sizeof(T), kind, here);
+        const call_site& at = self().kernel_site(here);
+        if (const undefined_read* read = undefined_.origin(value))
+            diagnose(read->thread / warp_state::size, [&] { return inactive_lane_read(*read, at); });
+        twin_.note({at, block_, thread(), undefined_.count()}, address, &value, sizeof(T));
+    }
+
+    /// Reports what `find()` says of a warp. The lanes stop where they are, so nothing that owns memory may
+    /// live in the caller.
+    template <class F>
+    [[noreturn]] void diagnose(unsigned number, F find) {
+        note(number, find());
+        stopped_ = true;
+        scheduler_.abandon();
+    }
+    template <class F>
+    [[noreturn]] void diagnose(F find) {
+        diagnose(warp_number(), find);
+    }
+
+  private:
+    void run_block(unsigned block) {
+        block_ = block;
+        phase_ = 0;
+        in_barrier_ = 0;
+        returned_ = 0;
+        warps_.assign(threads_ / warp_state::size, warp_state{});
+        shared_.begin_block([this](const void* first, std::size_t size) { shadow_.forget(first, size); });
+        scheduler_.run(threads_, run_threads);
+    }
+
+    /// What a fiber does, in this launch and in later ones.
+    static void run_threads() {
+        running()->scheduler_.begin();
+        for (;;) running()->run_thread();
+    }
+    void run_thread() {
+#if defined(__cpp_exceptions)
+        try {
+            body_(*this, argument_);
+        } catch (...) {
+            exception_ = std::current_exception();
+        }
+        if (exception_) {
+            stopped_ = true;
+            scheduler_.abandon();
+        }
+#else
+        body_(*this, argument_);
+#endif
+        lane_returns();
+        scheduler_.finish();  // the machine may be gone when it returns
+    }
+
+    void lane_returns() {
+        const unsigned number = warp_number();
+        warp().returned |= 1u << lane();
+        ++returned_;
+        // Those who wait for a mask do not wait for lanes that have returned.
+        for_each_lane(warp().waiting, [&](unsigned other) {
+            if (warp().lane[other].waiting) try_complete(number, other);
+        });
+        settle(number);
+        check_barrier();
+    }
+
+    bool try_complete(unsigned number, unsigned leader) {
+        warp_state& w = warps_[number];
+        const lane_state& first = w.lane[leader];
+        if (first.at.complete == nullptr) return false;
+        const std::uint32_t lanes = first.at.all_lanes ? first.at.mask : first.at.mask & ~w.returned;
+        if ((w.waiting & lanes) != lanes) return false;
+        bool all_meet = true;
+        std::uint32_t apart = 0;
+        for_each_lane(lanes, [&](unsigned lane) {
+            all_meet = all_meet && first.meets(w.lane[lane]);
+            if (w.lane[lane].out_of_step(w.lane[first_of(lanes)])) apart |= 1u << lane;
+        });
+        if (!all_meet) return false;
+        if (apart != 0) diagnose(number, [&] { return out_of_step(first.site(), apart, lanes & ~apart); });
+        first.at.complete(*this, number, lanes);
+        release(number, lanes);
+        return true;
+    }
+
+    void release(unsigned number, std::uint32_t lanes) {
+        warps_[number].waiting &= ~lanes;
+        for_each_lane(lanes, [&](unsigned lane) {
+            warps_[number].lane[lane].waiting = false;
+            scheduler_.wake(number * warp_state::size + lane);
+        });
+    }
+
+    /// When no lane of the warp can go on: answers those that asked who is there, or says what is wrong.
+    void settle(unsigned number) {
+        warp_state& w = warps_[number];
+        if (!w.stands() || w.waiting == 0) return;
+        std::uint32_t asking = 0;
+        for_each_lane(w.waiting, [&](unsigned lane) {
+            if (w.lane[lane].at.complete == nullptr) asking |= 1u << lane;
+        });
+        if (asking == 0) diagnose(number, [&] { return stuck(w); });
+        while (asking != 0) {
+            const lane_state& first = w.lane[first_of(asking)];
+            std::uint32_t together = 0;
+            for_each_lane(asking, [&](unsigned lane) {
+                if (first.meets(w.lane[lane]) && !first.out_of_step(w.lane[lane])) together |= 1u << lane;
+            });
+            partition(w, together);
+            asking &= ~together;
+            release(number, together);
+        }
+    }
+
+    /// Tells these lanes that they are alone with some of each other: what a compiler may make of a divergent
+    /// warp.
+    void partition(warp_state& w, std::uint32_t lanes) {
+        const std::uint32_t parts = 1 + random_.below(3);
+        std::uint32_t part[3] = {}, of[warp_state::size] = {};
+        for_each_lane(lanes, [&](unsigned lane) { part[of[lane] = random_.below(parts)] |= 1u << lane; });
+        for_each_lane(lanes, [&](unsigned lane) {
+            *static_cast<std::uint32_t*>(w.lane[lane].at.operands) = part[of[lane]];
+        });
+    }
+
+    /// When no thread of the block can go on but by the barrier: lets them through, or says what is wrong.
+    void check_barrier() {
+        if (in_barrier_ == 0 || in_barrier_ + returned_ < threads_) return;
+        const call_site* at = nullptr;
+        for (const warp_state& w : warps_)
+            if (at == nullptr && w.in_barrier != 0) at = &w.lane[first_of(w.in_barrier)].site();
+        for (unsigned number = 0; number < warps_.size(); ++number) {
+            const warp_state& w = warps_[number];
+            if (w.returned != 0)
+                diagnose(number, [&] { return barrier_not_reached(*at, w.returned, in_barrier_, threads_); });
+            std::uint32_t elsewhere = 0;
+            for_each_lane(w.in_barrier, [&](unsigned lane) {
+                if (!same(w.lane[lane].site(), *at)) elsewhere |= 1u << lane;
+            });
+            if (elsewhere != 0)
+                diagnose(number,
+                         [&] { return another_barrier(*at, w.lane[first_of(elsewhere)].site(), elsewhere); });
+        }
+        ++phase_;
+        in_barrier_ = 0;
+        for (warp_state& w : warps_) w.in_barrier = 0;
+        for (unsigned t = 0; t < threads_; ++t) scheduler_.wake(t);
+    }
+
+    /// Whether what was done then is before whatever the running lane does now.
+    bool ordered(const access& a) {
+        if (a.block != block_) return false;
+        if (a.thread == thread() || a.phase < phase_) return true;
+        return a.thread / warp_state::size == warp_number() &&
+               warp().known[lane()][a.thread % warp_state::size] >= a.clock;
+    }
+
+    /// The twin wrote something else.
+    void blame_garbage() {
+        const twin::write* write = twin_.first_difference();
+        const undefined_read& read =
+            write != nullptr ? undefined_.last_of(write->reads_before, write->block, write->thread)
+                             : undefined_.last();
+        block_ = read.block;
+        note(read.thread / warp_state::size,
+             inactive_lane_read(read, write != nullptr ? write->at : read.at));
+    }
+    void note(unsigned number, finding f) {
+        report_.what = f.what;
+        report_.at = f.at;
+        report_.other = f.other;
+        report_.lanes = f.lanes;
+        report_.sentence = std::move(f.sentence);
+        report_.block = block_;
+        report_.warp = number;
+    }
+
+    unsigned blocks_, threads_;
+    counters* count_;
+    random_source random_;
+    scheduler scheduler_;
+    void (*body_)(machine&, const void*) = nullptr;
+    const void* argument_ = nullptr;
+
+    unsigned block_ = 0;
+    std::vector<warp_state> warps_;
+    unsigned in_barrier_ = 0, returned_ = 0;
+    unsigned phase_ = 0;  // how many barriers the block has passed
+    shared_memory shared_;
+
+    shadow_memory shadow_;
+    undefined_values undefined_;
+    twin twin_;
+
+    bool stopped_ = false;
+    report report_;
+#if defined(__cpp_exceptions)
+    std::exception_ptr exception_;
+#endif
+};
+
+}  // namespace warpagg::emulator::detail

@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "../operation.hpp"
+#include "concept.hpp"
+
+/// The model of the concept `warp` for a GPU.
+namespace warpagg::cuda {
+
+namespace detail {
+
+/// What CUDA's atomics of 64-bit integers are called with; memory adds two's complement all the same.
+template <class T>
+using bits = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, unsigned long long, T>;
+template <class T>
+using integer = std::conditional_t<sizeof(T) == 8,
+                                   std::conditional_t<std::is_signed_v<T>, long long, unsigned long long>, T>;
+
+/// What one instruction loads or stores of 32-bit values, and two of 64-bit ones.
+template <class T>
+struct alignas(16) four {
+    T at[4];
+};
+
+template <class T>
+__device__ __forceinline__ void atomic(operation::sum, T* to, T v) {
+    atomicAdd(reinterpret_cast<bits<T>*>(to), static_cast<bits<T>>(v));
+}
+template <class T>
+__device__ __forceinline__ void atomic(operation::minimum, T* to, T v) {
+    atomicMin(reinterpret_cast<integer<T>*>(to), static_cast<integer<T>>(v));
+}
+template <class T>
+__device__ __forceinline__ void atomic(operation::maximum, T* to, T v) {
+    atomicMax(reinterpret_cast<integer<T>*>(to), static_cast<integer<T>>(v));
+}
+template <class T>
+__device__ __forceinline__ void atomic(operation::bit_and, T* to, T v) {
+    atomicAnd(reinterpret_cast<bits<T>*>(to), static_cast<bits<T>>(v));
+}
+template <class T>
+__device__ __forceinline__ void atomic(operation::bit_or, T* to, T v) {
+    atomicOr(reinterpret_cast<bits<T>*>(to), static_cast<bits<T>>(v));
+}
+template <class T>
+__device__ __forceinline__ void atomic(operation::bit_xor, T* to, T v) {
+    atomicXor(reinterpret_cast<bits<T>*>(to), static_cast<bits<T>>(v));
+}
+
+template <class Op, class T>
+requires Op::by_exchange __device__ __forceinline__ void atomic(Op, T* to, T v) {
+    auto* word = reinterpret_cast<unsigned long long*>(to);
+    for (unsigned long long before = *static_cast<volatile unsigned long long*>(word);;) {
+        const unsigned long long after = Op::combine(static_cast<T>(before), v);
+        if (after == before) return;
+        const unsigned long long seen = atomicCAS(word, before, after);
+        if (seen == before) return;
+        before = seen;
+    }
+}
+
+}  // namespace detail
+
+/// The warp that the calling thread belongs to. Empty; every operation is one instruction or a few.
+///
+/// Precondition: all 32 lanes of the warp are launched and call each operation together. A lane takes part or
+/// not by its `active` argument; no mask is taken from `__activemask()`, so results do not depend on how the
+/// compiler converges lanes.
+struct warp {
+    /// The operation of this name of the concept `warp`.
+    /// @{
+    static constexpr unsigned size = 32;
+    template <class T>
+    using value = T;
+
+    __device__ __forceinline__ unsigned lane() const {
+        unsigned id;
+        asm("mov.u32 %0, %%laneid;" : "=r"(id));
+        return id;
+    }
+    /// `lane() & Distance`, said so that it takes one instruction: the compiler would shift the bit down
+    /// first.
+    template <unsigned Distance>
+    __device__ __forceinline__ bool is_upper() const {
+        unsigned bit;
+        asm("and.b32 %0, %1, %2;" : "=r"(bit) : "r"(lane()), "n"(Distance));
+        return bit != 0;
+    }
+    __device__ __forceinline__ std::uint32_t ballot(bool p) const { return __ballot_sync(all, p); }
+    __device__ __forceinline__ bool any(bool p) const { return __any_sync(all, p) != 0; }
+
+    template <class T>
+    __device__ __forceinline__ T shfl(T v, unsigned from) const {
+        return __shfl_sync(all, v, static_cast<int>(from));
+    }
+    template <class T>
+    __device__ __forceinline__ T shfl_down(T v, unsigned distance) const {
+        return __shfl_down_sync(all, v, distance);
+    }
+    template <class T>
+    __device__ __forceinline__ T shfl_xor(T v, unsigned distance) const {
+        return __shfl_xor_sync(all, v, static_cast<int>(distance));
+    }
+
+    __device__ __forceinline__ std::uint32_t match(unsigned key) const { return __match_any_sync(all, key); }
+
+    template <class T>
+    __device__ __forceinline__ T load(const T* from, unsigned index, bool active) const {
+        return active ? from[index] : T{};
+    }
+    template <class T, int N>
+    __device__ __forceinline__ void load_packed(const T* from, unsigned index, T (&v)[N], bool active) const {
+        static_assert(N % 4 == 0);
+#pragma unroll
+        for (int i = 0; i < N; i += 4) {
+            detail::four<T> f{};
+            if (active) f = *reinterpret_cast<const detail::four<T>*>(from + index + i);
+#pragma unroll
+            for (int k = 0; k < 4; ++k) v[i + k] = f.at[k];
+        }
+    }
+    template <class T, int N>
+    __device__ __forceinline__ void store_packed(T* to, unsigned index, const T (&v)[N], bool active) const {
+        static_assert(N % 4 == 0);
+        if (!active) return;
+#pragma unroll
+        for (int i = 0; i < N; i += 4)
+            *reinterpret_cast<detail::four<T>*>(to + index + i) = {{v[i], v[i + 1], v[i + 2], v[i + 3]}};
+    }
+    __device__ __forceinline__ void sync() const { __syncwarp(); }
+    template <class T>
+    __device__ __forceinline__ void store(T* to, unsigned index, T v, bool active) const {
+        if (active) to[index] = v;
+    }
+    template <class T>
+    __device__ __forceinline__ T load_row(const T* from, std::ptrdiff_t first, bool active) const {
+        return active ? from[first + static_cast<std::ptrdiff_t>(lane())] : T{};
+    }
+    template <class T>
+    __device__ __forceinline__ T load_row(const T* from, std::ptrdiff_t first) const {
+        return from[first + static_cast<std::ptrdiff_t>(lane())];
+    }
+    template <class T>
+    __device__ __forceinline__ void store_row(T* to, std::ptrdiff_t first, T v, bool active) const {
+        if (active) to[first + static_cast<std::ptrdiff_t>(lane())] = v;
+    }
+    /// @}
+
+    /// Compiles to RED, which returns nothing. Sums of float, double, integers of 32 and 64 bits, `__half2`,
+    /// `__nv_bfloat162`; the other operations of integers.
+    template <class Op, class Dst, class T>
+    __device__ __forceinline__ void atomic(Op op, Dst dst, unsigned index, T v, bool active) const {
+        if (active) detail::atomic(op, dst(index), v);
+    }
+    /// Whether `atomic_add_packed<K>` may add to to[0..K): in global memory, aligned, and on a compute
+    /// capability of 9.0 or more.
+    template <unsigned K>
+    __device__ __forceinline__ bool packs(const float* to) const {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+        return reinterpret_cast<std::uintptr_t>(to) % (K * sizeof(float)) == 0 && __isGlobal(to);
+#else
+        return false;
+#endif
+    }
+    /// Adds v[0..K) to to[0..K) by one RED. Precondition: `packs<K>(to)`, or K = 1.
+    template <unsigned K>
+    __device__ __forceinline__ void atomic_add_packed(float* to, const float* v, bool active) const {
+        if (!active) return;
+        if constexpr (K == 4) {
+            asm volatile("red.global.add.v4.f32 [%0], {%1, %2, %3, %4};" ::"l"(__cvta_generic_to_global(to)),
+                         "f"(v[0]), "f"(v[1]), "f"(v[2]), "f"(v[3])
+                         : "memory");
+        } else if constexpr (K == 2) {
+            asm volatile("red.global.add.v2.f32 [%0], {%1, %2};" ::"l"(__cvta_generic_to_global(to)),
+                         "f"(v[0]), "f"(v[1])
+                         : "memory");
+        } else {
+            atomicAdd(to, v[0]);
+        }
+    }
+
+#if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ >= 800  // before, `reduce::redux` takes butterfly
+    /// `redux.sync`: v combined over the warp, in every lane. One instruction.
+    /// @{
+    __device__ __forceinline__ int redux(operation::sum, int v) const { return __reduce_add_sync(all, v); }
+    __device__ __forceinline__ int redux(operation::minimum, int v) const {
+        return __reduce_min_sync(all, v);
+    }
+    __device__ __forceinline__ int redux(operation::maximum, int v) const {
+        return __reduce_max_sync(all, v);
+    }
+    __device__ __forceinline__ unsigned redux(operation::sum, unsigned v) const {
+        return __reduce_add_sync(all, v);
+    }
+    __device__ __forceinline__ unsigned redux(operation::minimum, unsigned v) const {
+        return __reduce_min_sync(all, v);
+    }
+    __device__ __forceinline__ unsigned redux(operation::maximum, unsigned v) const {
+        return __reduce_max_sync(all, v);
+    }
+    template <class T>
+    __device__ __forceinline__ T redux(operation::bit_and, T v) const {
+        return static_cast<T>(__reduce_and_sync(all, static_cast<unsigned>(v)));
+    }
+    template <class T>
+    __device__ __forceinline__ T redux(operation::bit_or, T v) const {
+        return static_cast<T>(__reduce_or_sync(all, static_cast<unsigned>(v)));
+    }
+    template <class T>
+    __device__ __forceinline__ T redux(operation::bit_xor, T v) const {
+        return static_cast<T>(__reduce_xor_sync(all, static_cast<unsigned>(v)));
+    }
+    /// @}
+#endif
+
+    /// The same flag, of which the compiler knows nothing. It would else split a loop on a flag that does not
+    /// change in it, and a warp with flags of both kinds would run both halves, waiting at every shuffle.
+    __device__ __forceinline__ bool opaque(bool flag) const {
+        unsigned known = flag;
+        asm volatile("" : "+r"(known));
+        return known != 0;
+    }
+
+#if defined(WARPAGG_CHECKS)
+    /// With WARPAGG_CHECKS, a kernel that breaks a rule says so and traps.
+    __device__ void require_uniform(const void* destination) const {
+        int same = 0;
+        __match_all_sync(all, reinterpret_cast<unsigned long long>(destination), &same);
+        if (same == 0) stop("the destination is not the same in every lane");
+    }
+    __device__ void require_busy(bool active) const {
+        if (!any(active)) stop("assume_busy, but no lane is active");
+    }
+#endif
+
+  private:
+#if defined(WARPAGG_CHECKS)
+    __device__ void stop(const char* sentence) const {
+        if (lane() == 0) printf("warpagg: block %u, thread %u: %s\n", blockIdx.x, threadIdx.x, sentence);
+        __syncwarp();  // not before it has been said
+        __trap();
+    }
+#endif
+    static constexpr unsigned all = 0xffffffffu;
+};
+
+static_assert(warpagg::warp<warp>);
+
+}  // namespace warpagg::cuda

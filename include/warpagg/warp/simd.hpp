@@ -1,0 +1,393 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <bit>
+#include <utility>
+
+#include "../detail/atomic_memory.hpp"
+#include "counters.hpp"
+#include "../detail/simd_value.hpp"
+
+namespace warpagg::emulator {
+
+/// Counts nothing and costs nothing.
+struct uncounted {
+    static constexpr bool counts = false;  ///< whether there is something to add to
+};
+
+/// Adds what the warp does to `*to`. One thread at a time.
+struct counted {
+    static constexpr bool counts = true;  ///< whether there is something to add to
+    counters* to;                         ///< what is added to
+};
+
+/// The fast emulator: one thread runs a warp of `Size` lanes, 8, 16 or 32, all of them in SIMD registers.
+/// Lane values are `warpagg::lanes<T, Size>`, so kernels are masked (`select`, uniform branches). Lanes
+/// commit in order of their number. With 8 lanes a value takes one register, where with 32, a GPU's number, a
+/// kernel of more than a few values has most of them in memory.
+template <class Counting, unsigned Size = 32>
+struct basic_lanes : Counting {
+    /// The operation of this name of the concept `warp`.
+    /// @{
+    static constexpr unsigned size = Size;
+    template <class T>
+    using value = warpagg::lanes<T, static_cast<int>(Size)>;
+    using mask = value<bool>;
+
+    WARPAGG_HD value<unsigned> lane() const {
+        value<unsigned> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < static_cast<int>(size); ++i) r.set(i, static_cast<unsigned>(i));
+        return r;
+    }
+
+    WARPAGG_HD std::uint32_t ballot(const mask& p) const {
+        count([](counters& c) { ++c.votes; });
+        return bits(p);
+    }
+    WARPAGG_HD bool any(const mask& p) const {
+        count([](counters& c) { ++c.votes; });
+        return bits(p) != 0;
+    }
+
+    template <class T>
+    WARPAGG_HD value<T> shfl(const value<T>& v, unsigned from) const {
+        count_shuffle<T>();
+        return value<T>(v[static_cast<int>(from % size)]);
+    }
+    template <class T>
+    WARPAGG_HD value<T> shfl(const value<T>& v, const value<unsigned>& from) const {
+        count_shuffle<T>();
+        value<T> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < static_cast<int>(size); ++i) r.set(i, v[static_cast<int>(from[i] % size)]);
+        return r;
+    }
+    WARPAGG_HD value<std::uint32_t> match(const value<unsigned>& key) const {
+        count([](counters& c) { ++c.votes; });
+        value<std::uint32_t> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < static_cast<int>(size); ++i) r.set(i, bits(key == value<unsigned>(key[i])));
+        return r;
+    }
+    template <class T>
+    WARPAGG_HD value<T> shfl_down(const value<T>& v, unsigned distance) const {
+        count_shuffle<T>();
+        switch (distance) {
+            case 16:
+                return down<16>(v);
+            case 8:
+                return down<8>(v);
+            case 4:
+                return down<4>(v);
+            case 2:
+                return down<2>(v);
+            case 1:
+                return down<1>(v);
+            default: {
+                value<T> r = v;
+                WARPAGG_UNROLL
+                for (unsigned i = 0; i + distance < size; ++i)
+                    r.set(static_cast<int>(i), v[static_cast<int>(i + distance)]);
+                return r;
+            }
+        }
+    }
+    template <class T>
+    WARPAGG_HD value<T> shfl_xor(const value<T>& v, unsigned distance) const {
+        count_shuffle<T>();
+        switch (distance) {
+            case 16:
+                return across<16>(v);
+            case 8:
+                return across<8>(v);
+            case 4:
+                return across<4>(v);
+            case 2:
+                return across<2>(v);
+            case 1:
+                return across<1>(v);
+            default: {
+                value<T> r;
+                WARPAGG_UNROLL
+                for (unsigned i = 0; i < size; ++i)
+                    r.set(static_cast<int>(i), v[static_cast<int>((i ^ distance) % size)]);
+                return r;
+            }
+        }
+    }
+
+    template <class T>
+    WARPAGG_HD value<T> load(const T* from, const value<unsigned>& index, const mask& active) const {
+        value<T> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < r.chunks; ++i) {
+#if defined(__AVX2__)
+            if constexpr (sizeof(T) == 4 && !std::is_same_v<T, bool>) {
+                r.part[i] = reinterpret_cast<typename value<T>::chunk>(_mm256_mask_i32gather_epi32(
+                    __m256i{}, reinterpret_cast<const int*>(from), reinterpret_cast<__m256i>(index.part[i]),
+                    reinterpret_cast<__m256i>(active.part[i]), 4));
+                continue;
+            }
+#endif
+            WARPAGG_UNROLL
+            for (int k = i * r.width; k < (i + 1) * r.width; ++k) r.set(k, active[k] ? from[index[k]] : T{});
+        }
+        return r;
+    }
+    template <class T, int N>
+    WARPAGG_HD void load_packed(const T* from, const value<unsigned>& index, value<T> (&v)[N],
+                                const mask& active) const {
+        static_assert(N % 4 == 0);
+        if constexpr (value<T>::width == 8) {
+            static constexpr T nothing[N]{};
+            for_each_chunk(from, nothing, index, active, [&](int i, const T* const(&record)[8]) {
+                WARPAGG_UNROLL
+                for (int k = 0; k < N; k += 4) {
+                    typename value<T>::chunk four[4];
+                    WARPAGG_UNROLL
+                    for (int j = 0; j < 4; ++j) join(record[j] + k, record[j + 4] + k, four[j]);
+                    transpose(four);
+                    WARPAGG_UNROLL
+                    for (int j = 0; j < 4; ++j) v[k + j].part[i] = four[j];
+                }
+            });
+        } else {
+            for (unsigned k = 0; k < N; ++k) v[k] = load(from + k, index, active);
+        }
+    }
+    template <class T>
+    WARPAGG_HD void store(T* to, const value<unsigned>& index, const value<T>& v, const mask& active) const {
+        for_each_lane(bits(active), [&](int lane) { to[index[lane]] = v[lane]; });
+    }
+    template <class T, int N>
+    WARPAGG_HD void store_packed(T* to, const value<unsigned>& index, const value<T> (&v)[N],
+                                 const mask& active) const {
+        static_assert(N % 4 == 0);
+        if constexpr (value<T>::width == 8) {
+            T nowhere[N];
+            for_each_chunk(to, nowhere, index, active, [&](int i, T* const(&record)[8]) {
+                WARPAGG_UNROLL
+                for (int k = 0; k < N; k += 4) {
+                    typename value<T>::chunk four[4];
+                    WARPAGG_UNROLL
+                    for (int j = 0; j < 4; ++j) four[j] = v[k + j].part[i];
+                    transpose(four);
+                    WARPAGG_UNROLL
+                    for (int j = 0; j < 4; ++j) part(four[j], record[j] + k, record[j + 4] + k);
+                }
+            });
+        } else {
+            for (unsigned k = 0; k < N; ++k) store(to + k, index, v[k], active);
+        }
+    }
+    WARPAGG_HD void sync() const {}
+    template <class T>
+    WARPAGG_HD value<T> load_row(const T* from, std::ptrdiff_t first, const mask& active) const {
+        value<T> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < r.chunks; ++i) {
+            const T* p = from + first + i * r.width;
+#if defined(__AVX2__)
+            if constexpr (sizeof(T) == 4) {
+                r.part[i] = reinterpret_cast<typename value<T>::chunk>(_mm256_maskload_epi32(
+                    reinterpret_cast<const int*>(p), reinterpret_cast<__m256i>(active.part[i])));
+                continue;
+            }
+#endif
+            WARPAGG_UNROLL
+            for (int k = 0; k < r.width; ++k) r.set(i * r.width + k, active[i * r.width + k] ? p[k] : T{});
+        }
+        return r;
+    }
+    template <class T>
+    WARPAGG_HD value<T> load_row(const T* from, std::ptrdiff_t first) const {
+        value<T> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < r.chunks; ++i)
+            std::memcpy(&r.part[i], from + first + i * r.width, sizeof r.part[i]);
+        return r;
+    }
+    template <class T>
+    WARPAGG_HD void store_row(T* to, std::ptrdiff_t first, const value<T>& v, const mask& active) const {
+        WARPAGG_UNROLL
+        for (int i = 0; i < v.chunks; ++i) {
+            T* p = to + first + i * v.width;
+#if defined(__AVX2__)
+            if constexpr (sizeof(T) == 4) {
+                if (_mm256_movemask_ps(reinterpret_cast<__m256>(active.part[i])) == 0xff) {
+                    std::memcpy(p, &v.part[i], sizeof v.part[i]);  // some CPUs take long over a masked store
+                } else {
+                    _mm256_maskstore_epi32(reinterpret_cast<int*>(p),
+                                           reinterpret_cast<__m256i>(active.part[i]),
+                                           reinterpret_cast<__m256i>(v.part[i]));
+                }
+                continue;
+            }
+#endif
+            WARPAGG_UNROLL
+            for (int k = 0; k < v.width; ++k)
+                if (active[i * v.width + k]) p[k] = v[i * v.width + k];
+        }
+    }
+    template <class Op, class Dst, class T>
+    WARPAGG_HD void atomic(Op op, Dst dst, const value<unsigned>& index, const value<T>& v,
+                           const mask& active) const {
+        const std::uint32_t who = bits(active);
+        count([&](counters& c) { count_commit(c, dst, index, who); });
+        for_each_lane(who, [&](int lane) { detail::atomic(op, dst(index[lane]), v[lane]); });
+    }
+
+    /// @}
+
+    /// `warp_reduce_atomic` tells how many lanes it was called with.
+    WARPAGG_HD void observe(const mask& active) const requires(Counting::counts) {
+        ++this->to->active[static_cast<std::size_t>(std::popcount(bits(active)))];
+    }
+
+  private:
+    template <class F>
+    WARPAGG_HD void count(F f) const {
+        if constexpr (Counting::counts) f(*this->to);
+    }
+    template <class T>
+    WARPAGG_HD void count_shuffle() const {
+        count([](counters& c) { c.shuffles += (sizeof(T) + 3) / 4; });
+    }
+    template <class Dst>
+    static void count_commit(counters& c, Dst dst, const value<unsigned>& index, std::uint32_t who) {
+        if (who == 0) return;
+        ++c.commits;
+        std::uintptr_t sectors[size];
+        unsigned known = 0;
+        for_each_lane(who, [&](int lane) {
+            ++c.atomics;
+            const auto sector = reinterpret_cast<std::uintptr_t>(dst(index[lane])) / 32;
+            unsigned i = 0;
+            while (i < known && sectors[i] != sector) ++i;
+            if (i == known) sectors[known++] = sector;
+        });
+        c.sectors += known;
+    }
+
+    static WARPAGG_HD std::uint32_t bits(const mask& p) {
+        std::uint32_t r = 0;
+#if defined(__AVX__)
+        WARPAGG_UNROLL
+        for (int i = 0; i < p.chunks; ++i)
+            r |= static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(p.part[i])))
+                 << (i * p.width);
+#else
+        typename mask::element flags[size];  // subscripts of vectors go astray in GCC 12 with sanitizers
+        static_assert(sizeof flags == sizeof p.part);
+        std::memcpy(flags, p.part, sizeof flags);
+        WARPAGG_UNROLL
+        for (unsigned i = 0; i < size; ++i) r |= (flags[i] != 0 ? 1u : 0u) << i;
+#endif
+        return r;
+    }
+    template <class F>
+    static WARPAGG_HD void for_each_lane(std::uint32_t who, F f) {
+        for (; who != 0; who &= who - 1) f(std::countr_zero(who));
+    }
+
+    /// f(i, records) for each chunk i of 8 lanes: where the record of each lies, or that of inactive ones.
+    template <class T, class U, class F>
+    static WARPAGG_HD void for_each_chunk(T* first, U* of_inactive, const value<unsigned>& index,
+                                          const mask& active, const F& f) {
+        const std::uint32_t who = bits(active);
+        WARPAGG_UNROLL
+        for (int i = 0; i < index.chunks; ++i) {
+            T* record[8];
+            WARPAGG_UNROLL
+            for (int j = 0; j < 8; ++j)
+                record[j] = ((who >> (8 * i + j)) & 1u) != 0 ? first + index[8 * i + j] : of_inactive;
+            f(i, record);
+        }
+    }
+    /// Eight values of 32 bits from four and four, and back.
+    /// @{
+    template <class T, class Chunk>
+    static WARPAGG_HD void join(const T* low, const T* high, Chunk& both) {
+        typedef T half __attribute__((vector_size(16)));
+        half l, h;
+        std::memcpy(&l, low, sizeof l);
+        std::memcpy(&h, high, sizeof h);
+        both = __builtin_shufflevector(l, h, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    template <class T, class Chunk>
+    static WARPAGG_HD void part(const Chunk& both, T* low, T* high) {
+        const auto l = __builtin_shufflevector(both, both, 0, 1, 2, 3);
+        const auto h = __builtin_shufflevector(both, both, 4, 5, 6, 7);
+        std::memcpy(low, &l, sizeof l);
+        std::memcpy(high, &h, sizeof h);
+    }
+    /// @}
+    /// Of four times eight values, the first four by four and the last four by four.
+    template <class Chunk>
+    static WARPAGG_HD void transpose(Chunk (&c)[4]) {
+        const Chunk a = __builtin_shufflevector(c[0], c[1], 0, 8, 1, 9, 4, 12, 5, 13);
+        const Chunk b = __builtin_shufflevector(c[2], c[3], 0, 8, 1, 9, 4, 12, 5, 13);
+        const Chunk d = __builtin_shufflevector(c[0], c[1], 2, 10, 3, 11, 6, 14, 7, 15);
+        const Chunk e = __builtin_shufflevector(c[2], c[3], 2, 10, 3, 11, 6, 14, 7, 15);
+        c[0] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+        c[1] = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+        c[2] = __builtin_shufflevector(d, e, 0, 1, 8, 9, 4, 5, 12, 13);
+        c[3] = __builtin_shufflevector(d, e, 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+
+    template <unsigned D, class T>
+    static WARPAGG_HD value<T> down(const value<T>& v) {
+        constexpr int width = value<T>::width, chunks = value<T>::chunks, d = static_cast<int>(D);
+        constexpr int last = chunks - 1;
+        value<T> r;
+        if constexpr (d >= width) {
+            constexpr int step = d / width;
+            WARPAGG_UNROLL
+            for (int i = 0; i < chunks; ++i) r.part[i] = v.part[i + step < chunks ? i + step : i];
+        } else {
+            [&]<std::size_t... I>(std::index_sequence<I...>) {
+                WARPAGG_UNROLL
+                for (int i = 0; i < last; ++i)
+                    r.part[i] =
+                        __builtin_shufflevector(v.part[i], v.part[i + 1], (static_cast<int>(I) + d)...);
+                r.part[last] = __builtin_shufflevector(
+                    v.part[last], v.part[last],
+                    (static_cast<int>(I) + d < width ? static_cast<int>(I) + d : static_cast<int>(I))...);
+            }
+            (std::make_index_sequence<static_cast<std::size_t>(width)>{});
+        }
+        return r;
+    }
+    template <unsigned D, class T>
+    static WARPAGG_HD value<T> across(const value<T>& v) {
+        constexpr int width = value<T>::width, d = static_cast<int>(D);
+        value<T> r;
+        WARPAGG_UNROLL
+        for (int i = 0; i < r.chunks; ++i) {
+            if constexpr (d >= width) {
+                r.part[i] = v.part[(i ^ (d / width)) % r.chunks];
+            } else {
+                [&]<std::size_t... I>(std::index_sequence<I...>) {
+                    r.part[i] = __builtin_shufflevector(v.part[i], v.part[i], (static_cast<int>(I) ^ d)...);
+                }
+                (std::make_index_sequence<static_cast<std::size_t>(width)>{});
+            }
+        }
+        return r;
+    }
+};
+
+/// The fast emulator, for work.
+using lanes = basic_lanes<uncounted>;
+/// The same, which counts what it does: `counted_lanes{{&counters}}`.
+using counted_lanes = basic_lanes<counted>;
+/// A warp of fewer lanes: 8 or 16.
+template <unsigned Size>
+using narrow_lanes = basic_lanes<uncounted, Size>;
+
+static_assert(warpagg::warp<lanes> && warpagg::warp<counted_lanes>);
+static_assert(warpagg::warp<narrow_lanes<8>> && warpagg::warp<narrow_lanes<16>>);
+
+}  // namespace warpagg::emulator
