@@ -18,7 +18,7 @@
 
 #include "accuracy/adder.hpp"
 #include "driver.hpp"
-#include "train/engine.hpp"
+#include "training/engine.hpp"
 
 namespace {
 

@@ -18,11 +18,11 @@
 
 #include "backward/contest.hpp"
 #include "driver.hpp"
-#include "error.hpp"
-#include "model/ply.hpp"
-#include "scene/frame.hpp"
+#include "core/error.hpp"
+#include "writers/ply/ply.hpp"
+#include "scene/normalization.hpp"
 #include "scene/look_at.hpp"
-#include "train/engine.hpp"
+#include "training/engine.hpp"
 
 namespace {
 

@@ -16,10 +16,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "error.hpp"
-#include "model/initialise.hpp"
-#include "scene/synthetic.hpp"
-#include "train/engine.hpp"
+#include "core/error.hpp"
+#include "training/initialise.hpp"
+#include "readers/synthetic/synthetic.hpp"
+#include "training/engine.hpp"
 
 namespace {
 

@@ -13,11 +13,11 @@
 #include <nlohmann/json.hpp>
 
 #include "driver.hpp"
-#include "error.hpp"
-#include "model/ply.hpp"
+#include "core/error.hpp"
+#include "writers/ply/ply.hpp"
 #include "paper/measure.hpp"
-#include "scene/frame.hpp"
-#include "train/engine.hpp"
+#include "scene/normalization.hpp"
+#include "training/engine.hpp"
 
 namespace {
 

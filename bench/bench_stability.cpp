@@ -15,10 +15,10 @@
 #include <set>
 
 #include "driver.hpp"
-#include "error.hpp"
+#include "core/error.hpp"
 #include "hostile.hpp"
-#include "model/initialise.hpp"
-#include "model/ply.hpp"
+#include "training/initialise.hpp"
+#include "writers/ply/ply.hpp"
 
 namespace {
 

@@ -14,12 +14,12 @@
 #include <nlohmann/json.hpp>
 
 #include "driver.hpp"
-#include "error.hpp"
-#include "model/ply.hpp"
-#include "scene/frame.hpp"
+#include "core/error.hpp"
+#include "writers/ply/ply.hpp"
+#include "scene/normalization.hpp"
 #include "trace/gpu_trace.hpp"
-#include "train/engine.hpp"
-#include "train/schedule.hpp"
+#include "training/engine.hpp"
+#include "training/schedule.hpp"
 
 namespace {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "scene/look_at.hpp"
-#include "scene/synthetic.hpp"
-#include "train/trainer.hpp"
+#include "readers/synthetic/synthetic.hpp"
+#include "training/trainer.hpp"
 
 /// Something to train: at first as it should be, then made hard.
 struct trial {

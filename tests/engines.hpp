@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "train/engine.hpp"
-#include "train/schedule.hpp"
+#include "training/engine.hpp"
+#include "training/schedule.hpp"
 
 /// What tests of the engine begin with.
 

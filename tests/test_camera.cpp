@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "raster/projection.hpp"
+#include "render/project/projection.hpp"
 #include "scene/camera.hpp"
 
 namespace {

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "bytes.hpp"
-#include "model/ply.hpp"
-#include "scene/image.hpp"
+#include "writers/ply/ply.hpp"
+#include "image/image.hpp"
 #include "temporary_folder.hpp"
-#include "train/engine.hpp"
+#include "training/engine.hpp"
 
 namespace {
 

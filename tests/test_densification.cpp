@@ -8,9 +8,9 @@
 #include <set>
 
 #include "engines.hpp"
-#include "model/initialise.hpp"
+#include "training/initialise.hpp"
 #include "model/opacity.hpp"
-#include "raster/geometry.hpp"
+#include "render/project/geometry.hpp"
 
 namespace {
 

@@ -7,10 +7,10 @@
 #include <map>
 #include <random>
 
-#include "device/cpu.hpp"
+#include "device/cpu/cpu.hpp"
 #include "engines.hpp"
-#include "model/initialise.hpp"
-#include "train/densification.hpp"
+#include "training/initialise.hpp"
+#include "densify/adaptive/densifier.hpp"
 
 namespace {
 

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "../examples/gaussian_splatting/effects/decide.hpp"
-#include "../examples/gaussian_splatting/error.hpp"
+#include "../examples/gaussian_splatting/features/decide.hpp"
+#include "../examples/gaussian_splatting/core/error.hpp"
 #include "../examples/gaussian_splatting/model/spherical_harmonics.hpp"
-#include "../examples/gaussian_splatting/scene/synthetic_parameters.hpp"
+#include "../examples/gaussian_splatting/readers/synthetic/synthetic_parameters.hpp"
 
 namespace {
 

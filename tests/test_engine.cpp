@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "engines.hpp"
-#include "error.hpp"
-#include "model/initialise.hpp"
-#include "scene/views.hpp"
-#include "train/trainer.hpp"
+#include "core/error.hpp"
+#include "training/initialise.hpp"
+#include "readers/load_views.hpp"
+#include "training/trainer.hpp"
 
 namespace {
 

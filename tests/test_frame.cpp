@@ -9,11 +9,11 @@
 #include <limits>
 #include <string>
 
-#include "evaluate/test_views.hpp"
-#include "model/initialise.hpp"
-#include "model/ply.hpp"
+#include "evaluation/held_out_views.hpp"
+#include "training/initialise.hpp"
+#include "writers/ply/ply.hpp"
 #include "temporary_folder.hpp"
-#include "train/trainer.hpp"
+#include "training/trainer.hpp"
 
 namespace {
 

@@ -12,9 +12,9 @@
 #include <random>
 #include <utility>
 
-#include "scene/image.hpp"
-#include "scene/mask.hpp"
-#include "scene/views.hpp"
+#include "image/image.hpp"
+#include "image/mask.hpp"
+#include "readers/load_views.hpp"
 #include "temporary_folder.hpp"
 
 // jpeglib.h leaves it to its user to have declared FILE and size_t.

@@ -10,7 +10,7 @@
 #include <limits>
 #include <numeric>
 
-#include "../examples/gaussian_splatting/model/initialise.hpp"
+#include "../examples/gaussian_splatting/training/initialise.hpp"
 
 namespace {
 

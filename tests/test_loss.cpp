@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "device/cpu.hpp"
-#include "train/photometric.hpp"
+#include "device/cpu/cpu.hpp"
+#include "losses/l1_ssim/photometric.hpp"
 
 namespace {
 

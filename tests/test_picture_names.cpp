@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
-#include "evaluate/test_views.hpp"
+#include "evaluation/held_out_views.hpp"
 
 TEST_CASE("pictures have flat names, and no two the same") {
     std::vector<gs::view> views(6);

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "../examples/gaussian_splatting/error.hpp"
-#include "../examples/gaussian_splatting/model/ply.hpp"
+#include "../examples/gaussian_splatting/core/error.hpp"
+#include "../examples/gaussian_splatting/writers/ply/ply.hpp"
 
 namespace {
 

@@ -5,15 +5,15 @@
 
 #include <algorithm>
 
-#include "device/cpu.hpp"
-#include "effects/depth_evidence.hpp"
-#include "effects/review_bands.hpp"
+#include "device/cpu/cpu.hpp"
+#include "features/depth/depth_evidence.hpp"
+#include "features/sh_degree/revise_sh_degree.hpp"
 #include "engines.hpp"
-#include "error.hpp"
+#include "core/error.hpp"
 #include "hard_cases/effort.hpp"
-#include "model/initialise.hpp"
-#include "raster/gradient_sums.hpp"
-#include "train/trainer.hpp"
+#include "training/initialise.hpp"
+#include "render/gradients/gradient_sums.hpp"
+#include "training/trainer.hpp"
 
 namespace {
 

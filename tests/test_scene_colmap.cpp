@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "bytes.hpp"
-#include "scene/colmap.hpp"
-#include "scene/mask.hpp"
+#include "readers/colmap/colmap.hpp"
+#include "image/mask.hpp"
 #include "scene/scene.hpp"
-#include "scene/views.hpp"
+#include "readers/load_views.hpp"
 #include "temporary_folder.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "train/schedule.hpp"
+#include "training/schedule.hpp"
 
 using gs::train::schedule;
 

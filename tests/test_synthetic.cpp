@@ -10,8 +10,8 @@
 #include <set>
 #include <string>
 
-#include "../examples/gaussian_splatting/error.hpp"
-#include "../examples/gaussian_splatting/scene/synthetic.hpp"
+#include "../examples/gaussian_splatting/core/error.hpp"
+#include "../examples/gaussian_splatting/readers/synthetic/synthetic.hpp"
 
 namespace {
 

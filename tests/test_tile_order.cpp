@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "device/cpu.hpp"
-#include "raster/tile_order.hpp"
+#include "device/cpu/cpu.hpp"
+#include "render/tiles/tile_order.hpp"
 
 using gs::raster::tile_order;
 using gs::raster::tile_range;

@@ -8,7 +8,7 @@
 #include <warpagg/warp/simd.hpp>
 #include <warpagg/warp/serial.hpp>
 
-#include "raster/tile_reach.hpp"
+#include "render/tiles/tile_reach.hpp"
 
 using gs::raster::reaches_any_tile;
 using gs::raster::splat;

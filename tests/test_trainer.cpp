@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "train/trainer.hpp"
+#include "training/trainer.hpp"
 
 namespace {
 

@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "engines.hpp"
-#include "error.hpp"
-#include "model/initialise.hpp"
+#include "core/error.hpp"
+#include "training/initialise.hpp"
 #include "model/opacity.hpp"
-#include "train/trainer.hpp"
+#include "training/trainer.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 
 #include "contest.hpp"
 #include "model/parameter_memory.hpp"
-#include "raster/renderer.hpp"
+#include "render/renderer.hpp"
 
 /// Holds the contest on a device.
 template <class Device>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <omp.h>
 
-#include "device/cpu.hpp"
+#include "device/cpu/cpu.hpp"
 #include "hold_on.hpp"
 
 contest_result hold_on_cpu(const contest& c) {

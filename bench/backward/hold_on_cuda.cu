@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include "device/cuda.hpp"
+#include "device/cuda/cuda.hpp"
 #include "hold_on.hpp"
 #include "splat_a_lane.hpp"
 

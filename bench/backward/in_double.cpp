@@ -5,9 +5,9 @@
 #include <random>
 
 #include "contest.hpp"
-#include "device/cpu.hpp"
+#include "device/cpu/cpu.hpp"
 #include "model/parameter_memory.hpp"
-#include "raster/renderer.hpp"
+#include "render/renderer.hpp"
 
 std::vector<float> picture_gradient(const contest& c) {
     std::mt19937_64 random(c.seed);

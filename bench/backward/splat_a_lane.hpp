@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "raster/blend_backward.hpp"
+#include "render/blend/blend_backward.hpp"
 
 /// A contender: the lanes are the splats of a segment, and the pixels of the tile go past them, front to
 /// back, each lane handing a pixel's state on to the next (as Taming-3DGS does it). Nothing is reduced: a

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include "device/cuda.hpp"
+#include "device/cuda/cuda.hpp"
 #include "measure_on.hpp"
 
 paper_figures measure_on_cuda(const paper_subject& s) {

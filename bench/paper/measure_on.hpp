@@ -9,7 +9,7 @@
 
 #include "measure.hpp"
 #include "model/parameter_memory.hpp"
-#include "raster/renderer.hpp"
+#include "render/renderer.hpp"
 #include "warps.hpp"
 
 /// Measures the backward blending on a device.

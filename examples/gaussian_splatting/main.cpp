@@ -6,7 +6,7 @@
 #include <new>
 
 #include "cli/settings.hpp"
-#include "error.hpp"
+#include "core/error.hpp"
 
 int main(int argc, char** argv) {
     try {

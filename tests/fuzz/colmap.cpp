@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include "harness.hpp"
-#include "scene/colmap_files.hpp"
+#include "readers/colmap/colmap_files.hpp"
 
 namespace gs_fuzz {
 namespace {

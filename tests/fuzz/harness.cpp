@@ -9,7 +9,7 @@
 #include <string>
 
 #include "budget.hpp"
-#include "error.hpp"
+#include "core/error.hpp"
 
 namespace gs_fuzz {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include "scene/image.hpp"
+#include "image/image.hpp"
 
 #include <zlib.h>
 

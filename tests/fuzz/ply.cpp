@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include "model/ply.hpp"
+#include "writers/ply/ply.hpp"
 
 #include "harness.hpp"
 

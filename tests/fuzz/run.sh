@@ -18,8 +18,9 @@ out=$(realpath -m "${OUT:-build/fuzz}")
 mkdir -p "$out"
 
 trainer=examples/gaussian_splatting
-sources=("$trainer"/scene/{colmap_{binary,records,text},image,json_text,shrink,transforms{,_pose},undistort,views}.cpp
-    "$trainer"/model/ply.cpp tests/fuzz/{budget,colmap,harness,image,ply,transforms}.cpp)
+sources=("$trainer"/readers/colmap/colmap_{binary,records,text}.cpp "$trainer"/image/*.cpp
+    "$trainer"/readers/transforms/{json_text,transforms,transforms_pose}.cpp "$trainer"/readers/load_views.cpp
+    "$trainer"/scene/undistort.cpp "$trainer"/writers/ply/ply.cpp tests/fuzz/{budget,colmap,harness,image,ply,transforms}.cpp)
 flags=(-std=c++20 -O1 -g -fno-omit-frame-pointer -I"$trainer" -Itests/fuzz
     -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
 

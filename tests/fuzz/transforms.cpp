@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include "scene/transforms.hpp"
+#include "readers/transforms/transforms.hpp"
 
 #include "harness.hpp"
 

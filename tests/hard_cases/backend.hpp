@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "model/parameters.hpp"
-#include "raster/effect_set.hpp"
-#include "raster/gradient_policy.hpp"
+#include "render/geometry/effect_set.hpp"
+#include "render/gradients/gradient_policy.hpp"
 #include "scene/scene.hpp"
-#include "train/densify_rule.hpp"
-#include "train/quality.hpp"
+#include "densify/adaptive/densify_config.hpp"
+#include "losses/l1_ssim/quality.hpp"
 
 /// The hard cases of numerics: one text of tests, put to every device. All numbers are doubles here, and
 /// become the device's own on their way there.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include "device/cuda.hpp"
+#include "device/cuda/cuda.hpp"
 #include "on_device.hpp"
 
 namespace hard_cases {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include "device/cpu.hpp"
+#include "device/cpu/cpu.hpp"
 #include "on_device.hpp"
 
 namespace hard_cases {

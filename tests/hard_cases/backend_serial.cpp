@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <warpagg/warp/serial.hpp>
 
-#include "device/cpu.hpp"
+#include "device/cpu/cpu.hpp"
 #include "on_device.hpp"
 
 namespace hard_cases {

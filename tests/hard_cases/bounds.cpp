@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "questions.hpp"
-#include "raster/splat.hpp"
+#include "render/project/splat.hpp"
 
 namespace hard_cases {
 

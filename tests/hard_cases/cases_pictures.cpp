@@ -7,7 +7,7 @@
 #include "checks.hpp"
 #include "healthy.hpp"
 #include "questions.hpp"
-#include "raster/geometry.hpp"
+#include "render/project/geometry.hpp"
 #include "table.hpp"
 
 using namespace hard_cases;

@@ -8,10 +8,10 @@
 
 #include "backend.hpp"
 #include "memory_on.hpp"
-#include "raster/bin.hpp"
-#include "raster/blend_backward.hpp"
-#include "raster/blend_forward.hpp"
-#include "raster/gradient_sums.hpp"
+#include "render/tiles/bin.hpp"
+#include "render/blend/blend_backward.hpp"
+#include "render/blend/blend_forward.hpp"
+#include "render/gradients/gradient_sums.hpp"
 
 namespace hard_cases {
 

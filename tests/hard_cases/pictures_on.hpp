@@ -6,9 +6,9 @@
 
 #include "backend.hpp"
 #include "memory_on.hpp"
-#include "raster/renderer.hpp"
-#include "train/photometric.hpp"
-#include "train/schedule.hpp"
+#include "render/renderer.hpp"
+#include "losses/l1_ssim/photometric.hpp"
+#include "training/schedule.hpp"
 
 namespace hard_cases {
 

@@ -10,10 +10,10 @@
 
 #include "bounds.hpp"
 #include "effort.hpp"
-#include "model/initialise.hpp"
+#include "training/initialise.hpp"
 #include "questions.hpp"
 #include "table.hpp"
-#include "train/trainer.hpp"
+#include "training/trainer.hpp"
 
 using namespace hard_cases;
 

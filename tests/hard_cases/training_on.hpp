@@ -6,10 +6,10 @@
 
 #include "backend.hpp"
 #include "memory_on.hpp"
-#include "train/adam.hpp"
-#include "train/densify.hpp"
-#include "train/photometric.hpp"
-#include "train/schedule.hpp"
+#include "optimize/adam.hpp"
+#include "densify/adaptive/densify_kernels.hpp"
+#include "losses/l1_ssim/photometric.hpp"
+#include "training/schedule.hpp"
 
 namespace hard_cases {
 

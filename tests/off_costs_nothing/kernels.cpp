@@ -9,10 +9,10 @@
 #include <warpagg/warp/simd.hpp>
 #endif
 
-#include "raster/project.hpp"
-#include "raster/project_backward.hpp"
-#include "train/adam.hpp"
-#include "train/loss.hpp"
+#include "render/project/project.hpp"
+#include "render/project/project_backward.hpp"
+#include "optimize/adam.hpp"
+#include "losses/l1_ssim/l1_ssim_kernels.hpp"
 
 constexpr gs::effect_set effects{.antialiasing = EFFECTS, .fisheye = EFFECTS, .depth = EFFECTS};
 constexpr bool masked = EFFECTS;

@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <optional>
 
-#include "../error.hpp"
-#include "../model/ply.hpp"
-#include "session.hpp"
+#include "../core/error.hpp"
+#include "../writers/ply/ply.hpp"
+#include "command_context.hpp"
 
 namespace gs::cli {
 

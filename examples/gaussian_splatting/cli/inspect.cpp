@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
-#include "../effects/decide.hpp"
-#include "session.hpp"
+#include "../features/decide.hpp"
+#include "command_context.hpp"
 
 namespace gs::cli {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "../train/trainer.hpp"
+#include "../training/trainer.hpp"
 
 namespace gs::cli {
 

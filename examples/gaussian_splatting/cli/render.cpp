@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 
-#include "../error.hpp"
-#include "../model/ply.hpp"
+#include "../core/error.hpp"
+#include "../writers/ply/ply.hpp"
 #include "../scene/look_at.hpp"
-#include "session.hpp"
+#include "command_context.hpp"
 
 namespace gs::cli {
 

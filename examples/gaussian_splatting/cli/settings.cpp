@@ -10,9 +10,9 @@
 #include <optional>
 #include <vector>
 
-#include "../error.hpp"
-#include "../raster/gradient_policy.hpp"
-#include "choose_quality.hpp"
+#include "../core/error.hpp"
+#include "../render/gradients/gradient_policy.hpp"
+#include "apply_quality_preset.hpp"
 
 namespace gs::cli {
 

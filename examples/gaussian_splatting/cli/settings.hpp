@@ -7,11 +7,11 @@
 #include <set>
 #include <string>
 
-#include "../effects/simulate.hpp"
-#include "../raster/gradient_policy.hpp"
+#include "../features/simulate.hpp"
+#include "../render/gradients/gradient_policy.hpp"
 #include "../scene/scene.hpp"
-#include "../train/densify_rule.hpp"
-#include "../train/schedule.hpp"
+#include "../densify/adaptive/densify_config.hpp"
+#include "../training/schedule.hpp"
 
 namespace gs::cli {
 

@@ -6,13 +6,13 @@
 #include <cstdio>
 #include <numeric>
 
-#include "../effects/review_bands.hpp"
-#include "../error.hpp"
-#include "../evaluate/test_exposures.hpp"
-#include "../model/initialise.hpp"
-#include "../model/ply.hpp"
+#include "../features/sh_degree/revise_sh_degree.hpp"
+#include "../core/error.hpp"
+#include "../evaluation/held_out_exposures.hpp"
+#include "../training/initialise.hpp"
+#include "../writers/ply/ply.hpp"
 #include "progress_bar.hpp"
-#include "session.hpp"
+#include "command_context.hpp"
 
 namespace gs::cli {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "number.hpp"
+#include "../core/lane_math.hpp"
 
 namespace gs {
 

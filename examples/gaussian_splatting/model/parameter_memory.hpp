@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gaussians.hpp"
-#include "layout.hpp"
+#include "aosoa.hpp"
 #include "parameters.hpp"
 
 namespace gs {

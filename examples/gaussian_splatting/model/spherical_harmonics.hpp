@@ -4,7 +4,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "number.hpp"
+#include "../core/lane_math.hpp"
 
 namespace gs {
 

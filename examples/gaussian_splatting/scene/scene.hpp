@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "camera.hpp"
-#include "depth_map.hpp"
-#include "frame.hpp"
-#include "image.hpp"
+#include "../image/depth_map.hpp"
+#include "normalization.hpp"
+#include "../image/image.hpp"
 
 namespace gs {
 

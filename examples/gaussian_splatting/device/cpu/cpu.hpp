@@ -1,0 +1,297 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <omp.h>
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+#include <warpagg/warp/simd.hpp>
+
+#include "../distribute.hpp"
+#include "../scratch.hpp"
+#include "../stages.hpp"
+
+namespace gs::device {
+
+/// What this was compiled for, as part of the device's name.
+#if defined(__AVX512VL__)
+inline constexpr const char* instruction_set = ", AVX-512";
+#elif defined(__AVX2__)
+inline constexpr const char* instruction_set = ", AVX2";
+#else
+inline constexpr const char* instruction_set = "";
+#endif
+
+/// The CPU as a device: an index range or a range of warps is spread over OpenMP threads, and memory is the
+/// host's. `Warp` is the model that warp kernels run on. The interface is that of `cuda`.
+template <class Warp>
+class basic_cpu {
+  public:
+    using warp = Warp;
+    /// What kernels over Gaussians run on, which have too many values for the registers with more lanes.
+    using narrow_warp = std::conditional_t<Warp::size == 32, warpagg::emulator::narrow_lanes<8>, Warp>;
+
+    /// Memory of the device. Growing it loses the contents.
+    template <class T>
+    class buffer {
+      public:
+        void resize(std::size_t n) {
+            if (n > capacity_) {
+                memory_.reset(static_cast<T*>(::operator new[](n * sizeof(T), line)));
+                capacity_ = n;
+            }
+            size_ = n;
+        }
+        T* data() const { return memory_.get(); }
+        std::size_t size() const { return size_; }
+
+      private:
+        static_assert(std::is_trivially_copyable_v<T>);
+        static constexpr std::align_val_t line{64};  // no row of lanes lies in two lines of the cache
+        struct release {
+            void operator()(T* p) const { ::operator delete[](p, line); }
+        };
+        std::unique_ptr<T[], release> memory_;
+        std::size_t size_ = 0, capacity_ = 0;
+    };
+
+    basic_cpu() {
+#if defined(__SSE__)
+        // Flush denormals: as moments of Adam they would cost x86 a hundred cycles each.
+#pragma omp parallel
+        _mm_setcsr(_mm_getcsr() | 0x8040u);
+#endif
+    }
+
+    std::string name() const {
+        return "cpu, " + std::to_string(omp_get_max_threads()) + " threads" + instruction_set;
+    }
+
+    /// How many warps keep the device busy: threads take them as they come.
+    std::size_t resident_warps() const { return 16 * static_cast<std::size_t>(omp_get_max_threads()); }
+
+    /// f(i) for each i in [0, n).
+    template <class F>
+    void for_each_index(std::size_t n, const F& f) {
+#pragma omp parallel for schedule(static)
+        for (std::size_t i = 0; i < n; ++i) f(i);
+    }
+    /// f(warp, i) for each i in [0, n), each on a warp of its own, of the model W; f(warp, i, scratch) if it
+    /// has scratch.
+    template <class W = warp, class F>
+    void for_each_warp(std::size_t n, const F& f) {
+        const std::size_t share = std::clamp<std::size_t>(n / resident_warps(), 1, 8);
+#pragma omp parallel for schedule(dynamic, share)
+        for (std::size_t i = 0; i < n; ++i) {
+            if constexpr (has_scratch<F, W>) {
+                typename F::template scratch<W> scratch;
+                f(W{}, static_cast<unsigned>(i), scratch);
+            } else {
+                f(W{}, static_cast<unsigned>(i));
+            }
+        }
+    }
+
+    template <class T>
+    void zero(T* p, std::size_t n) {
+        constexpr std::size_t piece = (std::size_t{1} << 16) / sizeof(T);
+        if (n == 0) return;
+#pragma omp parallel for schedule(static) if (n > 2 * piece)
+        for (std::size_t first = 0; first < n; first += piece)
+            std::memset(static_cast<void*>(p + first), 0, std::min(piece, n - first) * sizeof(T));
+    }
+    template <class T>
+    void copy(T* to, const T* from, std::size_t n) {
+        std::copy_n(from, n, to);
+    }
+    template <class T>
+    void upload(T* to, const T* from, std::size_t n) {
+        std::copy_n(from, n, to);
+    }
+    /// Waits for the device, as does whoever reads a result of it.
+    template <class T>
+    void download(T* to, const T* from, std::size_t n) {
+        std::copy_n(from, n, to);
+    }
+
+    /// out[i] = in[0] + ... + in[i - 1] for i in [0, n]; out has n + 1 elements.
+    void prefix_sum(const buffer<std::uint32_t>& in, buffer<std::uint64_t>& out, std::size_t n) {
+        std::uint64_t sum = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            out.data()[i] = sum;
+            sum += in.data()[i];
+        }
+        out.data()[n] = sum;
+    }
+
+    /// Lists for each bucket the values of the items [0, n) that go there, in their order: `listed` holds the
+    /// list of bucket b at [ranges[b].begin, ranges[b].end), one bucket's after the other's. `needed` is the
+    /// length of all; what does not fit into `room` places is cut off.
+    template <class Range>
+    void distribute(std::size_t n, const items auto& all, std::size_t buckets, std::uint64_t room,
+                    std::uint32_t* listed, Range* ranges, std::uint64_t* needed) {
+        // Slices of the items, more than threads since some have far more candidates; each has its row of
+        // counts, which become places, and keeps what it found for the second time.
+        const auto slices = 4 * static_cast<std::size_t>(omp_get_max_threads());
+        places_.resize(slices * buckets);
+        totals_.resize(buckets);
+        first_.resize(buckets + 1);
+        if (found_.size() < slices) found_.resize(slices);
+        const auto for_each_slice = [&](const auto& f) {
+#pragma omp parallel for schedule(dynamic)
+            for (std::size_t s = 0; s < slices; ++s) f(found_[s], places_.data() + s * buckets, s);
+        };
+        zero(places_.data(), slices * buckets);
+        for_each_slice([&](std::vector<instance>& kept, std::uint64_t* counts, std::size_t s) {
+            auto found = std::move(kept);  // whose end else shares a line of the cache with other threads'
+            found.clear();
+            for (std::size_t i = n * s / slices; i < n * (s + 1) / slices; ++i) {
+                const auto item = all(i);
+                for (std::uint32_t k = 0; k < item.size(); ++k)
+                    if (const std::uint32_t bucket = item.bucket(k); bucket != no_bucket) {
+                        ++counts[bucket];
+                        if (room > 0) found.push_back({bucket, item.value});
+                    }
+            }
+            kept = std::move(found);
+        });
+        for_each_index(buckets, [&](std::size_t b) {
+            std::uint64_t total = 0;
+            for (std::size_t s = 0; s < slices; ++s) total += places_.data()[s * buckets + b];
+            totals_.data()[b] = static_cast<std::uint32_t>(total);
+        });
+        prefix_sum(totals_, first_, buckets);
+        *needed = first_.data()[buckets];
+        for_each_index(buckets, [&](std::size_t b) {
+            std::uint64_t at = first_.data()[b];
+            for (std::size_t s = 0; s < slices; ++s) at += std::exchange(places_.data()[s * buckets + b], at);
+            ranges[b] = {static_cast<std::uint32_t>(std::min(first_.data()[b], room)),
+                         static_cast<std::uint32_t>(std::min(at, room))};
+        });
+        for_each_slice([&](const std::vector<instance>& found, std::uint64_t* places, std::size_t) {
+            for (const auto& [bucket, value] : found)
+                if (const std::uint64_t place = places[bucket]++; place < room) listed[place] = value;
+        });
+    }
+
+    /// Sorts the first n pairs by their keys; pairs of equal keys keep their order. n < 2^30.
+    void sort_pairs(buffer<std::uint32_t>& keys, buffer<std::uint32_t>& values, std::size_t n) {
+        constexpr int bits = 32, digit_bits = 11;
+        other_keys_.resize(keys.size());
+        other_values_.resize(values.size());
+        for (int shift = 0; shift < bits; shift += digit_bits) {
+            sort_by_digit(keys.data(), values.data(), n, shift, std::min(digit_bits, bits - shift));
+            std::swap(keys, other_keys_);
+            std::swap(values, other_values_);
+        }
+    }
+
+    /// Runs an iteration's work.
+    template <class F>
+    void iteration(const iteration_shape&, const F& f) {
+        f();
+        end_iteration();
+    }
+
+    /// Times every n-th iteration from now on.
+    void sample_times(int every) {
+        sampling_ = every;
+        iteration_ = 0;
+        times_ = {};
+    }
+    /// What follows belongs to no iteration.
+    void pause_times(bool paused) { paused_ = paused; }
+    /// Marks where a stage begins.
+    void begin(stage s) {
+        if (paused_) return;
+        const auto now = clock::now();
+        if (running_ != stage::count && iteration_ % sampling_ == 0)
+            times_.milliseconds[static_cast<std::size_t>(running_)] +=
+                std::chrono::duration<double, std::milli>(now - since_).count();
+        running_ = s;
+        since_ = now;
+    }
+    void end_iteration() {
+        begin(stage::count);
+        if (iteration_++ % sampling_ == 0) ++times_.sampled;
+    }
+    const stage_times& times() { return times_; }
+
+    std::size_t peak_bytes() const { return 0; }  // the process's own peak says it all
+    void wait() {}
+
+  private:
+    using clock = std::chrono::steady_clock;
+
+    /// One pass of a stable radix sort: each slice of the pairs is counted and then moved.
+    void sort_by_digit(const std::uint32_t* keys, const std::uint32_t* values, std::size_t n, int shift,
+                       int bits) {
+        const std::size_t digits = std::size_t{1} << bits;
+        const auto digit = [&](std::uint32_t key) { return key >> shift & (digits - 1); };
+        std::uint32_t* to_keys = other_keys_.data();
+        std::uint32_t* to_values = other_values_.data();
+        // Of a few thousand keys the sums over the slices' digits would take longer.
+        const std::size_t slices =
+            std::clamp<std::size_t>(n / (2 * digits), 1, static_cast<std::size_t>(omp_get_max_threads()));
+        histograms_.resize(digits * slices);
+        const auto for_each_slice = [&](const auto& f) {
+#pragma omp parallel for schedule(static, 1)
+            for (std::size_t s = 0; s < slices; ++s)
+                f(n * s / slices, n * (s + 1) / slices, histograms_.data() + s * digits);
+        };
+        for_each_slice([&](std::size_t from, std::size_t to, std::size_t* counts) {
+            std::fill_n(counts, digits, std::size_t{0});
+            for (std::size_t i = from; i < to; ++i) ++counts[digit(keys[i])];
+        });
+        // Where each digit begins, and in it each slice: by all threads, since what others counted is slow to
+        // come by.
+        starts_.resize(digits);
+        for_each_index(digits, [&](std::size_t d) {
+            std::size_t sum = 0;
+            for (std::size_t s = 0; s < slices; ++s) sum += std::exchange(histograms_[s * digits + d], sum);
+            starts_[d] = sum;
+        });
+        for (std::size_t d = 0, sum = 0; d < digits; ++d) sum += std::exchange(starts_[d], sum);
+        for_each_slice([&](std::size_t from, std::size_t to, std::size_t* places) {
+            for (std::size_t d = 0; d < digits; ++d) places[d] += starts_[d];
+            for (std::size_t i = from; i < to; ++i) {
+                const std::size_t at = places[digit(keys[i])]++;
+                to_keys[at] = keys[i];
+                to_values[at] = values[i];
+            }
+        });
+    }
+
+    buffer<std::uint32_t> other_keys_, other_values_;
+    std::vector<std::size_t> histograms_, starts_;
+    // Of `distribute`.
+    struct instance {
+        std::uint32_t bucket, value;
+    };
+    std::vector<std::vector<instance>> found_;  // by slice
+    buffer<std::uint64_t> places_, first_;
+    buffer<std::uint32_t> totals_;
+    stage_times times_;
+    stage running_ = stage::count;
+    int sampling_ = 1, iteration_ = 0;
+    bool paused_ = false;
+    clock::time_point since_;
+};
+
+/// With warps of 8 lanes, whose values take a register each: see `emulator::basic_lanes`.
+using cpu = basic_cpu<warpagg::emulator::narrow_lanes<8>>;
+
+}  // namespace gs::device

@@ -1,0 +1,271 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cuda_runtime.h>
+#include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cub/device/device_scan.cuh>
+#include <set>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <warpagg/atomic.hpp>
+
+#include "distribute.hpp"
+#include "graph.hpp"
+#include "memory.hpp"
+#include "sort.hpp"
+#include "times.hpp"
+#include "../scratch.hpp"
+
+namespace gs::device {
+
+namespace detail {
+
+constexpr unsigned block_size = 128;
+constexpr unsigned warps_per_block = block_size / 32;
+
+struct wide_sum {
+    __device__ std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
+};
+
+/// The first n numbers, and a zero.
+template <class Numbers>
+struct and_a_zero {
+    Numbers numbers;
+    std::size_t n;
+    WARPAGG_HD std::uint64_t operator()(std::size_t i) const { return i < n ? numbers[i] : 0; }
+};
+template <class Items>
+struct sizes_of {
+    Items all;
+    WARPAGG_HD std::uint32_t operator[](std::size_t i) const { return all(i).size(); }
+};
+
+template <class F>
+__global__ void for_each_index(std::size_t n, F f) {
+    await_kernel_before();
+    const std::size_t i = std::size_t{blockIdx.x} * block_size + threadIdx.x;
+    if (i < n) f(i);
+}
+
+/// Kernels that walk lists say how many of their warps an SM is to have at once: they get few enough
+/// registers for it.
+template <class F>
+constexpr int least_blocks = 1;
+template <class F>
+requires requires { F::warps_at_once; }
+constexpr int least_blocks<F> = F::warps_at_once / warps_per_block;
+
+template <class F>
+__global__ void __launch_bounds__(block_size, least_blocks<F>) for_each_warp(unsigned n, F f) {
+    await_kernel_before();
+    const unsigned i = blockIdx.x * warps_per_block + threadIdx.x / 32;
+    using warp = warpagg::cuda::warp;
+    if constexpr (has_scratch<F, warp>) {
+        __shared__ typename F::template scratch<warp> scratch[warps_per_block];
+        if (i < n) f(warp{}, i, scratch[threadIdx.x / 32]);
+    } else {
+        if (i < n) f(warp{}, i);
+    }
+}
+
+}  // namespace detail
+
+/// A CUDA device and a stream on it. The interface is that of `basic_cpu`.
+class cuda {
+  public:
+    using warp = warpagg::cuda::warp;
+    using narrow_warp = warp;  ///< see `basic_cpu`
+
+    template <class T>
+    using buffer = cuda_buffer<T>;
+
+    cuda() : times_(stream_) {
+        int processors = 0;
+        check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, 0));
+        resident_warps_ = 32 * static_cast<std::size_t>(processors);
+        cudaFuncAttributes kernel{};
+        check(cudaFuncGetAttributes(&kernel, detail::count_digits<std::uint32_t>));
+        kernels_await_ = kernel.ptxVersion >= 90;
+        slices_done_.resize(1);
+        zero(slices_done_.data(), 1);
+    }
+    cuda(const cuda&) = delete;
+    cuda& operator=(const cuda&) = delete;
+
+    std::string name() const {
+        cudaDeviceProp properties{};
+        check(cudaGetDeviceProperties(&properties, 0));
+        return std::string("cuda, ") + properties.name;
+    }
+
+    /// How many warps keep the device busy: about as many as run at once.
+    std::size_t resident_warps() const { return resident_warps_; }
+
+    /// f(i) for each i in [0, n).
+    template <class F>
+    void for_each_index(std::size_t n, const F& f) {
+        launch(detail::for_each_index<F>, blocks(n, detail::block_size), detail::block_size, 0, n, f);
+    }
+    /// f(warp, i) for each i in [0, n), each on a warp of its own; f(warp, i, scratch) if it has scratch.
+    template <class W = warp, class F>
+    void for_each_warp(std::size_t n, const F& f) {
+        launch(detail::for_each_warp<F>, blocks(n, detail::warps_per_block), detail::block_size, 0,
+               static_cast<unsigned>(n), f);
+    }
+
+    template <class T>
+    void zero(T* p, std::size_t n) {
+        if (n > 0) check(cudaMemsetAsync(p, 0, n * sizeof(T), stream_));
+    }
+    template <class T>
+    void copy(T* to, const T* from, std::size_t n) {
+        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToDevice, stream_));
+    }
+    template <class T>
+    void upload(T* to, const T* from, std::size_t n) {
+        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyHostToDevice, stream_));
+    }
+    /// Waits for the device, as does whoever reads a result of it.
+    template <class T>
+    void download(T* to, const T* from, std::size_t n) {
+        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToHost, stream_));
+        wait();
+    }
+
+    /// out[i] = in[0] + ... + in[i - 1] for i in [0, n]; out has n + 1 elements.
+    void prefix_sum(const buffer<std::uint32_t>& in, buffer<std::uint64_t>& out, std::size_t n) {
+        prefix_sum_of(in.data(), out, n);
+    }
+
+    /// See `basic_cpu`.
+    template <class Items, class Range>
+    void distribute(std::size_t n, const Items& all, std::size_t buckets, std::uint64_t room,
+                    std::uint32_t* listed, Range* ranges, std::uint64_t* needed) {
+        using namespace detail;
+        first_candidate_.resize(n + 1);
+        prefix_sum_of(sizes_of<Items>{all}, first_candidate_, n);
+        table_.resize(slices * buckets);
+
+        const std::uint64_t* first = first_candidate_.data();
+        const auto b = static_cast<unsigned>(buckets);
+        const bool shared = buckets <= shared_buckets;
+        const std::size_t row = shared ? buckets * sizeof(std::uint32_t) : 0;
+        launch(shared ? count_slice<true, Items> : count_slice<false, Items>, slices,
+               counting_warps * warp_size, row, all, first, n, b, table_.data());
+        launch(place_buckets<Range>, blocks(buckets, warp_size), placing_warps * warp_size, 0, b,
+               table_.data(), room, ranges, needed, slices_done_.data());
+        launch(shared ? append_slice<true, Items, Range> : append_slice<false, Items, Range>, slices,
+               warp_size, row, all, first, n, b, table_.data(), room, ranges, listed);
+    }
+
+    /// Sorts the first n pairs by their keys; pairs of equal keys keep their order. n < 2^30.
+    void sort_pairs(buffer<std::uint32_t>& keys, buffer<std::uint32_t>& values, std::size_t n) {
+        using namespace detail;
+        other_keys_.resize(n);
+        other_values_.resize(n);
+        const unsigned tiles = blocks(n, keys_a_tile), count = static_cast<unsigned>(n);
+        sort_memory_.resize(sort_memory::size(tiles));
+        zero(sort_memory_.data(), sort_memory_.size());
+        constexpr unsigned most_blocks = 512;
+        launch(count_digits<std::uint32_t>, std::min(tiles, most_blocks), sorting_threads, 0, keys.data(),
+               count, sort_memory_.data());
+        std::uint32_t *from[] = {keys.data(), values.data()},
+                      *to[] = {other_keys_.data(), other_values_.data()};
+        static_assert(digits_a_key % 2 == 0);  // so that they end where they began
+        for (unsigned digit = 0; digit < digits_a_key; ++digit, std::swap(from, to))
+            launch(sort_by_digit<std::uint32_t, std::uint32_t>, tiles, sorting_threads, 0, from[0], from[1],
+                   count, digit * digit_bits, sort_memory(sort_memory_.data(), tiles, digit), to[0], to[1]);
+    }
+
+    /// Runs f, which launches an iteration's work and waits for none of it. Iterations of the same `shape`
+    /// need the same memory: from the second on they are launched as one graph, but for those that are timed.
+    template <class F>
+    void iteration(const iteration_shape& shape, const F& f) {
+        const bool is_new = shapes_.insert(shape).second;
+        if (!is_new && !times_.is_sampled())
+            graph_.launch(stream_, f);
+        else
+            f();
+        end_iteration();
+    }
+
+    /// Times every n-th iteration from now on.
+    void sample_times(int every) { times_.sample(every); }
+    /// What follows belongs to no iteration.
+    void pause_times(bool paused) { times_.pause(paused); }
+    /// Marks where a stage begins.
+    void begin(stage s) { times_.begin(s); }
+    void end_iteration() { times_.end_iteration(); }
+    const stage_times& times() { return times_.get(); }
+
+    std::size_t peak_bytes() const { return pool_.peak_bytes(); }
+    void wait() { check(cudaStreamSynchronize(stream_)); }
+
+  private:
+    /// A stream that other objects can be made with.
+    struct owned_stream {
+        cudaStream_t stream{};
+        owned_stream() { check(cudaStreamCreate(&stream)); }
+        owned_stream(const owned_stream&) = delete;
+        owned_stream& operator=(const owned_stream&) = delete;
+        ~owned_stream() { cudaStreamDestroy(stream); }
+        operator cudaStream_t() const { return stream; }
+    };
+
+    static unsigned blocks(std::size_t n, unsigned each) {
+        return static_cast<unsigned>((n + each - 1) / each);
+    }
+
+    /// Launches a kernel, one that begins with `await_kernel_before`, unless it has no blocks.
+    template <class... Parameters>
+    void launch(void (*kernel)(Parameters...), unsigned blocks, unsigned threads, std::size_t shared_bytes,
+                const std::type_identity_t<Parameters>&... arguments) {
+        if (blocks == 0) return;
+        cudaLaunchAttribute overlap{};
+        overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+        overlap.val.programmaticStreamSerializationAllowed = 1;
+        cudaLaunchConfig_t config{};
+        config.gridDim = blocks;
+        config.blockDim = threads;
+        config.dynamicSmemBytes = shared_bytes;
+        config.stream = stream_;
+        config.attrs = &overlap;
+        config.numAttrs = kernels_await_ ? 1 : 0;
+        check(cudaLaunchKernelEx(&config, kernel, arguments...));
+    }
+
+    template <class Numbers>
+    void prefix_sum_of(const Numbers& in, buffer<std::uint64_t>& out, std::size_t n) {
+        const auto numbers = thrust::make_transform_iterator(thrust::counting_iterator<std::size_t>(0),
+                                                             detail::and_a_zero<Numbers>{in, n});
+        const auto scan = [&](void* scratch, std::size_t& bytes) {
+            return cub::DeviceScan::ExclusiveScan(scratch, bytes, numbers, out.data(), detail::wide_sum{},
+                                                  std::uint64_t{0}, n + 1, stream_);
+        };
+        std::size_t bytes = 0;
+        check(scan(nullptr, bytes));
+        scratch_.resize(bytes);
+        check(scan(scratch_.data(), bytes));
+    }
+
+    cuda_pool pool_;
+    owned_stream stream_;
+    cuda_times times_;
+    cuda_graph graph_;
+    std::set<iteration_shape> shapes_;  ///< that were seen
+    bool kernels_await_ = false;        ///< they were compiled for a GPU that can
+    std::size_t resident_warps_ = 0;
+    buffer<std::uint32_t> other_keys_, other_values_, sort_memory_;
+    buffer<char> scratch_;
+    buffer<std::uint64_t> first_candidate_;  // of `distribute`
+    buffer<std::uint32_t> table_;
+    buffer<unsigned> slices_done_;
+};
+
+}  // namespace gs::device

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "memory.hpp"
+
+namespace gs::device {
+
+/// Work that is launched as one graph. What was made for one iteration is brought up to date for the next.
+class cuda_graph {
+  public:
+    cuda_graph() = default;
+    cuda_graph(const cuda_graph&) = delete;
+    cuda_graph& operator=(const cuda_graph&) = delete;
+    ~cuda_graph() {
+        if (graph_ != nullptr) cudaGraphExecDestroy(graph_);
+    }
+
+    /// Launches on the stream what f does to it. f may launch, copy and zero there, but neither allocate nor
+    /// wait.
+    template <class F>
+    void launch(cudaStream_t stream, const F& f) {
+        check(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal));
+        cudaGraph_t captured = nullptr;
+        try {
+            f();
+        } catch (...) {
+            cudaStreamEndCapture(stream, &captured);
+            cudaGraphDestroy(captured);
+            throw;
+        }
+        check(cudaStreamEndCapture(stream, &captured));
+        update(captured);
+        cudaGraphDestroy(captured);
+        check(cudaGraphLaunch(graph_, stream));
+    }
+
+  private:
+    void update(cudaGraph_t to) {
+        cudaGraphExecUpdateResultInfo info;
+        if (graph_ != nullptr && cudaGraphExecUpdate(graph_, to, &info) == cudaSuccess) return;
+        // It is the first, or has other launches than the one before.
+        cudaGetLastError();
+        if (graph_ != nullptr) cudaGraphExecDestroy(graph_);
+        check(cudaGraphInstantiate(&graph_, to, 0));
+    }
+
+    cudaGraphExec_t graph_ = nullptr;
+};
+
+}  // namespace gs::device

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "../../core/error.hpp"
+
+namespace gs::device {
+
+inline void check(cudaError_t status) {
+    if (status == cudaErrorMemoryAllocation)
+        throw error("the GPU is out of memory: lower --max-cap or --resolution");
+    if (status != cudaSuccess) throw std::runtime_error(std::string("CUDA: ") + cudaGetErrorString(status));
+}
+
+/// The pool that memory comes from. It keeps what is given back to it, so that nobody waits for the driver.
+class cuda_pool {
+  public:
+    cuda_pool() {
+        check(cudaDeviceGetDefaultMemPool(&pool_, 0));
+        std::uint64_t all = UINT64_MAX;
+        check(cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &all));
+    }
+    /// The most that was ever in use.
+    std::size_t peak_bytes() const {
+        std::uint64_t bytes = 0;
+        check(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrUsedMemHigh, &bytes));
+        return bytes;
+    }
+
+  private:
+    cudaMemPool_t pool_{};
+};
+
+/// Memory of the device. Growing it loses the contents.
+template <class T>
+class cuda_buffer {
+  public:
+    cuda_buffer() = default;
+    cuda_buffer(cuda_buffer&& other) noexcept { swap(other); }
+    cuda_buffer& operator=(cuda_buffer&& other) noexcept {
+        swap(other);
+        return *this;
+    }
+    ~cuda_buffer() { release(); }
+
+    void resize(std::size_t n) {
+        if (n > capacity_) {
+            release();
+            check(cudaMallocAsync(&memory_, n * sizeof(T), in_order()));
+            capacity_ = n;
+        }
+        size_ = n;
+    }
+    T* data() const { return memory_; }
+    std::size_t size() const { return size_; }
+
+  private:
+    /// Comes after what any stream was given before, and before what it is given later.
+    static cudaStream_t in_order() { return cudaStreamLegacy; }
+
+    void release() {
+        if (memory_ == nullptr) return;
+        cudaFreeAsync(memory_, in_order());
+        memory_ = nullptr;
+        size_ = capacity_ = 0;
+    }
+    void swap(cuda_buffer& other) noexcept {
+        std::swap(memory_, other.memory_);
+        std::swap(size_, other.size_);
+        std::swap(capacity_, other.capacity_);
+    }
+
+    T* memory_ = nullptr;
+    std::size_t size_ = 0, capacity_ = 0;
+};
+
+}  // namespace gs::device

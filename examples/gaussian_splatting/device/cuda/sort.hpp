@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstdint>
+#include <cuda/atomic>
+
+#include "kernel.hpp"
+
+/// The kernels of `cuda::sort_pairs`: a stable radix sort, digit by digit from the lowest, with one launch a
+/// digit (Adinolfi and Merrill, "Onesweep", 2022). CUB's is made for tens of millions of keys; this one has
+/// smaller tiles, which keep a whole GPU busy at a hundred thousand, and half as many launches.
+namespace gs::device::detail {
+
+inline constexpr unsigned digit_bits = 8, digits = 1u << digit_bits;
+inline constexpr unsigned digits_a_key = 32 / digit_bits;
+inline constexpr unsigned sorting_threads = digits, sorting_warps = sorting_threads / warp_size;
+inline constexpr unsigned keys_a_thread = 8, keys_a_tile = keys_a_thread * sorting_threads;
+
+__device__ inline std::uint32_t digit_of(std::uint32_t key, unsigned shift) {
+    return key >> shift & (digits - 1);
+}
+
+/// What the launches of a sort share, zero before: how often each digit has each value, how many tiles have
+/// begun, and, `digits` for each tile, how many keys of each value the tiles have. Of the last the highest
+/// two bits say whether they are known, and of which tiles.
+struct sort_memory {
+    std::uint32_t* histograms;
+    std::uint32_t* begun;
+    std::uint32_t* known;
+
+    static constexpr std::uint32_t of_this_tile = 1u << 30, of_all_so_far = 1u << 31,
+                                   counts = of_this_tile - 1;
+
+    static std::size_t size(unsigned tiles) {
+        return digits_a_key * (digits + 1 + std::size_t{tiles} * digits);
+    }
+    sort_memory(std::uint32_t* all, unsigned tiles, unsigned digit)
+        : histograms(all + digit * digits),
+          begun(all + digits_a_key * digits + digit),
+          known(all + digits_a_key * (digits + 1) + std::size_t{digit} * tiles * digits) {}
+};
+
+template <class Key>
+__global__ void __launch_bounds__(sorting_threads)
+    count_digits(const Key* keys, unsigned n, std::uint32_t* histograms) {
+    await_kernel_before();
+    __shared__ std::uint32_t counts[digits_a_key][digits];
+    for (auto& count : counts) count[threadIdx.x] = 0;
+    __syncthreads();
+#pragma unroll 4
+    for (unsigned i = blockIdx.x * sorting_threads + threadIdx.x; i < n; i += gridDim.x * sorting_threads) {
+        const Key key = keys[i];
+        for (unsigned d = 0; d < digits_a_key; ++d) atomicAdd(&counts[d][digit_of(key, d * digit_bits)], 1u);
+    }
+    __syncthreads();
+    for (unsigned d = 0; d < digits_a_key; ++d)
+        if (const std::uint32_t count = counts[d][threadIdx.x]; count > 0)
+            atomicAdd(histograms + d * digits + threadIdx.x, count);
+}
+
+/// How many keys the tiles before this one have, of the value that this thread stands for.
+__device__ inline std::uint32_t count_before(const std::uint32_t* known, unsigned tile) {
+    const auto look = [&](unsigned t) {
+        return cuda::atomic_ref<const std::uint32_t, cuda::thread_scope_device>(
+                   known[t * digits + threadIdx.x])
+            .load(cuda::memory_order_relaxed);
+    };
+    constexpr unsigned together = 4;
+    std::uint32_t sum = 0;
+    for (unsigned t = tile;; t -= together) {
+        std::uint32_t seen[together];
+#pragma unroll
+        for (unsigned k = 0; k < together; ++k)
+            seen[k] = k < t ? look(t - 1 - k) : sort_memory::of_all_so_far;
+#pragma unroll
+        for (unsigned k = 0; k < together; ++k) {
+            while ((seen[k] & ~sort_memory::counts) == 0) seen[k] = look(t - 1 - k);
+            sum += seen[k] & sort_memory::counts;
+            if (seen[k] & sort_memory::of_all_so_far) return sum;
+        }
+    }
+}
+
+/// Moves the pairs to where they are once sorted by one digit: one block for a tile of them.
+template <class Key, class Value>
+__global__ void __launch_bounds__(sorting_threads)
+    sort_by_digit(const Key* keys, const Value* values, unsigned n, unsigned shift, sort_memory memory,
+                  Key* to_keys, Value* to_values) {
+    await_kernel_before();
+    __shared__ unsigned my_tile;
+    __shared__ std::uint32_t counts[sorting_warps][digits];
+    __shared__ std::uint32_t moved[digits];
+    __shared__ std::uint64_t sums[sorting_warps];
+    __shared__ Key sorted_keys[keys_a_tile];
+    __shared__ Value sorted_values[keys_a_tile];
+    // In the order in which blocks begin, so that none waits for one that has not.
+    if (threadIdx.x == 0) my_tile = atomicAdd(memory.begun, 1u);
+    for (auto& count : counts) count[threadIdx.x] = 0;
+    __syncthreads();
+
+    const unsigned tile = my_tile, first = tile * keys_a_tile, warp = threadIdx.x / warp_size;
+    const unsigned mine = first + warp * keys_a_thread * warp_size + lane_of_warp();
+    // Past the end stand keys that come last; they are not moved.
+    Key key[keys_a_thread];
+    std::uint32_t rank[keys_a_thread];  // among the warp's of the same digit
+#pragma unroll
+    for (unsigned k = 0; k < keys_a_thread; ++k) {
+        const unsigned i = mine + k * warp_size;
+        key[k] = i < n ? keys[i] : ~Key{0};
+    }
+#pragma unroll
+    for (unsigned k = 0; k < keys_a_thread; ++k) {
+        const std::uint32_t digit = digit_of(key[k], shift);
+        unsigned peers = every_lane;
+#pragma unroll
+        for (unsigned bit = 0; bit < digit_bits; ++bit) {
+            const bool one = digit >> bit & 1;
+            const unsigned ones = __ballot_sync(every_lane, one);
+            peers &= one ? ones : ~ones;
+        }
+        rank[k] = counts[warp][digit] + lanes_before(peers);
+        __syncwarp();
+        if (is_last_of(peers)) counts[warp][digit] = rank[k] + 1;
+        __syncwarp();
+    }
+    __syncthreads();
+
+    // From here on a thread stands for a value of the digit.
+    std::uint32_t count = 0;
+    for (auto& of_warp : counts) {
+        const std::uint32_t own = of_warp[threadIdx.x];
+        of_warp[threadIdx.x] = count;
+        count += own;
+    }
+    cuda::atomic_ref<std::uint32_t, cuda::thread_scope_device> known(
+        memory.known[tile * digits + threadIdx.x]);
+    known.store(count | (tile == 0 ? sort_memory::of_all_so_far : sort_memory::of_this_tile),
+                cuda::memory_order_relaxed);
+    const std::uint64_t own = std::uint64_t{memory.histograms[threadIdx.x]} << 32 | count;
+    const std::uint64_t smaller = sum_to_thread<sorting_warps>(own, sums) - own;
+    const auto in_tile = static_cast<std::uint32_t>(smaller),
+               in_all = static_cast<std::uint32_t>(smaller >> 32);
+    const std::uint32_t before = count_before(memory.known, tile);
+    if (tile > 0) known.store((before + count) | sort_memory::of_all_so_far, cuda::memory_order_relaxed);
+    moved[threadIdx.x] = in_all + before - in_tile;
+    for (auto& of_warp : counts) of_warp[threadIdx.x] += in_tile;
+    __syncthreads();
+
+#pragma unroll
+    for (unsigned k = 0; k < keys_a_thread; ++k) {
+        const unsigned i = mine + k * warp_size;
+        const std::uint32_t place = counts[warp][digit_of(key[k], shift)] + rank[k];
+        sorted_keys[place] = key[k];
+        if (i < n) sorted_values[place] = values[i];
+    }
+    __syncthreads();
+#pragma unroll
+    for (unsigned k = 0; k < keys_a_thread; ++k) {
+        const unsigned place = k * sorting_threads + threadIdx.x;
+        if (first + place >= n) break;
+        const std::uint32_t to = moved[digit_of(sorted_keys[place], shift)] + place;
+        to_keys[to] = sorted_keys[place];
+        to_values[to] = sorted_values[place];
+    }
+}
+
+}  // namespace gs::device::detail

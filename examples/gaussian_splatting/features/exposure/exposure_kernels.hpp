@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <warpagg/atomic.hpp>
+
+#include "../../optimize/ordered_sums.hpp"
+
+namespace gs::train {
+
+/// A photo's exposure: its colours are `A c + b` of those that the scene has. Three rows of A and b, as in
+/// Kerbl et al. 2024 (hierarchical 3D Gaussians).
+inline constexpr unsigned exposure_width = 12;
+
+/// Where row `channel` has its factor of channel k, and at 3 its b.
+WARPAGG_HD constexpr unsigned exposure_at(unsigned channel, unsigned k) { return 4 * channel + k; }
+
+/// A picture as its photo's exposure shows it: one index a pixel.
+struct expose {
+    const float* picture;  ///< three planes, as `exposed`
+    const float* exposure;
+    std::size_t pixels;
+    float* exposed;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        for (unsigned c = 0; c < 3; ++c) {
+            float sum = exposure[exposure_at(c, 3)];
+            for (unsigned k = 0; k < 3; ++k)
+                sum = warpagg::math::fma(exposure[exposure_at(c, k)], picture[k * pixels + i], sum);
+            exposed[c * pixels + i] = sum;
+        }
+    }
+};
+
+/// The gradients by the picture and by the exposure, from that by the exposed picture. A warp for as many
+/// pixels as its lanes have, `rounds` times.
+struct expose_backward {
+    static constexpr unsigned rounds = 8;
+
+    const float* picture;  ///< three planes, as all here
+    const float* exposure;
+    const float* by_exposed;
+    std::size_t pixels;
+    float* by_picture;
+    picture_sums sums;  ///< of `warps(pixels)`
+
+    template <class W>
+    static std::size_t warps(std::size_t pixels) {
+        return (pixels + rounds * W::size - 1) / (rounds * W::size);
+    }
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        using real = warpagg::value_t<W, float>;
+        real total[exposure_width];
+        WARPAGG_UNROLL
+        for (unsigned i = 0; i < exposure_width; ++i) total[i] = real(0);
+        std::size_t first = std::size_t{index} * rounds * W::size;
+        for (unsigned round = 0; round < rounds && first < pixels; ++round, first += W::size) {
+            const warpagg::mask_t<W> inside =
+                w.lane() < static_cast<unsigned>(pixels - first < W::size ? pixels - first : W::size);
+            real colour[3], g[3];
+            WARPAGG_UNROLL
+            for (unsigned c = 0; c < 3; ++c) {
+                const auto at = static_cast<std::ptrdiff_t>(c * pixels + first);
+                colour[c] = w.load_row(picture, at, inside);
+                g[c] = w.load_row(by_exposed, at, inside);
+            }
+            WARPAGG_UNROLL
+            for (unsigned c = 0; c < 3; ++c) {
+                WARPAGG_UNROLL
+                for (unsigned k = 0; k < 3; ++k)
+                    total[exposure_at(c, k)] = warpagg::math::fma(g[c], colour[k], total[exposure_at(c, k)]);
+                total[exposure_at(c, 3)] += g[c];
+                real by(0);
+                WARPAGG_UNROLL
+                for (unsigned k = 0; k < 3; ++k)
+                    by = warpagg::math::fma(g[k], real(exposure[exposure_at(k, c)]), by);
+                w.store_row(by_picture, static_cast<std::ptrdiff_t>(c * pixels + first), by, inside);
+            }
+        }
+        const auto part = [&, index](unsigned i) { return sums(i, index); };
+        warpagg::warp_reduce_atomic(w, part, total, warpagg::mask_t<W>(true));
+    }
+};
+
+/// Moves all exposures by the same, so that their mean changes nothing: else the scene could be darker and
+/// all of them brighter. One index a number.
+struct centre_exposures {
+    float* exposures;
+    std::size_t views;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        float sum = 0;
+        for (std::size_t v = 0; v < views; ++v) sum += exposures[v * exposure_width + i];
+        const float excess = sum / static_cast<float>(views) - (i % 5 == 0 ? 1.0f : 0.0f);
+        for (std::size_t v = 0; v < views; ++v) exposures[v * exposure_width + i] -= excess;
+    }
+};
+
+}  // namespace gs::train

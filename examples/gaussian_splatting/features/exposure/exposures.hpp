@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "../../training/engine.hpp"
+#include "exposure_kernels.hpp"
+#include "../../optimize/adam_parameters.hpp"
+
+namespace gs::train {
+
+/// The exposures of photos, on the device. They can learn: by Adam, each by the steps that show its photo.
+template <class Device>
+class exposures {
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+    using warp = typename Device::warp;
+
+  public:
+    explicit exposures(Device& device) : device_(device), numbers_(device) {}
+
+    /// What the photos begin from, as if no step had shown any.
+    void set(const std::vector<exposure>& all) {
+        std::vector<float> values;
+        for (const exposure& e : all) values.insert(values.end(), e.begin(), e.end());
+        numbers_.set(values);
+    }
+
+    std::size_t count() const { return numbers_.rows(); }
+
+    /// The picture of a view, on the device, as its photo would have it.
+    const float* show(std::size_t view, const float* picture, std::size_t pixels) {
+        exposed_.resize(3 * pixels);
+        device_.for_each_index(pixels, expose{picture, numbers_.row(view), pixels, exposed_.data()});
+        return exposed_.data();
+    }
+
+    /// From the gradient by what `show` returned to that by its picture; learns from it.
+    const float* learn(std::size_t view, const float* picture, const float* by_exposed, std::size_t pixels,
+                       float rate, const raster::list_room& room) {
+        by_picture_.resize(3 * pixels);
+        const picture_sums sums = numbers_.sums(expose_backward::warps<warp>(pixels));
+        device_.for_each_warp(sums.warps, expose_backward{picture, numbers_.row(view), by_exposed, pixels,
+                                                          by_picture_.data(), sums});
+        numbers_.learn(view, sums, rate, room);
+        return by_picture_.data();
+    }
+
+    /// See `centre_exposures`.
+    void centre() { device_.for_each_index(exposure_width, centre_exposures{numbers_.row(0), count()}); }
+
+    std::vector<exposure> get() const {
+        std::vector<exposure> all(count());
+        const std::vector<float> values = numbers_.get();
+        for (std::size_t i = 0; i < values.size(); ++i)
+            all[i / exposure_width][i % exposure_width] = values[i];
+        return all;
+    }
+
+  private:
+    Device& device_;
+    learned_numbers<Device, exposure_width> numbers_;
+    buffer<float> exposed_, by_picture_;
+};
+
+}  // namespace gs::train

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "revise_sh_degree.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../../core/parallel.hpp"
+#include "../../image/image.hpp"
+#include "../decide.hpp"
+
+namespace gs::effects {
+namespace {
+
+float shown(float x) { return std::clamp(x, 0.0f, 1.0f); }
+
+/// A photo minus its picture, as a photo: four times as large, since bytes are coarse, around a grey of a
+/// half.
+void leave_residual(image& photo, const std::vector<float>& picture, const train::exposure& e,
+                    const std::array<float, 3>& background) {
+    const std::vector<float> expected = over_background(photo, background.data());
+    const std::size_t n = picture.size() / 3;
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t c = 0; c < 3; ++c) {
+            float exposed = e[4 * c + 3];
+            for (std::size_t k = 0; k < 3; ++k) exposed += e[4 * c + k] * picture[k * n + i];
+            const float grey = 127.5f + 4 * 255 * (expected[c * n + i] - shown(exposed));
+            photo.rgba[4 * i + c] = static_cast<std::uint8_t>(std::lround(std::clamp(grey, 8.0f, 247.0f)));
+        }
+}
+
+/// The scene's points, and what the model leaves of its training photos.
+scene residual_of(const scene& of, train::engine& engine, const std::array<float, 3>& background) {
+    scene residual;
+    residual.points = of.points;
+    residual.train = of.train;
+    for (view& v : residual.train) v.depths = {};
+    const std::vector<train::exposure> exposures = engine.exposures();
+    std::vector<std::vector<float>> pictures(static_cast<std::size_t>(omp_get_max_threads()));
+    for (std::size_t first = 0; first < of.train.size(); first += pictures.size()) {
+        const std::size_t count = std::min(pictures.size(), of.train.size() - first);
+        for (std::size_t i = 0; i < count; ++i)
+            pictures[i] = engine.render(of.train[first + i].camera, background);
+        for_each_in_parallel(count, [&](std::size_t i) {
+            leave_residual(residual.train[first + i].pixels, pictures[i], exposures[first + i], background);
+        });
+    }
+    return residual;
+}
+
+/// By what the pictures of some training views change if colours have only bands up to this degree.
+double change_above(int degree, train::engine& engine, const scene& of,
+                    const std::array<float, 3>& background) {
+    const std::size_t views = std::min<std::size_t>(of.train.size(), 8);
+    double sum = 0, values = 0;
+    for (std::size_t i = 0; i < views; ++i) {
+        const camera& camera = of.train[i * of.train.size() / views].camera;
+        const auto all = engine.render(camera, background), some = engine.render(camera, background, degree);
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const double d = static_cast<double>(shown(all[k]) - shown(some[k]));
+            sum += d * d;
+        }
+        values += static_cast<double>(all.size());
+    }
+    return std::sqrt(sum / values);
+}
+
+}  // namespace
+
+band_review review_bands(train::engine& engine, const scene& scene, const std::array<float, 3>& background,
+                         int sh_degree) {
+    band_review review;
+    const evidence left =
+        scene.points.empty() ? evidence{} : gather_from_points(residual_of(scene, engine, background));
+    review.unexplained = left.unexplained;
+    // Where too few points tell, no band is called for that is not there.
+    const int called_for = direction_is_known(left) ? effects::sh_degree(left) : 0;
+    review.sh_degree = std::max(sh_degree, called_for);
+    if (sh_degree > 0) review.change = change_above(sh_degree - 1, engine, scene, background);
+    if (called_for > 0) return review;
+    while (review.change && *review.change < band_change_limit) {
+        --review.sh_degree;
+        review.change.reset();
+        if (review.sh_degree > 0)
+            review.change = change_above(review.sh_degree - 1, engine, scene, background);
+    }
+    return review;
+}
+
+}  // namespace gs::effects

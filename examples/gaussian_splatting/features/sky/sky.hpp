@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "../../render/geometry/effect_set.hpp"
+#include "../../optimize/adam_parameters.hpp"
+#include "sky_kernels.hpp"
+
+namespace gs::train {
+
+/// The sky of a model on the device, if it has one. It can learn.
+template <class Device>
+class sky {
+    using warp = typename Device::warp;
+    using real = warpagg::value_t<warp, float>;
+
+  public:
+    explicit sky(Device& device) : device_(device), numbers_(device) {}
+
+    /// `sky_width` coefficients, or none.
+    void set(const std::vector<float>& coefficients) { numbers_.set(coefficients); }
+    std::vector<float> get() const { return numbers_.get(); }
+    bool is_there() const { return numbers_.rows() > 0; }
+
+    /// What a camera sees of it: three planes on the device, or null without a sky.
+    const float* draw(const camera& camera) {
+        if (!is_there()) return nullptr;
+        raster::require_drawable(camera);
+        planes_.resize(3 * static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
+        raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
+            device_.for_each_warp(patches(camera), draw_sky<warp, Fisheye>{raster::for_device<real>(camera),
+                                                                           numbers_.row(0), planes_.data()});
+        });
+        return planes_.data();
+    }
+
+    /// From the gradient by a picture before what `draw` has drawn last.
+    void learn(const camera& camera, const float* transmittance, const float* by_picture, float rate,
+               const raster::list_room& room) {
+        const picture_sums sums = numbers_.sums(patches(camera));
+        raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
+            device_.for_each_warp(sums.warps, sky_backward<warp, Fisheye>{raster::for_device<real>(camera),
+                                                                          transmittance, by_picture, sums});
+        });
+        numbers_.learn(0, sums, rate, room);
+    }
+
+  private:
+    static std::size_t patches(const camera& camera) {
+        return sky_patch<warp, false>::count(camera.width, camera.height);
+    }
+
+    Device& device_;
+    learned_numbers<Device, sky_width> numbers_;
+    typename Device::template buffer<float> planes_;
+};
+
+}  // namespace gs::train

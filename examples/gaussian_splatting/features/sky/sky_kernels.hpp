@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <warpagg/atomic.hpp>
+
+#include "../../model/gaussians.hpp"
+#include "../../model/spherical_harmonics.hpp"
+#include "../lens/fisheye.hpp"
+#include "../../optimize/ordered_sums.hpp"
+
+namespace gs::train {
+
+/// Of a sky. Its colour in a direction is 0.5 + the sum of coefficients times harmonics, as a Gaussian's, but
+/// not held to any range.
+inline constexpr unsigned sky_coefficients = sh_coefficients(sky_degree);
+
+/// Pixels of a picture for a warp: as many columns as it has lanes, of some rows. `Fisheye`: the camera has
+/// such a lens.
+template <class W, bool Fisheye>
+struct sky_patch {
+    using real = warpagg::value_t<W, float>;
+
+    unsigned left;              ///< the first column
+    int first, last;            ///< rows: [first, last)
+    warpagg::mask_t<W> inside;  ///< lanes whose column the picture has
+
+    static constexpr int rows = 8;
+
+    static std::size_t count(int width, int height) {
+        return (static_cast<std::size_t>(width) + W::size - 1) / W::size *
+               ((static_cast<std::size_t>(height) + rows - 1) / rows);
+    }
+    WARPAGG_HD sky_patch(const W& w, unsigned index, int width, int height) {
+        const unsigned across = (static_cast<unsigned>(width) + W::size - 1) / W::size;
+        left = index % across * W::size;
+        first = static_cast<int>(index / across) * rows;
+        last = first + rows < height ? first + rows : height;
+        inside = w.lane() < static_cast<unsigned>(width) - left;
+    }
+
+    /// The harmonics in the directions of a row's pixels.
+    WARPAGG_HD void basis(const W& w, const raster::device_camera<real>& camera, int row,
+                          real (&values)[sky_coefficients]) const {
+        const real x = warpagg::math::convert<float>(w.lane() + left) + real(0.5f);
+        const raster::vec2<real> place((x - camera.cx) / camera.fx,
+                                       (real(static_cast<float>(row) + 0.5f) - camera.cy) / camera.fy);
+        raster::vec3<real> ray(place, real(1));
+        if constexpr (Fisheye) ray = raster::fisheye_ray(place, camera);
+        sh_basis(sky_degree, raster::unit<3, real>(ray * camera.rotation).direction, values);
+    }
+};
+
+/// The sky behind a picture.
+template <class W, bool Fisheye>
+struct draw_sky {
+    using real = warpagg::value_t<W, float>;
+
+    raster::device_camera<real> camera;
+    const float* sky;
+    float* planes;  ///< three
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        const sky_patch<W, Fisheye> patch(w, index, camera.width, camera.height);
+        const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(camera.width) * camera.height;
+        for (int row = patch.first; row < patch.last; ++row) {
+            real basis[sky_coefficients];
+            patch.basis(w, camera, row, basis);
+            WARPAGG_UNROLL
+            for (unsigned c = 0; c < 3; ++c) {
+                real colour(0.5f);
+                WARPAGG_UNROLL
+                for (unsigned k = 0; k < sky_coefficients; ++k)
+                    colour = warpagg::math::fma(basis[k], real(sky[3 * k + c]), colour);
+                w.store_row(planes, c * plane + static_cast<std::ptrdiff_t>(row) * camera.width + patch.left,
+                            colour, patch.inside);
+            }
+        }
+    }
+};
+
+/// The sums of the gradients by the sky's coefficients, from that by the picture and what is left of light
+/// from behind it.
+template <class W, bool Fisheye>
+struct sky_backward {
+    using real = warpagg::value_t<W, float>;
+
+    raster::device_camera<real> camera;
+    const float* transmittance;
+    const float* by_picture;  ///< three planes
+    picture_sums sums;        ///< of `sky_patch::count` warps
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        const sky_patch<W, Fisheye> patch(w, index, camera.width, camera.height);
+        const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(camera.width) * camera.height;
+        real total[sky_width];
+        WARPAGG_UNROLL
+        for (unsigned i = 0; i < sky_width; ++i) total[i] = real(0);
+        for (int row = patch.first; row < patch.last; ++row) {
+            const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row) * camera.width + patch.left;
+            const real T = w.load_row(transmittance, at, patch.inside);
+            real basis[sky_coefficients];
+            patch.basis(w, camera, row, basis);
+            WARPAGG_UNROLL
+            for (unsigned c = 0; c < 3; ++c) {
+                const real g = T * w.load_row(by_picture, c * plane + at, patch.inside);
+                WARPAGG_UNROLL
+                for (unsigned k = 0; k < sky_coefficients; ++k)
+                    total[3 * k + c] = warpagg::math::fma(basis[k], g, total[3 * k + c]);
+            }
+        }
+        const auto part = [&, index](unsigned i) { return sums(i, index); };
+        warpagg::warp_reduce_atomic(w, part, total, warpagg::mask_t<W>(true));
+    }
+};
+
+}  // namespace gs::train

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "../render/project/gaussian_row.hpp"
+#include "../render/geometry/list_capacity.hpp"
+#include "finite_check.hpp"
+
+namespace gs::train {
+
+using warpagg::mask_t;
+using warpagg::value_t;
+using warpagg::math::select;
+
+/// One step of Adam (Kingma and Ba 2015, algorithm 1, with the corrections of bias folded into the rate) for
+/// what `project_backward` gives it. A Gaussian that took no part in the k steps before had gradients of zero
+/// there, so that its moments shrank by beta1^k and beta2^k, and its value moved by what is the sum of a
+/// geometric series: that is made up for first. The rate and the corrections are those of now, which for
+/// steps of long ago is not quite what they were. A gradient that is not finite, or whose square would not
+/// be, is left out, and so is a step that would not end in a finite value: value and moments stay as they
+/// were, and what was missed is forgotten, as it is for bands of colour that this step does not update.
+/// Squared, such a gradient would hold its value still for ever.
+template <class Real>
+struct adam {
+    parameter_arrays<Real> values, first, second;  ///< and the moments
+    std::uint32_t* last_step;                      ///< that each Gaussian took part in
+    std::uint32_t step;                            ///< t, from 1
+    Real rates[parameter_count];                   ///< of this step: alpha / (1 - beta1^t)
+    Real correction;                               ///< 1 / sqrt(1 - beta2^t)
+    raster::list_room room;                        ///< of the view: see there
+    train::watch watch;
+
+    static constexpr double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-15;
+    static constexpr double most_gradient = 1e18;
+
+    static constexpr bool takes_zeros = false;
+    WARPAGG_HD bool idle() const { return room.exceeded(); }
+
+    template <class W>
+    struct row_sink {
+        using real = value_t<W, Real>;
+
+        const adam& of;
+        const W& w;
+        const raster::gaussian_row<W>& row;
+        real first_left, second_left;  ///< of the moments, after the steps missed: beta1^k, beta2^k
+        real drift;                    ///< the value moved by so many times rate m / sqrt(v) meanwhile
+
+        template <int N>
+        WARPAGG_HD void operator()(parameter p, std::size_t k, std::size_t width,
+                                   const glm::vec<N, real>& value, const glm::vec<N, real>& gradient) const {
+            const glm::vec<N, real> m = row.template load<N>(w, of.first[p], k, width);
+            const glm::vec<N, real> v = row.template load<N>(w, of.second[p], k, width);
+            const real rate(of.rates[static_cast<int>(p)]), most = constant<real>(most_gradient);
+            mask_t<W> bounded[N], sound[N], all_sound = true;
+            WARPAGG_UNROLL
+            for (int n = 0; n < N; ++n) {
+                const real g = gradient[n];
+                const real next_m = constant<real>(beta1) * first_left * m[n] + constant<real>(1 - beta1) * g;
+                const real next_v =
+                    constant<real>(beta2) * second_left * v[n] + constant<real>(1 - beta2) * g * g;
+                const real next =
+                    value[n] - rate * (of.relative(drift * m[n], v[n]) + of.relative(next_m, next_v));
+                bounded[n] = g < most && -g < most;
+                sound[n] = bounded[n] && raster::is_finite(next);
+                all_sound = all_sound && sound[n];
+                row.store(w, of.first[p], k, n, width, next_m, m[n], sound[n]);
+                row.store(w, of.second[p], k, n, width, next_v, v[n], sound[n]);
+                row.store(w, of.values[p], k, n, width, next, value[n], sound[n]);
+            }
+            if (!w.any(row.active && !all_sound)) return;
+            using number = value_t<W, unsigned>;
+            number gradients(0), parameters(0);
+            WARPAGG_UNROLL
+            for (int n = 0; n < N; ++n) {
+                gradients += select(row.active && !bounded[n], number(1), number(0));
+                parameters += select(row.active && bounded[n] && !sound[n], number(1), number(0));
+            }
+            of.watch.note(w, fault::gradient, p, row.first, gradients);
+            of.watch.note(w, fault::parameter, p, row.first, parameters);
+        }
+    };
+
+    /// Notes that the row's active Gaussians take part in this step.
+    template <class W>
+    WARPAGG_HD row_sink<W> for_row(const W& w, const raster::gaussian_row<W>& row) const {
+        using real = value_t<W, Real>;
+        using number = value_t<W, std::uint32_t>;
+        const auto at = static_cast<std::ptrdiff_t>(row.first);
+        const number last = w.load_row(last_step, at, row.active);
+        w.store_row(last_step, at, number(step), row.active);
+        const real missed = warpagg::math::convert<Real>(number(step - 1) - last);
+        // By r + r^2 + ... + r^k the value moved, with r = beta1 / sqrt(beta2): r / (1 - r) (1 - r^k). The
+        // first factors are log2 of beta1, beta2 and r.
+        const real first_left = warpagg::math::exp2(constant<real>(-0.15200309344504995) * missed);
+        const real second_left = warpagg::math::exp2(constant<real>(-0.0014434168696687186) * missed);
+        const real r_left = warpagg::math::exp2(constant<real>(-0.15128138501021560) * missed);
+        return {*this, w, row, first_left, second_left, constant<real>(9.0452374997021932) * (1 - r_left)};
+    }
+
+  private:
+    /// m / sqrt(v + epsilon^2), v corrected: at least the paper's m / (sqrt(v) + epsilon) in size, and at
+    /// most sqrt(2) times that.
+    template <class V>
+    WARPAGG_HD V relative(const V& m, const V& v) const {
+        const V variance = warpagg::math::fma(v, V(correction * correction), constant<V>(epsilon * epsilon));
+        return m * warpagg::math::inverse_sqrt(variance);
+    }
+};
+
+}  // namespace gs::train

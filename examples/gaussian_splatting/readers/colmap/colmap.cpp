@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "colmap.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "../../core/sanitize_for_message.hpp"
+#include "../../core/error.hpp"
+#include "colmap_files.hpp"
+#include "../../image/mask.hpp"
+#include "../load_views.hpp"
+
+namespace gs {
+namespace {
+
+/// `stem.bin`, or else `stem.txt`, or else nothing.
+std::filesystem::path find_part(const std::filesystem::path& folder, const std::string& stem) {
+    for (const char* ending : {".bin", ".txt"})
+        if (const auto file = folder / (stem + ending); std::filesystem::exists(file)) return file;
+    return {};
+}
+
+std::filesystem::path require_part(const std::filesystem::path& folder, const std::string& stem) {
+    auto file = find_part(folder, stem);
+    if (file.empty())
+        throw error("the COLMAP model " + folder.string() + " has no " + stem + ": neither " + stem +
+                    ".bin nor " + stem + ".txt is there");
+    return file;
+}
+
+bool is_binary(const std::filesystem::path& file) { return file.extension() == ".bin"; }
+
+std::filesystem::path model_folder(const std::filesystem::path& data) {
+    const auto sparse = data / "sparse";
+    return std::filesystem::is_directory(sparse / "0") ? sparse / "0" : sparse;
+}
+
+void sort_by_id(std::vector<colmap_camera>& cameras, const std::filesystem::path& file) {
+    std::ranges::sort(cameras, {}, &colmap_camera::id);
+    const auto twice = std::ranges::adjacent_find(cameras, {}, &colmap_camera::id);
+    if (twice != cameras.end())
+        throw error(file.string() + " lists the camera " + std::to_string(twice->id) + " twice");
+}
+
+const colmap_camera& camera_of(const colmap_image& taken, const colmap_model& model) {
+    const auto found = std::ranges::lower_bound(model.cameras, taken.camera_id, {}, &colmap_camera::id);
+    if (found == model.cameras.end() || found->id != taken.camera_id)
+        throw error(model.images_file.string() + ": the image " + clipped(model.name(taken)) +
+                    " refers to camera " + std::to_string(taken.camera_id) + ", which is not there");
+    return *found;
+}
+
+std::vector<recorded_view> recorded_views(const colmap_model& model, const std::filesystem::path& photos,
+                                          const std::filesystem::path& masks,
+                                          const std::filesystem::path& depths) {
+    std::vector<recorded_view> recorded;
+    recorded.reserve(model.images.size());
+    for (const colmap_image& taken : model.images) {
+        const colmap_camera& by = camera_of(taken, model);
+        const std::string_view name = model.name(taken);
+        if (name.size() > longest_path)
+            throw error(model.images_file.string() + ": the name of the image " + clipped(name) +
+                        " is too long");
+        recorded_view one{photos / name, std::string(name), by.camera(), by.distortion(), by.model, {}, {}};
+        if (!masks.empty()) one.mask = beside_photo(masks, one.name);
+        if (!depths.empty()) one.depths = beside_photo(depths, one.name);
+        one.camera.rotation = glm::mat3_cast(taken.rotation);
+        one.camera.translation = taken.translation;
+        recorded.push_back(std::move(one));
+    }
+    std::ranges::sort(recorded, {}, &recorded_view::name);
+    const auto twice = std::ranges::adjacent_find(recorded, {}, &recorded_view::name);
+    if (twice != recorded.end())
+        throw error(model.images_file.string() + " lists the image " + clipped(twice->name) + " twice");
+    return recorded;
+}
+
+}  // namespace
+
+colmap_model read_colmap_model(const std::filesystem::path& folder) {
+    const auto cameras = require_part(folder, "cameras");
+    const auto images = require_part(folder, "images");
+    const auto points = find_part(folder, "points3D");
+    colmap_model model;
+    model.images_file = images;
+    (is_binary(cameras) ? read_binary_cameras : read_text_cameras)(cameras, model);
+    if (model.cameras.empty()) throw error(cameras.string() + " lists no cameras");
+    sort_by_id(model.cameras, cameras);
+    (is_binary(images) ? read_binary_images : read_text_images)(images, model);
+    if (model.images.empty()) throw error(images.string() + " lists no images");
+    if (!points.empty()) (is_binary(points) ? read_binary_points : read_text_points)(points, model);
+    return model;
+}
+
+scene load_colmap_scene(const load_options& options, const log_function& log) {
+    if (options.eval && options.test_every < 1)
+        throw error("test_every must be at least 1, not " + std::to_string(options.test_every));
+    const std::filesystem::path data = options.data, photos = data / options.images;
+    colmap_model model = read_colmap_model(model_folder(data));
+    const auto recorded =
+        recorded_views(model, photos, options.masks ? data / "masks" : std::filesystem::path(),
+                       options.depths ? data / "depths" : std::filesystem::path());
+    if (!std::filesystem::is_directory(photos))
+        throw error("the folder of photos " + photos.string() + " does not exist");
+    scene result;
+    result.source = "COLMAP";
+    result.points = std::move(model.points);
+    if (result.points.empty()) log("the COLMAP model has no points");
+    std::vector<view> views = load_views(recorded, options, log);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const bool held_out = options.eval && i % static_cast<std::size_t>(options.test_every) == 0;
+        (held_out ? result.test : result.train).push_back(std::move(views[i]));
+    }
+    return result;
+}
+
+}  // namespace gs

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/gtc/quaternion.hpp>
+#include <string>
+#include <vector>
+
+#include "../../scene/scene.hpp"
+#include "../../scene/undistort.hpp"
+
+namespace gs {
+
+struct colmap_camera {
+    std::uint32_t id = 0;
+    int width = 0, height = 0;
+    bool is_fisheye = false;
+    const char* model = "";  ///< its name, for messages
+    double fx = 0, fy = 0, cx = 0, cy = 0;
+    std::array<double, 4> coefficients{};  ///< of `lens`, or of `fisheye`
+
+    /// At the origin.
+    gs::camera camera() const {
+        gs::camera c{width, height, fx, fy, cx, cy};
+        if (is_fisheye) c.fisheye = fisheye(coefficients);
+        return c;
+    }
+
+    lens distortion() const {
+        const auto& [k1, k2, p1, p2] = coefficients;
+        return is_fisheye ? lens{} : lens{k1, k2, p1, p2};
+    }
+};
+
+struct colmap_image {
+    std::uint32_t camera_id = 0;
+    std::size_t name_begins = 0;  ///< in `colmap_model::names`
+    glm::dquat rotation{1, 0, 0, 0};
+    glm::dvec3 translation{0};
+};
+
+struct colmap_model {
+    std::vector<colmap_camera> cameras;  ///< by id
+    std::vector<colmap_image> images;    ///< in the file's order
+    std::vector<coloured_point> points;
+    std::string names;                  ///< of the images, each with a final zero
+    std::filesystem::path images_file;  ///< where `images` came from, for messages
+
+    const char* name(const colmap_image& image) const { return names.c_str() + image.name_begins; }
+};
+
+/// Reads cameras, images and points3D from a folder; of each, `.bin` is preferred to `.txt`. The points may
+/// be missing. Throws `error` naming file, and line or record, where something is malformed. What it
+/// allocates, at any time, is below four times the files' size and 64 KiB, whatever they hold.
+colmap_model read_colmap_model(const std::filesystem::path& folder);
+
+/// The views of a COLMAP folder, sorted by name; with `eval`, every `test_every`-th is a test view.
+scene load_colmap_scene(const load_options& options, const log_function& log);
+
+}  // namespace gs

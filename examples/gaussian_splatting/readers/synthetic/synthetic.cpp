@@ -1,0 +1,479 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "synthetic.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "../../core/error.hpp"
+#include "../../core/parallel.hpp"
+#include "../../scene/look_at.hpp"
+#include "../../image/mask.hpp"
+#include "synthetic_parameters.hpp"
+
+namespace gs {
+namespace {
+
+constexpr int native_size = 128;
+constexpr int largest_size = 2048;  // 48 pictures of it are 0.8 GB
+constexpr int view_count = 48;
+constexpr int views_per_test_view = 6;
+constexpr int samples_per_side = 4;
+constexpr double field_of_view = 45 * std::numbers::pi / 180;
+constexpr double camera_distance = 3.3;
+constexpr double nearest_hit = 1e-6;
+
+using vec = glm::dvec3;
+
+enum class pattern { bands, checks };
+
+/// Two colours (linear light) that alternate smoothly along `wave`, in radians per unit of length.
+struct albedo {
+    vec first;
+    vec second;
+    pattern kind = pattern::bands;
+    vec wave{0};
+};
+
+struct ball {
+    vec centre;
+    double radius;
+    albedo paint;
+};
+
+struct ground_disc {
+    double height;
+    double radius;
+    albedo paint;
+};
+
+struct world {
+    std::vector<ball> balls;
+    std::optional<ground_disc> ground;
+    bool transparent = false;  ///< what no ray hits: transparent, or else black
+    synthetic_parameters how;
+};
+
+struct surface_point {
+    vec position;
+    vec normal;
+    vec albedo;
+};
+
+// Positions are chosen by eye. The ground's checks are wide enough to span several pixels at the native size.
+world spheres_world() {
+    const double floor = -0.32;
+    const auto standing = [floor](double x, double y, double radius, albedo paint) {
+        return ball{{x, y, floor + radius}, radius, paint};
+    };
+    world w;
+    w.balls = {
+        standing(0.00, 0.05, 0.46, {{0.86, 0.22, 0.14}, {0.95, 0.66, 0.42}, pattern::bands, {3, 5, 15}}),
+        standing(0.70, 0.20, 0.27, {{0.05, 0.36, 0.48}, {0.25, 0.72, 0.70}, pattern::checks, {13, 13, 13}}),
+        standing(-0.66, 0.34, 0.31, {{0.93, 0.62, 0.08}, {0.98, 0.84, 0.40}, pattern::bands, {17, -9, 0}}),
+        standing(-0.48, -0.52, 0.24, {{0.36, 0.16, 0.58}, {0.74, 0.50, 0.86}, pattern::bands, {0, 12, -18}}),
+        standing(0.32, -0.62, 0.19, {{0.12, 0.46, 0.16}, {0.62, 0.82, 0.28}, pattern::checks, {17, 17, 17}}),
+        standing(0.28, 0.74, 0.22, {{0.90, 0.88, 0.84}, {0.30, 0.46, 0.80}, pattern::bands, {-14, 10, 16}}),
+        standing(-0.93, -0.16, 0.13, {{0.84, 0.10, 0.30}, {0.95, 0.45, 0.55}, pattern::checks, {20, 20, 20}}),
+        standing(0.78, -0.36, 0.12, {{0.95, 0.93, 0.88}, {0.95, 0.80, 0.60}, pattern::bands, {0, 0, 24}}),
+    };
+    w.ground = {floor, 1.3, {{0.10, 0.15, 0.27}, {0.66, 0.62, 0.56}, pattern::checks, {9.5, 9.5, 0}}};
+    return w;
+}
+
+world alpha_world() {
+    world w;
+    w.balls = {{{0, 0, 0}, 0.55, {{0.06, 0.26, 0.50}, {0.92, 0.70, 0.38}, pattern::bands, {4, -3, 14}}}};
+    const vec colours[] = {{0.90, 0.26, 0.14}, {0.95, 0.65, 0.10}, {0.30, 0.66, 0.22},
+                           {0.08, 0.55, 0.60}, {0.45, 0.22, 0.72}, {0.88, 0.25, 0.50}};
+    for (int i = 0; i < 6; ++i) {
+        const double angle = i * std::numbers::pi / 3;
+        const double radius = 0.15 + 0.03 * (i % 3);
+        const vec centre{0.95 * std::cos(angle), 0.95 * std::sin(angle), 0.3 * std::sin(2 * angle)};
+        const vec& colour = colours[i];
+        const pattern kind = i % 2 == 0 ? pattern::checks : pattern::bands;
+        w.balls.push_back({centre, radius, {colour, 0.5 * colour + 0.45, kind, {14, 14, 14}}});
+    }
+    w.transparent = true;
+    return w;
+}
+
+struct named_world {
+    const char* name;
+    world (*make)();
+};
+constexpr named_world worlds[] = {{"spheres", spheres_world}, {"alpha", alpha_world}};
+
+world world_of(const std::string& text) {
+    const synthetic_parameters how = parse_synthetic(text);
+    std::string known;
+    for (const named_world& candidate : worlds) {
+        if (how.world == candidate.name) {
+            world made = candidate.make();
+            made.how = how;
+            if (how.sky > 0 && made.transparent)
+                throw error("the synthetic scene '" + how.world +
+                            "' is transparent where it has nothing: it has no sky");
+            return made;
+        }
+        known += (known.empty() ? "" : ", ") + std::string(candidate.name);
+    }
+    throw error("there is no synthetic scene '" + how.world + "'; there are: " + known);
+}
+
+/// A square wave with rounded flanks: clear stripes to the eye, but no edge finer than a pixel.
+double rounded_square_wave(double sine) { return sine / std::sqrt(sine * sine + 0.15) * std::sqrt(1.15); }
+
+vec colour_at(const albedo& paint, const vec& p) {
+    double wave = 0;
+    if (paint.kind == pattern::bands) {
+        wave = std::sin(glm::dot(paint.wave, p));
+    } else {
+        wave = std::cos(paint.wave.x * p.x) * std::cos(paint.wave.y * p.y) * std::cos(paint.wave.z * p.z);
+    }
+    return glm::mix(paint.first, paint.second, 0.5 + 0.5 * rounded_square_wave(wave));
+}
+
+/// The distance along the ray to where it enters the ball. `direction` has unit length, and rays start
+/// outside.
+double distance_to(const ball& b, const vec& origin, const vec& direction) {
+    const vec to_origin = origin - b.centre;
+    const double along = glm::dot(to_origin, direction);
+    const double discriminant = along * along - glm::dot(to_origin, to_origin) + b.radius * b.radius;
+    if (discriminant < 0) return std::numeric_limits<double>::infinity();
+    const double distance = -along - std::sqrt(discriminant);
+    return distance > nearest_hit ? distance : std::numeric_limits<double>::infinity();
+}
+
+double distance_to(const ground_disc& g, const vec& origin, const vec& direction) {
+    const double distance = (g.height - origin.z) / direction.z;
+    const vec p = origin + distance * direction;
+    const bool hit = distance > nearest_hit && p.x * p.x + p.y * p.y < g.radius * g.radius;
+    return hit ? distance : std::numeric_limits<double>::infinity();
+}
+
+std::optional<surface_point> first_hit(const world& w, const vec& origin, const vec& direction) {
+    double nearest = std::numeric_limits<double>::infinity();
+    const ball* hit = nullptr;
+    for (const ball& b : w.balls) {
+        const double distance = distance_to(b, origin, direction);
+        if (distance < nearest) {
+            nearest = distance;
+            hit = &b;
+        }
+    }
+    if (w.ground && distance_to(*w.ground, origin, direction) < nearest) {
+        const vec p = origin + distance_to(*w.ground, origin, direction) * direction;
+        return surface_point{p, {0, 0, 1}, colour_at(w.ground->paint, p)};
+    }
+    if (hit == nullptr) return std::nullopt;
+    const vec p = origin + nearest * direction;
+    return surface_point{p, (p - hit->centre) / hit->radius, colour_at(hit->paint, p - hit->centre)};
+}
+
+/// How much of a round sun, `sun_softness` in angular radius, one ball leaves visible: 0 to 1. A point of the
+/// ball itself is either lit (the ball lies behind it) or turned away from the sun, so it needs no exception.
+double sun_past(const ball& b, const vec& position, const vec& sun) {
+    constexpr double sun_softness = 0.12;
+    const vec to_centre = b.centre - position;
+    const double along = glm::dot(to_centre, sun);
+    if (along <= 0) return 1;
+    const double miss = glm::length(to_centre - along * sun);
+    return glm::smoothstep(b.radius - sun_softness * along, b.radius + sun_softness * along, miss);
+}
+
+/// How much of the sky one ball leaves visible to a surface: one less its solid angle, weighted by the
+/// cosine.
+double sky_past(const ball& b, const surface_point& s) {
+    const vec to_centre = b.centre - s.position;
+    const double distance = glm::length(to_centre);
+    const double cosine = glm::dot(s.normal, to_centre) / distance;
+    return 1 - std::max(cosine, 0.0) * b.radius * b.radius / (distance * distance);
+}
+
+/// The pool of light fades to black within the ground's rim, so that the rim makes no edge.
+double pool_of_light(const world& w, const vec& p) {
+    if (!w.ground) return 1;
+    return 1 - glm::smoothstep(0.5 * w.ground->radius, 0.98 * w.ground->radius, std::hypot(p.x, p.y));
+}
+
+vec to_sun() { return glm::normalize(vec{0.50, -0.42, 0.80}); }
+
+/// Bluer upwards, and brighter around the sun.
+vec sky(const world& w, const vec& direction) {
+    const vec low{0.55, 0.50, 0.45}, high{0.30, 0.50, 0.85}, glow{0.25, 0.22, 0.17};
+    const double near_sun = std::pow(std::max(glm::dot(direction, to_sun()), 0.0), 4);
+    return w.how.sky * (glm::mix(low, high, 0.5 + 0.5 * direction.z) + near_sun * glow);
+}
+
+/// The colour of a surface under a warm sun and a cool sky, as displayed, in [0, 1]; `to_eye` has unit
+/// length. What is glossy has Phong's lobe of the sun and the sky of the mirrored direction, more at grazing
+/// angles (Schlick's formula), on top.
+vec shade(const world& w, const surface_point& s, const vec& to_eye) {
+    static const vec sun_direction = to_sun();
+    const vec sun_colour{0.90, 0.83, 0.71};
+    const vec sky_colour{0.25, 0.31, 0.40};
+    const vec bounce_colour{0.13, 0.11, 0.10};
+
+    double sun = std::max(glm::dot(s.normal, sun_direction), 0.0);
+    double sky = 1;
+    for (const ball& b : w.balls) {
+        if (sun > 0) sun *= sun_past(b, s.position, sun_direction);
+        sky *= sky_past(b, s);
+    }
+    const vec ambient = glm::mix(bounce_colour, sky_colour, 0.5 + 0.5 * s.normal.z);
+    const double pool = pool_of_light(w, s.position);
+    vec colour = pool * (sun * sun_colour + sky * ambient) * s.albedo;
+    if (w.how.gloss > 0) {
+        const double facing = std::max(glm::dot(s.normal, to_eye), 0.0);
+        const vec mirrored = 2 * facing * s.normal - to_eye;
+        constexpr double sharpness = 16, head_on = 0.25;
+        const double lobe =
+            sun > 0 ? std::pow(std::max(glm::dot(mirrored, sun_direction), 0.0), sharpness) : 0;
+        const double share = w.how.gloss * (head_on + (1 - head_on) * std::pow(1 - facing, 5));
+        colour += pool * share *
+                  (2 * lobe * sun_colour + glm::mix(bounce_colour, 2.0 * sky_colour, 0.5 + 0.5 * mirrored.z));
+    }
+    return glm::sqrt(glm::clamp(colour, 0.0, 1.0));
+}
+
+std::uint8_t to_byte(double in_unit_interval) {
+    return static_cast<std::uint8_t>(std::lround(255 * in_unit_interval));
+}
+
+/// The i-th of the cameras on a spiral that turns by the golden angle: evenly spread, neighbours in space far
+/// apart in number, so that every n-th camera lies between others. Their distances are `how.scales` apart at
+/// most, each evenly likely by its logarithm, from `how.distance` on.
+camera spiral_camera(int i, int size, const synthetic_parameters& how) {
+    const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
+    const double lowest = std::sin(12 * std::numbers::pi / 180);
+    const double highest = std::sin(76 * std::numbers::pi / 180);
+    const double height = glm::mix(lowest, highest, (i + 0.5) / view_count);
+    const double across = std::sqrt(1 - height * height);
+    const double angle = golden_angle * i;
+    const double farther = how.distance * std::pow(how.scales, std::fmod(i * std::numbers::sqrt2, 1.0));
+    const vec eye =
+        farther * camera_distance * vec{across * std::cos(angle), across * std::sin(angle), height};
+    const auto looking = [&](double reach) {
+        return look_at(eye, vec{0}, {0, 0, 1}, size, 0.5 * size / reach);
+    };
+    if (how.fisheye == 0) return looking(std::tan(0.5 * field_of_view));
+    const fisheye lens({0.02, -0.006, 0.001, -0.0001});  // about what lenses for sports have
+    camera c = looking(lens.reach(how.fisheye * std::numbers::pi / 360));
+    c.fisheye = lens;
+    return c;
+}
+
+/// Spelt out because the standard leaves the results of its distributions to the implementation.
+double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+/// Box and Muller's.
+double normal(std::mt19937_64& random) {
+    const double radius = std::sqrt(-2 * std::log(1 - uniform(random)));
+    return radius * std::cos(2 * std::numbers::pi * uniform(random));
+}
+
+/// Of the n-th photo, as a factor of what is displayed.
+double exposure_of(const world& w, std::size_t photo) {
+    std::mt19937_64 random(~photo);  // none of the noise's
+    return std::exp2(w.how.exposure * normal(random));
+}
+
+void render_row(const world& w, const camera& c, std::size_t photo, int row, std::uint8_t* rgba) {
+    const vec origin = c.centre();
+    const double exposure = w.how.exposure > 0 ? exposure_of(w, photo) : 1;
+    std::mt19937_64 random((photo << 32) + static_cast<std::size_t>(row));
+    for (int column = 0; column < c.width; ++column, rgba += 4) {
+        vec colour{0};
+        int hits = 0;
+        for (int sample = 0; sample < samples_per_side * samples_per_side; ++sample) {
+            const double x = column + (sample % samples_per_side + 0.5) / samples_per_side;
+            const double y = row + (sample / samples_per_side + 0.5) / samples_per_side;
+            const vec direction = c.ray(x, y);
+            const std::optional<surface_point> hit = first_hit(w, origin, direction);
+            if (!hit && w.how.sky == 0) continue;
+            colour += hit ? shade(w, *hit, -direction) : sky(w, direction);
+            ++hits;
+        }
+        constexpr double weight = 1.0 / (samples_per_side * samples_per_side);
+        rgba[3] = w.transparent ? to_byte(weight * hits) : std::uint8_t{255};
+        for (int channel = 0; channel < 3; ++channel) {
+            double shown = exposure * weight * colour[channel];
+            if (w.how.noise > 0 && hits > 0) shown += w.how.noise * normal(random);
+            const double most = rgba[3] / 255.0;  // premultiplied
+            rgba[channel] = to_byte(std::clamp(shown, 0.0, most));
+        }
+    }
+}
+
+/// Something that stands before one photo: a disc of one colour.
+void paint_passer(const world& w, std::size_t photo, bool masks, image& pixels) {
+    std::mt19937_64 random(photo + (std::uint64_t{1} << 63));  // none of exposures or noise
+    const double x = uniform(random) * pixels.width, y = uniform(random) * pixels.height;
+    const double square = w.how.passers * pixels.width * pixels.height / std::numbers::pi;
+    std::uint8_t colour[4] = {0, 0, 0, 255};
+    for (int c = 0; c < 3; ++c) colour[c] = to_byte(uniform(random));
+    std::size_t i = 0;
+    for (int row = 0; row < pixels.height; ++row)
+        for (int column = 0; column < pixels.width; ++column, ++i) {
+            const double dx = column + 0.5 - x, dy = row + 0.5 - y;
+            if (dx * dx + dy * dy > square) continue;
+            if (masks)
+                pixels.leave_out(i);
+            else
+                std::copy(colour, colour + 4, &pixels.rgba[4 * i]);
+        }
+}
+
+/// What a network might make of a photo: the inverse of the true depth, with noise, up to a scale and an
+/// offset. Where nothing is hit, it is infinitely far.
+depth_map estimated_depths(const world& w, const camera& c, std::size_t photo) {
+    std::mt19937_64 random(photo + (std::uint64_t{1} << 62));  // none of exposures, passers or noise
+    const double offset = 0.1 + 0.2 * uniform(random), scale = 0.3 + 0.3 * uniform(random);
+    std::vector<double> inverse;
+    for (int row = 0; row < c.height; ++row)
+        for (int column = 0; column < c.width; ++column) {
+            const std::optional<surface_point> hit = first_hit(w, c.centre(), c.ray(column + 0.5, row + 0.5));
+            const auto seen = hit ? c.see(hit->position) : std::nullopt;
+            inverse.push_back(seen ? 1 / seen->depth : 0);
+        }
+    const double nearest = *std::ranges::max_element(inverse);
+    depth_map map{c.width, c.height, {}};
+    for (const double x : inverse) {
+        const double seen = nearest > 0 ? x / nearest * (1 + w.how.depths * normal(random)) : 0;
+        map.values.push_back(static_cast<std::uint16_t>(
+            std::lround(std::clamp(65535 * (offset + scale * seen), 1.0, 65535.0))));
+    }
+    return map;
+}
+
+std::vector<view> spiral_views(int size, const synthetic_parameters& how) {
+    std::vector<view> views(view_count);
+    for (int i = 0; i < view_count; ++i) {
+        view& v = views[static_cast<std::size_t>(i)];
+        v.name = "view_" + std::string(i < 10 ? "0" : "") + std::to_string(i) + ".png";
+        v.camera = spiral_camera(i, size, how);
+    }
+    return views;
+}
+
+void take_photos(const world& w, std::vector<view>& views, bool masks = true) {
+    struct place {
+        view* photo;
+        std::size_t number;
+        int row;
+    };
+    std::vector<place> rows;
+    for (view& v : views) {
+        const int width = v.camera.width, height = v.camera.height;
+        v.pixels = {width, height, {}, w.transparent, false};
+        v.pixels.rgba.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+        for (int row = 0; row < height; ++row)
+            rows.push_back({&v, static_cast<std::size_t>(&v - views.data()), row});
+    }
+#pragma omp parallel for schedule(dynamic, 8)
+    for (const auto& [v, number, row] : rows) {
+        const std::size_t bytes_per_row = 4 * static_cast<std::size_t>(v->camera.width);
+        render_row(w, v->camera, number, row,
+                   v->pixels.rgba.data() + bytes_per_row * static_cast<std::size_t>(row));
+    }
+    if (w.how.passers > 0)
+        for (std::size_t i = 0; i < views.size(); ++i) paint_passer(w, i, masks, views[i].pixels);
+}
+
+/// So many of them, spread evenly.
+std::vector<view> spread(std::vector<view> all, std::size_t count) {
+    std::vector<view> some;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if ((i + 1) * count / all.size() > i * count / all.size()) some.push_back(std::move(all[i]));
+    return some;
+}
+
+/// Where rays through random places of random views meet a surface: seen by a camera by construction, and
+/// denser where more cameras look, as a cloud from structure from motion is.
+std::vector<coloured_point> seen_points(const world& w, const std::vector<view>& views, std::size_t count,
+                                        std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::vector<coloured_point> points;
+    while (points.size() < count) {
+        const auto chosen = static_cast<std::size_t>(uniform(random) * static_cast<double>(views.size()));
+        const camera& c = views[chosen].camera;
+        const double x = uniform(random) * c.width;
+        const double y = uniform(random) * c.height;
+        const vec direction = c.ray(x, y);
+        const std::optional<surface_point> hit = first_hit(w, c.centre(), direction);
+        if (!hit) continue;
+        const vec colour = shade(w, *hit, -direction);
+        points.push_back({hit->position, {to_byte(colour.r), to_byte(colour.g), to_byte(colour.b)}});
+    }
+    return points;
+}
+
+int size_at(int resolution) {
+    if (resolution < 1) {
+        throw error("the resolution must be at least 1, but is " + std::to_string(resolution));
+    }
+    if (resolution > largest_size)
+        throw error("a synthetic scene is drawn at up to " + std::to_string(largest_size) + " pixels, not " +
+                    std::to_string(resolution));
+    return divides_size(resolution) ? native_size / resolution : resolution;
+}
+
+}  // namespace
+
+std::vector<std::string> synthetic_scene_names() {
+    std::vector<std::string> names;
+    for (const named_world& w : worlds) names.emplace_back(w.name);
+    return names;
+}
+
+scene make_synthetic_scene(const std::string& name, const load_options& options, const log_function& log) {
+    const world w = world_of(name);
+    const int size = size_at(options.resolution);
+    std::vector<view> views = spiral_views(size, w.how);
+    take_photos(w, views, options.masks);
+    if (w.how.depths >= 0 && options.depths)
+        for_each_in_parallel(views.size(), [&](std::size_t i) {
+            views[i].depths = estimated_depths(w, views[i].camera, i);
+            forget_left_out(views[i].pixels, views[i].depths);
+        });
+
+    scene result;
+    result.source = "synthetic";
+    result.has_alpha = w.transparent;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        // From the middle of each group: the first and the last camera have fewer neighbours.
+        const bool held_out = options.eval && i % views_per_test_view == views_per_test_view / 2;
+        (held_out ? result.test : result.train).push_back(std::move(views[i]));
+    }
+    const std::size_t most = std::min(result.train.size(), static_cast<std::size_t>(w.how.views));
+    result.train = spread(std::move(result.train), most);
+    result.points = seen_points(w, result.train, static_cast<std::size_t>(w.how.points), options.seed);
+    if (log) {
+        log("synthetic scene '" + name + "': " + std::to_string(result.train.size()) + " training and " +
+            std::to_string(result.test.size()) + " test views of " + std::to_string(size) + "x" +
+            std::to_string(size) + ", " + std::to_string(result.points.size()) + " points");
+    }
+    return result;
+}
+
+void photograph_synthetic(const std::string& name, std::vector<view>& views) {
+    take_photos(world_of(name), views);
+}
+
+std::vector<coloured_point> synthetic_points(const std::string& name, const std::vector<view>& views,
+                                             std::size_t count, std::uint64_t seed) {
+    return seen_points(world_of(name), views, count, seed);
+}
+
+}  // namespace gs

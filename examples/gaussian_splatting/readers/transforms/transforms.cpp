@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "transforms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/mat4x4.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "../../core/sanitize_for_message.hpp"
+#include "../../core/error.hpp"
+#include "../colmap/colmap_files.hpp"
+#include "json_text.hpp"
+#include "transforms_pose.hpp"
+
+namespace gs {
+namespace {
+
+using nlohmann::json;
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// The last one said is the one that counts.
+class said_numbers {
+  public:
+    /// Takes the value, NaN for what is no number, if the field is one of them.
+    void take(std::string_view field, double value) {
+        const auto found = std::ranges::find(transforms_number_names, field);
+        if (found != transforms_number_names.end())
+            values_[static_cast<std::size_t>(found - transforms_number_names.begin())] = value;
+    }
+
+    std::vector<said_number> list() const {
+        std::vector<said_number> said;
+        said.reserve(static_cast<std::size_t>(
+            std::ranges::count_if(values_, [](const auto& value) { return value.has_value(); })));
+        for (std::size_t i = 0; i < values_.size(); ++i)
+            if (values_[i]) said.push_back({static_cast<transforms_number>(i), *values_[i]});
+        return said;
+    }
+
+  private:
+    std::array<std::optional<double>, transforms_number_names.size()> values_;
+};
+
+transforms_lens lens_called(const std::string* name, const std::string& where) {
+    if (!name) throw error(where + ": camera_model is not a string");
+    return camera_model_called(*name, where).is_fisheye ? transforms_lens::fisheye : transforms_lens::opencv;
+}
+
+/// How deep the reader is in what it reads: each level is a bracket within the one before.
+enum class level { file, top, frames, frame, matrix, row };
+
+level deeper(level from, int by) { return static_cast<level>(static_cast<int>(from) + by); }
+
+/// Keeps of a file, as nlohmann's parser goes through it, the frames and the numbers alone. A document tree
+/// takes ten times its text; and neither the parser nor this calls itself, however deep the values nest.
+class reader final : public json::json_sax_t {
+  public:
+    /// Both are kept by reference.
+    reader(transforms& into, const std::string& text) : all_(into), text_(text) {}
+
+    void finish() {
+        if (!has_frames_) throw error(all_.where + ": the field frames is missing");
+        all_.numbers = numbers_.list();
+    }
+
+    bool null() override {
+        const bool is_text = field_ == "camera_model" || field_ == "mask_path";  // then it is not said
+        return (unread_ == 0 && (at_ == level::top || at_ == level::frame) && is_text) ||
+               value(not_a_number, nullptr);
+    }
+    bool boolean(bool) override { return value(not_a_number, nullptr); }
+    bool number_integer(number_integer_t number) override {
+        return value(static_cast<double>(number), nullptr);
+    }
+    bool number_unsigned(number_unsigned_t number) override {
+        return value(static_cast<double>(number), nullptr);
+    }
+    bool number_float(number_float_t number, const string_t&) override { return value(number, nullptr); }
+    bool string(string_t& text) override { return value(not_a_number, &text); }
+    bool binary(binary_t&) override { return false; }  // of other formats
+    bool start_object(std::size_t) override { return open(true); }
+    bool end_object() override { return close(); }
+    bool start_array(std::size_t) override { return open(false); }
+    bool end_array() override { return close(); }
+
+    bool key(string_t& name) override {
+        field_ = name;
+        return true;
+    }
+
+    bool parse_error(std::size_t byte, const std::string&, const json::exception& problem) override {
+        const bool is_range = dynamic_cast<const json::out_of_range*>(&problem) != nullptr;
+        throw error(all_.where + (is_range ? " holds a number that is too large" : " is not valid JSON") +
+                    line_and_byte(text_, byte));
+    }
+
+  private:
+    bool open(bool is_object) {
+        if (unread_ == 0 && is_expected(is_object)) {
+            enter();
+        } else {
+            value(not_a_number, nullptr);
+            ++unread_;
+        }
+        return true;
+    }
+
+    bool is_expected(bool is_object) const {
+        if (at_ == level::file || at_ == level::frames) return is_object;
+        if (at_ == level::top) return !is_object && field_ == "frames";
+        if (at_ == level::frame) return !is_object && field_ == "transform_matrix";
+        return !is_object && at_ == level::matrix;
+    }
+
+    void enter() {
+        at_ = deeper(at_, 1);
+        if (at_ == level::frames) {
+            if (has_frames_) throw error(all_.where + " has the field frames twice");
+            has_frames_ = true;
+        } else if (at_ == level::frame) {
+            all_.frames.emplace_back();
+            frame_ = {};
+        } else if (at_ == level::matrix) {
+            frame_.has_matrix = frame_.is_sound = true;
+            frame_.row = 0;
+        } else if (at_ == level::row) {
+            frame_.column = 0;
+        }
+    }
+
+    bool close() {
+        if (unread_ > 0) {
+            --unread_;
+            return true;
+        }
+        if (at_ == level::row) {
+            frame_.is_sound &= frame_.column == 4;
+            ++frame_.row;
+        } else if (at_ == level::matrix) {
+            frame_.is_sound &= frame_.row == 4;
+        } else if (at_ == level::frame) {
+            finish_frame();
+        }
+        at_ = deeper(at_, -1);
+        return true;
+    }
+
+    /// Of any value that is not entered: what number it is, or NaN; what text it is, or null.
+    bool value(double number, const std::string* text) {
+        if (unread_ > 0) return true;
+        switch (at_) {
+            case level::file:
+                throw error(all_.where + " is not a JSON object");
+            case level::top:
+                if (field_ == "frames") throw error(all_.where + ": frames is not an array");
+                if (field_ == "camera_model") all_.lens = lens_called(text, all_.where);
+                numbers_.take(field_, number);
+                break;
+            case level::frames:
+                all_.frames.emplace_back();
+                throw error(where() + " is not a JSON object");
+            case level::frame:
+                take_field(number, text);
+                break;
+            case level::matrix:
+                frame_.is_sound = false;
+                break;
+            case level::row:
+                take_cell(number);
+                break;
+        }
+        return true;
+    }
+
+    void take_field(double number, const std::string* text) {
+        if (field_ == "file_path") {
+            if (!text) throw error(where() + ": file_path is not a string");
+            all_.frames.back().path = *text;
+            frame_.has_path = true;
+        } else if (field_ == "transform_matrix") {
+            frame_.has_matrix = true;
+            frame_.is_sound = false;
+        } else if (field_ == "mask_path") {
+            if (!text) throw error(where() + ": mask_path is not a string");
+            all_.frames.back().mask = *text;
+        } else if (field_ == "camera_model") {
+            all_.frames.back().lens = lens_called(text, where());
+        } else {
+            frame_.numbers.take(field_, number);
+        }
+    }
+
+    void take_cell(double number) {
+        frame_.is_sound &= std::isfinite(number);
+        if (frame_.row < 4 && frame_.column < 4)
+            frame_.matrix[static_cast<int>(frame_.column)][static_cast<int>(frame_.row)] = number;
+        ++frame_.column;
+    }
+
+    void finish_frame() {
+        transforms_frame& frame = all_.frames.back();
+        if (!frame_.has_path) throw error(where() + ": the field file_path is missing");
+        if (!frame_.has_matrix) throw error(where() + ": the field transform_matrix is missing");
+        if (!frame_.is_sound) throw error(where() + ": transform_matrix is not 4x4 finite numbers");
+        set_pose(frame, frame_.matrix, where());
+        frame.numbers = frame_.numbers.list();
+    }
+
+    std::string where() const { return all_.where_is(all_.frames.size() - 1); }
+
+    transforms& all_;
+    const std::string& text_;
+    level at_ = level::file;
+    std::size_t unread_ = 0;  ///< brackets that are open within a value that nobody reads
+    std::string field_;       ///< the last one, which is what a value at the top or of a frame is for
+    said_numbers numbers_;
+    bool has_frames_ = false;
+    struct {
+        said_numbers numbers;
+        glm::dmat4 matrix{0};
+        std::size_t row = 0, column = 0;
+        bool has_path = false, has_matrix = false, is_sound = false;  ///< the last two: of the matrix
+    } frame_;  ///< what the last of the frames has said so far
+};
+
+std::optional<double> find_in(const std::vector<said_number>& numbers, transforms_number which) {
+    const auto found = std::ranges::find(numbers, which, &said_number::which);
+    if (found == numbers.end()) return std::nullopt;
+    return found->value;
+}
+
+}  // namespace
+
+std::string transforms::where_is(std::size_t index) const {
+    const std::string& path = frames[index].path;
+    return where + " frame " + std::to_string(index) + (path.empty() ? "" : " (" + clipped(path) + ")");
+}
+
+std::optional<double> transforms::number(std::size_t index, transforms_number which) const {
+    auto value = find_in(frames[index].numbers, which);
+    if (!value) value = find_in(numbers, which);
+    if (value && std::isnan(*value))
+        throw error(where_is(index) + ": " +
+                    std::string(transforms_number_names[static_cast<std::size_t>(which)]) +
+                    " is not a number");
+    return value;
+}
+
+bool transforms::is_fisheye(std::size_t index) const {
+    const transforms_lens own = frames[index].lens;
+    return (own == transforms_lens::unsaid ? lens : own) == transforms_lens::fisheye;
+}
+
+transforms read_transforms(const std::filesystem::path& file) {
+    transforms result;
+    result.where = file.string();
+    const std::string text = json_text(file);
+    reader all(result, text);
+    json::sax_parse(text, &all);
+    all.finish();
+    return result;
+}
+
+}  // namespace gs

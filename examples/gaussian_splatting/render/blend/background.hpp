@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <warpagg/warp/concept.hpp>
+
+#include "../geometry/vectors.hpp"
+
+namespace gs::raster {
+
+/// What lies behind all splats, where `at` a pixel's place in a plane: one colour, or one a pixel.
+/// @{
+template <class Real>
+struct one_colour {
+    vec3<Real> colour;
+
+    template <class W>
+    WARPAGG_HD warpagg::value_t<W, Real> at(const W&, const warpagg::value_t<W, unsigned>&, unsigned channel,
+                                            unsigned, const warpagg::mask_t<W>&) const {
+        return warpagg::value_t<W, Real>(colour[static_cast<int>(channel)]);
+    }
+};
+template <class Real>
+struct colour_a_pixel {
+    const Real* planes;  ///< three, as the picture's
+
+    template <class W>
+    WARPAGG_HD warpagg::value_t<W, Real> at(const W& w, const warpagg::value_t<W, unsigned>& pixel,
+                                            unsigned channel, unsigned plane,
+                                            const warpagg::mask_t<W>& inside) const {
+        return w.load(planes, pixel + channel * plane, inside);
+    }
+};
+/// @}
+
+}  // namespace gs::raster

@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <type_traits>
+#include <warpagg/atomic.hpp>
+
+#include "background.hpp"
+#include "list_reader.hpp"
+#include "../project/project_backward.hpp"
+
+namespace gs::raster {
+
+/// What a sum of the backward blending is in memory.
+/// @{
+template <class Real, class Policy>
+struct sum_of {
+    using type = Real;
+};
+template <class Real, class Policy>
+requires requires { typename Policy::accumulate::kept; }
+struct sum_of<Real, Policy> {
+    using type = warpagg::cell<typename Policy::accumulate::kept>;
+};
+template <class Real, class Policy>
+using sum_in_memory = typename sum_of<Real, Policy>::type;
+/// @}
+
+/// What the backward blending reads beside the lists: what the forward one came to, and what comes back.
+template <class Real, class Backdrop = one_colour<Real>>
+struct blended {
+    Backdrop background;
+    const Real* picture;        ///< three planes
+    const Real* transmittance;  ///< and what else `blend_forward` writes
+    const std::uint32_t* last;
+    Real* checkpoints;
+    const Real* gradient;  ///< dL/dpicture: three planes
+};
+
+/// The gradient of `blend_forward`: back to front over what each pixel saw, T recovered by division, nine
+/// sums a Gaussian (see `sum`) handed to `warp_reduce_atomic` with `Policy`. With g = dL/dC and B_i the
+/// colour behind splat i per unit of transmittance, background included, dL/dalpha_i = T_i g (c_i - B_i): one
+/// scalar g B is carried instead of three channels, and nothing is divided by 1 - alpha but T. A lane's
+/// pixels lie in a column, where u is the same: it is multiplied into the sums once. `Split`: one warp a
+/// patch and segment, else one a patch. `AskFirst`: skip what no pixel of the patch sees before any of it is
+/// computed (the paper, Figure 8).
+template <class Real, class Cut, bool Split, class Policy, bool AskFirst, class Backdrop = one_colour<Real>>
+struct blend_backward {
+    using policy = Policy;
+
+    tile_lists<Real> lists;
+    blended<Real, Backdrop> view;
+    const std::uint32_t* tile_of_segment;  ///< see `number_segments`
+
+    sum_in_memory<Real, Policy>* sums;  ///< `record_stride` a Gaussian, added to
+    Policy how;
+
+    static constexpr int warps_at_once = 32;  ///< on an SM; measured
+
+    template <class W>
+    static std::size_t warps(std::size_t tiles, std::size_t segments) {
+        return (Split ? segments : tiles) * patch<W, Real, Cut>::per_tile;
+    }
+    /// How many of them may add to one Gaussian's sums: it is in a tile's list once.
+    template <class W>
+    static std::size_t warps_of_sum(std::size_t tiles) {
+        return tiles * patch<W, Real, Cut>::per_tile;
+    }
+    template <class W>
+    using scratch = splat_stage<W, Real>;
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned warp_index, splat_stage<W, Real>& stage) const {
+        using patch = raster::patch<W, Real, Cut>;
+        const unsigned unit = warp_index / patch::per_tile, in_tile = warp_index % patch::per_tile;
+        if constexpr (Split) {
+            const std::uint32_t after = tile_of_segment[unit];
+            if (after == 0) return;
+            const std::uint32_t tile = after - 1;
+            const tile_range r = lists.ranges[tile];
+            const unsigned first = (unit - tile) * Cut::segment;
+            walk<W, patch>(w, stage, tile, in_tile, r.begin, warpagg::math::max(r.begin, first),
+                           warpagg::math::min(r.end, first + Cut::segment));
+        } else {
+            const tile_range r = lists.ranges[unit];
+            walk<W, patch>(w, stage, unit, in_tile, r.begin, r.begin, r.end);
+        }
+    }
+
+  private:
+    /// A pixel on its way to the front.
+    template <class real>
+    struct pixel_state {
+        real g[3];
+        real T, behind;
+    };
+
+    /// Over the places [from, to) of a tile's list, which begins at `begin`.
+    template <class W, class Patch>
+    WARPAGG_HD void walk(const W& w, splat_stage<W, Real>& stage, unsigned tile, unsigned in_tile,
+                         unsigned begin, unsigned from, unsigned to) const {
+        using real = value_t<W, Real>;
+        constexpr unsigned rows = Cut::rows;
+        const Patch p(w, tile, in_tile, lists.tiles_across, lists.width, lists.height);
+        value_t<W, unsigned> end[rows];  // the rank of the last splat that counted
+        mask_t<W> lives[rows];
+        for (unsigned k = 0; k < rows; ++k) end[k] = w.load(view.last, p.pixel + k * p.step, p.inside[k]);
+        const auto some_pass = [&](unsigned place) {
+            for (unsigned k = 0; k < rows; ++k) lives[k] = end[k] > place - begin;
+            return w.any(any_of(lives));
+        };
+        if (!some_pass(from)) return;
+        pixel_state<real> pixels[rows];
+        begin_pixels(w, p, tile, in_tile, to - begin, to / Cut::segment, end, pixels);
+
+        // What lies behind the last splat that counted for any pixel need not be read.
+        unsigned base = (to - 1) - (to - 1) % W::size;
+        while (base > from && !some_pass(base)) base -= W::size;
+        list_reader<W, Real, Patch> reader(w, lists, p, begin, from, to, stage, base, base - W::size);
+        for (;; base -= W::size) {
+            const unsigned staged = reader.stage(w, base, base - W::size, base - 2 * W::size);
+            if constexpr (!std::is_same_v<mask_t<W>, bool>)  // one thread, which would wait for each
+                for (unsigned i = 0; i < staged; ++i)
+                    __builtin_prefetch(sums + stage.splats[i].gaussian() * record_stride, 1);
+            for (unsigned i = staged; i-- > 0;) add_splat(w, p, stage.splats[i], end, pixels);
+            if (base <= from) break;
+        }
+    }
+
+    /// The pixels as they are behind the splat of rank `to`, where block `next` of the list begins.
+    template <class W, class Patch, class real, class ends>
+    WARPAGG_HD void begin_pixels(const W& w, const Patch& p, unsigned tile, unsigned in_tile, unsigned to,
+                                 unsigned next, const ends& end,
+                                 pixel_state<real> (&pixels)[Cut::rows]) const {
+        const auto plane = static_cast<unsigned>(lists.width * lists.height);
+        for (unsigned k = 0; k < Cut::rows; ++k) {
+            const auto at = p.pixel + k * p.step;
+            auto& [g, T, behind] = pixels[k];
+            for (unsigned c = 0; c < 3; ++c) g[c] = w.load(view.gradient, at + c * plane, p.inside[k]);
+            T = w.load(view.transmittance, at, p.inside[k]);
+            const auto back = [&](unsigned c) { return view.background.at(w, at, c, plane, p.inside[k]); };
+            behind = g[0] * back(0) + g[1] * back(1) + g[2] * back(2);
+            if constexpr (Split) {
+                const mask_t<W> later = end[k] > to;
+                if (!w.any(later)) continue;
+                real front[4];
+                checkpoint<W, Real, Patch>(view.checkpoints, tile + next, in_tile).load(w, k, front);
+                real rest(0);
+                for (unsigned c = 0; c < 3; ++c)
+                    rest = fma(g[c], w.load(view.picture, at + c * plane, p.inside[k]) - front[c + 1], rest);
+                T = select(later, front[0], T);
+                behind = select(later, rest / front[0], behind);
+            }
+        }
+    }
+
+    template <class W, class Patch, class real, class ends>
+    WARPAGG_HD void add_splat(const W& w, const Patch& p, const staged_splat<Real>& s, const ends& end,
+                              pixel_state<real> (&pixels)[Cut::rows]) const {
+        constexpr unsigned rows = Cut::rows;
+        const unsigned rank = s.rank();
+        const unsigned record = s.gaussian() * record_stride;
+        const column_view<W, Real> seen(s, p.x);
+        real v[rows], strength[rows];
+        mask_t<W> counts[rows];
+        const std::uint32_t reached = rows_with<Cut>(w, [&](unsigned k) {
+            v[k] = seen.v(p.y + Real(k * Patch::block));
+            strength[k] = seen.strength(v[k]);
+            return counts[k] = is_hit(strength[k]) && end[k] >= rank;
+        });
+        if constexpr (Cut::sparse) {
+            if (reached == 0) return;
+        } else if constexpr (AskFirst) {
+            if (warpagg::skip_if_warp_idle(w, any_of(counts))) return;
+        }
+
+        // red, green, blue, s, s v, s v^2
+        real part[6];
+        for (real& x : part) x = real(0);
+        for_each_row<Cut>(reached, [&](unsigned k) {
+            auto& [g, T, behind] = pixels[k];
+            const capped_alpha<W, Real> capped(strength[k]);
+            const real alpha = select(counts[k], capped.alpha, real(0));
+            T = warpagg::math::divide(T, Real(1) - alpha);
+            const real weight = alpha * T;
+            const real own = fma(g[0], real(s.red), fma(g[1], real(s.green), g[2] * s.blue));
+            const real ds = select(capped.free, weight * (own - behind), real(0));
+            behind = fma(alpha, own - behind, behind);
+            const real dsv = ds * v[k];
+            const real terms[] = {weight * g[0], weight * g[1], weight * g[2], ds, dsv, dsv * v[k]};
+            WARPAGG_UNROLL
+            for (unsigned i = 0; i < 6; ++i) part[i] = !Cut::sparse && k == 0 ? terms[i] : part[i] + terms[i];
+        });
+        real values[sum_count];
+        values[sum_red] = part[0];
+        values[sum_green] = part[1];
+        values[sum_blue] = part[2];
+        values[sum_s] = part[3];
+        values[sum_su] = seen.u * part[3];
+        values[sum_sv] = part[4];
+        values[sum_suu] = seen.u * values[sum_su];
+        values[sum_suv] = seen.u * part[4];
+        values[sum_svv] = part[5];
+        // Lanes that see nothing of it add zeros: several pixels a lane are masked already, by their alpha.
+        const mask_t<W> who = rows > 1 ? mask_t<W>(true) : counts[0];
+        const auto to = [this, record](unsigned i) { return sums + (record + i); };
+        warpagg::warp_reduce_atomic(w, to, values, who, how);
+    }
+};
+
+}  // namespace gs::raster

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "../../core/bits.hpp"
+#include "patch.hpp"
+
+namespace gs::raster {
+
+/// A splat as the pixels of one tile see it: with (x, y) the pixel's place in the tile, u = p x + u0 and
+/// v = q y + r x + v0 (see `whitened`).
+template <class Real>
+struct alignas(16) staged_splat {
+    Real p, u0, r, v0;
+    Real q, strength, red, green;
+    Real blue;
+    Real rank_bits, gaussian_bits;  ///< of whole numbers: all of it is stored as `Real`
+    Real unused;
+
+    /// In the tile's list, from one.
+    WARPAGG_HD unsigned rank() const { return static_cast<unsigned>(bits_of<bits_as<Real>>(rank_bits)); }
+    WARPAGG_HD unsigned gaussian() const {
+        return static_cast<unsigned>(bits_of<bits_as<Real>>(gaussian_bits));
+    }
+};
+
+/// What the pixels of a lane's column see of a splat.
+template <class W, class Real>
+struct column_view {
+    using real = value_t<W, Real>;
+    real u;
+
+    WARPAGG_HD column_view(const staged_splat<Real>& s, const real& x)
+        : u(fma(real(s.p), x, real(s.u0))),
+          left_(fma(-u, u, real(s.strength))),
+          shear_(fma(real(s.r), x, real(s.v0))),
+          q_(s.q) {}
+
+    WARPAGG_HD real v(const real& y) const { return fma(q_, y, shear_); }
+    /// log2 of alpha there, before it is capped. Forward and backward share it, and its rounding is pinned,
+    /// so that both see the same alpha to the bit.
+    WARPAGG_HD real strength(const real& v) const { return fma(-v, v, left_); }
+
+  private:
+    real left_, shear_, q_;
+};
+
+/// The splats that a warp walks next, where all its lanes see them: in shared memory on a GPU.
+template <class W, class Real>
+struct splat_stage {
+    staged_splat<Real> splats[W::size];
+};
+
+/// Reads a list W::size places at a time and puts on the stage what may reach a patch. The splats of the next
+/// places are on their way while those on the stage are walked.
+template <class W, class Real, class Patch>
+class list_reader {
+    using real = value_t<W, Real>;
+    using index = value_t<W, unsigned>;
+
+  public:
+    /// Of the places in [from, to) of a tile's list, which begins at `begin`: first of those from `base` on.
+    WARPAGG_HD list_reader(const W& w, const tile_lists<Real>& lists, const Patch& p, unsigned begin,
+                           unsigned from, unsigned to, splat_stage<W, Real>& stage, unsigned base,
+                           unsigned next)
+        : lists_(lists), patch_(p), begin_(begin), from_(from), to_(to), stage_(stage) {
+        waiting_ = load_gaussians(w, base);
+        fetch(w, base, next);
+    }
+
+    /// Stages the splats of the places from `base` on, those that were fetched last, and fetches those from
+    /// `next` on; `after` come after these. Returns how many are on the stage, in the order of the list.
+    WARPAGG_HD unsigned stage(const W& w, unsigned base, unsigned next, unsigned after) {
+        const real x0 = patch_.left - field_[0], y0 = patch_.top - field_[1];
+        const real least = least_exponent<real>(field_[2], field_[3], field_[4], field_[5], field_[6], x0,
+                                                x0 + Real(Patch::across - 1), y0, y0 + Real(Patch::down - 1));
+        // The pixels decide; rounding of the least exponent must not take one away from them.
+        constexpr Real slack = Real(1) / 256;
+        const mask_t<W> reaches = is_valid(w, base) && least <= field_[7] + slack;
+        const std::uint32_t hits = w.ballot(reaches);
+        if (hits != 0) {
+            const real dx = patch_.tile_left - field_[0], dy = patch_.tile_top - field_[1];
+            const auto &p = field_[2], &q = field_[3], &r = field_[4];
+            const auto bits = [](const index& i) {
+                return bits_of<real>(warpagg::math::convert<bits_as<Real>>(i));
+            };
+            const index rank = w.lane() + (base + 1 - begin_);
+            const real staged[12] = {
+                p,          p * dx,     r,          fma(q, dy, r * dx), q,      field_[8], field_[9],
+                field_[10], field_[11], bits(rank), bits(gaussian_),    real(0)};
+            const index slot = warpagg::math::popcount(lanes_below(w) & index(hits));
+            w.sync();  // the last ones have been read
+            w.store_packed(reinterpret_cast<Real*>(stage_.splats), slot * 12u, staged, reaches);
+            w.sync();
+        }
+        fetch(w, next, after);
+        return warpagg::math::popcount(hits);
+    }
+
+  private:
+    WARPAGG_HD mask_t<W> is_valid(const W& w, unsigned base) const {
+        const index place = w.lane() + base;
+        return place >= from_ && place < to_;
+    }
+    WARPAGG_HD index load_gaussians(const W& w, unsigned base) const {
+        return w.load(lists_.gaussian_of, w.lane() + base, is_valid(w, base));
+    }
+    WARPAGG_HD void fetch(const W& w, unsigned base, unsigned next) {
+        gaussian_ = waiting_;
+        w.load_packed(reinterpret_cast<const Real*>(lists_.splats), gaussian_ * splat_width, field_,
+                      is_valid(w, base));
+        waiting_ = load_gaussians(w, next);
+    }
+    static WARPAGG_HD index lanes_below(const W& w) { return (index(1u) << w.lane()) - 1u; }
+
+    const tile_lists<Real>& lists_;
+    const Patch& patch_;
+    unsigned begin_, from_, to_;
+    splat_stage<W, Real>& stage_;
+    real field_[splat_width];   // of the splats that were fetched
+    index gaussian_, waiting_;  // theirs, and those of the next places
+};
+
+}  // namespace gs::raster

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "../project/geometry.hpp"
+#include "../tiles/segments.hpp"
+#include "../tiles/tile_lists.hpp"
+
+namespace gs::raster {
+
+using warpagg::mask_t;
+using warpagg::value_t;
+using warpagg::math::fma;
+using warpagg::math::select;
+
+/// The pixels that a warp owns: blocks of one pixel a lane, one below the other, so that a lane's pixels lie
+/// in one column. A tile is cut into patches.
+template <class W, class Real, class Cut>
+struct patch {
+    static constexpr unsigned across = Cut::across, rows = Cut::rows, block = W::size / across,
+                              down = block * rows;
+    static_assert(W::size % across == 0 && tile_size % across == 0 && tile_size % down == 0);
+    static constexpr unsigned per_row = tile_size / across, per_tile = per_row * (tile_size / down);
+
+    Real tile_left, tile_top;    ///< centre of the tile's first pixel
+    Real left, top;              ///< centre of the patch's first pixel
+    value_t<W, Real> x, y;       ///< the lane's first pixel, from the tile's
+    value_t<W, unsigned> pixel;  ///< its place in a plane of the picture
+    unsigned step;               ///< from one pixel of the lane to its next
+    mask_t<W> inside[rows];      ///< they are in the picture
+
+    WARPAGG_HD patch(const W& w, unsigned tile, unsigned in_tile, unsigned tiles_across, int width,
+                     int height)
+        : step(block * static_cast<unsigned>(width)) {
+        const unsigned tile_x = tile % tiles_across * tile_size, tile_y = tile / tiles_across * tile_size;
+        const unsigned x0 = in_tile % per_row * across, y0 = in_tile / per_row * down;
+        const value_t<W, unsigned> in_x = w.lane() % across + x0, in_y = w.lane() / across + y0;
+        const value_t<W, unsigned> column = in_x + tile_x, row = in_y + tile_y;
+        tile_left = Real(tile_x) + Real(0.5);
+        tile_top = Real(tile_y) + Real(0.5);
+        left = tile_left + Real(x0);
+        top = tile_top + Real(y0);
+        x = warpagg::math::convert<Real>(in_x);
+        y = warpagg::math::convert<Real>(in_y);
+        pixel = row * static_cast<unsigned>(width) + column;
+        for (unsigned k = 0; k < rows; ++k)
+            inside[k] =
+                column < static_cast<unsigned>(width) && row + k * block < static_cast<unsigned>(height);
+    }
+};
+
+/// Alpha is at least `least_alpha`.
+template <class V>
+WARPAGG_HD auto is_hit(const V& strength) {
+    constexpr double log2_least_alpha = -7.994353436858858;
+    return strength >= V(typename warpagg::detail::scalar_of<V>::type(log2_least_alpha));
+}
+
+/// Some pixel of the lane.
+template <class Mask, unsigned Rows>
+WARPAGG_HD Mask any_of(const Mask (&masks)[Rows]) {
+    Mask any = masks[0];
+    for (unsigned k = 1; k < Rows; ++k) any = any || masks[k];
+    return any;
+}
+
+/// The rows of a patch of which some lane has `flag(k)`, as bits; all of them where `Cut` is not sparse.
+template <class Cut, class W, class F>
+WARPAGG_HD std::uint32_t rows_with(const W& w, const F& flag) {
+    std::uint32_t rows = 0;
+    WARPAGG_UNROLL
+    for (unsigned k = 0; k < Cut::rows; ++k) {
+        const mask_t<W> flags = flag(k);
+        rows |= (!Cut::sparse || w.any(flags) ? 1u : 0u) << k;
+    }
+    return rows;
+}
+/// Calls f(k) for each of these rows.
+template <class Cut, class F>
+WARPAGG_HD void for_each_row(std::uint32_t rows, const F& f) {
+    if constexpr (Cut::sparse) {
+        for (; rows != 0; rows &= rows - 1) f(warpagg::math::countr_zero(rows));
+    } else {
+        WARPAGG_UNROLL
+        for (unsigned k = 0; k < Cut::rows; ++k) f(k);
+    }
+}
+
+/// `free`: alpha is not capped, so that geometry and opacity move it.
+template <class W, class Real>
+struct capped_alpha {
+    value_t<W, Real> alpha;
+    mask_t<W> free;
+
+    WARPAGG_HD explicit capped_alpha(const value_t<W, Real>& strength) {
+        const value_t<W, Real> most{Real(most_alpha)}, full = warpagg::math::exp2(strength);
+        free = full < most;
+        alpha = warpagg::math::min(full, most);
+    }
+};
+
+}  // namespace gs::raster

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <string>
+
+#include "../../core/error.hpp"
+#include "../../core/lane_math.hpp"
+#include "../../scene/camera.hpp"
+
+namespace gs::raster {
+
+/// Gaussians nearer than this are not drawn.
+inline constexpr double near_plane = 0.15;
+
+/// A camera as the kernels read it.
+template <class Real>
+struct device_camera {
+    int width, height;
+    Real fx, fy, cx, cy;
+    glm::mat<3, 3, Real> rotation;
+    glm::vec<3, Real> translation;
+    glm::vec<3, Real> centre;
+    /// Bounds of x/z and y/z in the Jacobian of the projection: the picture and 15 % of its width (height) on
+    /// every side, so that the affine approximation of far-off Gaussians stays bounded (Zwicker et al. 2001).
+    Real least_x, most_x, least_y, most_y;
+    /// A fisheye's.
+    glm::vec<4, Real> bends;  ///< see `fisheye::k`
+    Real least_cosine;        ///< of angles from its axis, to the corners of the picture and the same margin
+    Real end;                 ///< see `fisheye::end`
+
+    /// A row of the rotation: an axis of camera space, in the world.
+    WARPAGG_HD glm::vec<3, Real> axis(int r) const {
+        return {rotation[0][r], rotation[1][r], rotation[2][r]};
+    }
+};
+
+/// Throws `error` where a picture is too large: places in its three planes are numbers of 31 bits.
+inline void require_drawable(const camera& view) {
+    if (std::int64_t{view.width} * view.height > std::int64_t{1} << 29)
+        throw error("a picture of " + std::to_string(view.width) + "x" + std::to_string(view.height) +
+                    " has more than 2^29 pixels: lower --resolution");
+}
+
+template <class Real>
+device_camera<Real> for_device(const camera& c) {
+    const double margin_x = 0.15 * c.width, margin_y = 0.15 * c.height;
+    device_camera<Real> d{};
+    d.width = c.width;
+    d.height = c.height;
+    d.fx = constant<Real>(c.fx);
+    d.fy = constant<Real>(c.fy);
+    d.cx = constant<Real>(c.cx);
+    d.cy = constant<Real>(c.cy);
+    d.rotation = glm::mat<3, 3, Real>(c.rotation);
+    d.translation = glm::vec<3, Real>(c.translation);
+    d.centre = glm::vec<3, Real>(c.centre());
+    d.least_x = constant<Real>((-margin_x - c.cx) / c.fx);
+    d.most_x = constant<Real>((c.width + margin_x - c.cx) / c.fx);
+    d.least_y = constant<Real>((-margin_y - c.cy) / c.fy);
+    d.most_y = constant<Real>((c.height + margin_y - c.cy) / c.fy);
+    if (c.fisheye) {
+        const auto& k = c.fisheye->k();
+        d.bends = {constant<Real>(k[0]), constant<Real>(k[1]), constant<Real>(k[2]), constant<Real>(k[3])};
+        d.end = constant<Real>(c.fisheye->end());
+        const double across = std::max(margin_x + c.cx, c.width + margin_x - c.cx) / c.fx;
+        const double down = std::max(margin_y + c.cy, c.height + margin_y - c.cy) / c.fy;
+        d.least_cosine = constant<Real>(std::cos(c.fisheye->angle(std::hypot(across, down))));
+    }
+    return d;
+}
+
+}  // namespace gs::raster

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <warpagg/math.hpp>
+
+#include "../../model/aosoa.hpp"
+#include "../../core/lane_math.hpp"
+
+namespace gs::raster {
+
+template <class Real>
+using vec2 = glm::vec<2, Real>;
+template <class Real>
+using vec3 = glm::vec<3, Real>;
+template <class Real>
+using vec4 = glm::vec<4, Real>;
+template <class Real>
+using mat3 = glm::mat<3, 3, Real>;
+
+template <class Real>
+WARPAGG_HD flag_of<Real> is_finite(const Real& x) {
+    return x - x == Real(0);
+}
+template <class Real>
+WARPAGG_HD flag_of<Real> is_finite(const vec3<Real>& v) {
+    return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
+}
+
+/// The component of largest size.
+template <int N, class Real>
+WARPAGG_HD Real largest(const glm::vec<N, Real>& v) {
+    Real most(0);
+    for (int k = 0; k < N; ++k) most = warpagg::math::max(most, magnitude(v[k]));
+    return most;
+}
+
+/// Which way a vector points. Its largest component is divided out first, so that no square over- or
+/// underflows: only zero and what is not finite have no direction, and get NaN.
+template <int N, class Real>
+struct unit {
+    glm::vec<N, Real> direction;
+    Real inverse_length;
+
+    WARPAGG_HD explicit unit(const glm::vec<N, Real>& v) {
+        const Real most = largest(v);
+        const glm::vec<N, Real> scaled = v / most;
+        const Real inverse = 1 / warpagg::math::sqrt(glm::dot(scaled, scaled));
+        direction = scaled * inverse;
+        inverse_length = inverse / most;
+    }
+};
+
+/// The components of Gaussian i in an array of three: see `place`.
+template <class Real>
+WARPAGG_HD vec3<Real> load3(const Real* p, unsigned i) {
+    return {p[place(i, 0, 3)], p[place(i, 1, 3)], p[place(i, 2, 3)]};
+}
+template <class Real>
+WARPAGG_HD void store3(Real* p, unsigned i, const vec3<Real>& v) {
+    for (int k = 0; k < 3; ++k) p[place(i, static_cast<unsigned>(k), 3)] = v[k];
+}
+
+template <class Real>
+WARPAGG_HD vec4<Real> load4(const Real* p, unsigned i) {
+    return {p[place(i, 0, 4)], p[place(i, 1, 4)], p[place(i, 2, 4)], p[place(i, 3, 4)]};
+}
+
+}  // namespace gs::raster

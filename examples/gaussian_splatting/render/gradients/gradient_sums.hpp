@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <type_traits>
+
+#include "../../core/error.hpp"
+#include "../../features/depth/depth_splats.hpp"
+#include "with_policy.hpp"
+
+namespace gs::raster {
+
+/// Rounds sums that were kept in cells: one index a sum.
+template <class Accumulate>
+struct round_sums {
+    const warpagg::cell<Accumulate>* cells;
+    float unit;  ///< what a cell's one is worth
+    float* sums;
+
+    WARPAGG_HD void operator()(std::size_t i) const { sums[i] = cells[i].value() * unit; }
+};
+
+/// The sums of a backward blending on a device, and the memory in which it keeps them.
+template <class Device, class Real>
+class gradient_sums {
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+
+  public:
+    /// A warp's sum in fixed point may be up to this many times the largest gradient of a pixel. It has 64
+    /// pixels, moments of up to 8 and differences of colours, most of them below 1.
+    static constexpr float headroom = 4096;
+
+    explicit gradient_sums(Device& device) : device_(device) {
+        fault_.resize(1);
+        device_.zero(fault_.data(), 1);
+    }
+
+    /// Makes sums of zero for so many Gaussians and gives them to the kernel, a `blend_backward`. Where it
+    /// `goes_on` they are what the kernel before made them, which `set_depths_aside` has seen.
+    /// `largest`: the magnitude of a pixel's gradient, about; for fixed point, which leaves out what is more
+    /// than `headroom` times that. `warps`: how many may add to a sum. Throws `error` if those are too many
+    /// for fixed point.
+    template <class Kernel>
+    void begin(Kernel& kernel, std::size_t gaussians, float largest, std::size_t warps,
+               bool goes_on = false) {
+        using in_memory = std::remove_pointer_t<decltype(kernel.sums)>;
+        const std::size_t n = gaussians * record_stride;
+        sums_.resize(n);
+        if constexpr (std::is_same_v<in_memory, Real>) {
+            kernel.sums = sums_.data();
+            if (!goes_on) device_.zero(sums_.data(), n);
+        } else {
+            static_assert(sizeof(in_memory) % sizeof(std::uint64_t) == 0);
+            const std::size_t words = n * (sizeof(in_memory) / sizeof(std::uint64_t));
+            cells_.resize(words);
+            if (!goes_on) device_.zero(cells_.data(), words);
+            kernel.sums = reinterpret_cast<in_memory*>(cells_.data());
+        }
+        if constexpr (requires { kernel.how.accumulating().fault; }) {
+            if (warps > std::size_t{1} << fixed_log_warps)
+                throw error("sums in fixed point are of up to 2^" + std::to_string(fixed_log_warps) +
+                            " patches, and a picture has " + std::to_string(warps) +
+                            ": lower --resolution or take --accumulate exact");
+            kernel.how = typename Kernel::policy(
+                {}, {}, {fixed_sums{fault_.data(), fixed_sums::scale_to_fit(headroom * largest)}});
+        }
+    }
+    /// After a kernel that blended `depth_splats`, in place of `end`: another one goes on from there.
+    template <class Kernel>
+    void set_depths_aside(const Kernel& kernel) {
+        using in_memory = std::remove_pointer_t<decltype(kernel.sums)>;
+        device_.for_each_index(sums_.size() / record_stride, set_red_aside<in_memory>{kernel.sums});
+    }
+    /// After the kernel: what the sums are as `Real`.
+    template <class Kernel>
+    const buffer<Real>& end(const Kernel& kernel) {
+        if constexpr (!std::is_same_v<std::remove_pointer_t<decltype(kernel.sums)>, Real>) {
+            float unit = 1;
+            if constexpr (requires { kernel.how.accumulating().scale; })
+                unit = 1 / kernel.how.accumulating().scale;
+            device_.for_each_index(sums_.size(),
+                                   round_sums<kept_by<Kernel>>{kernel.sums, unit, sums_.data()});
+        }
+        return sums_;
+    }
+
+    /// On the device: not zero once something did not fit in fixed point, and was left out.
+    std::uint32_t* fault() const { return fault_.data(); }
+
+  private:
+    template <class Kernel>
+    using kept_by = typename Kernel::policy::accumulate::kept;
+
+    Device& device_;
+    buffer<Real> sums_;
+    buffer<std::uint64_t> cells_;
+    buffer<std::uint32_t> fault_;
+};
+
+}  // namespace gs::raster

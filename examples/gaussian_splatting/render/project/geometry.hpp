@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "../../model/opacity.hpp"
+#include "../../model/parameters.hpp"
+#include "../geometry/device_camera.hpp"
+#include "../geometry/ellipse.hpp"
+#include "projection.hpp"
+
+namespace gs::raster {
+
+/// Colours are held between 0 and this, so that their squares stay finite; photos end at 1.
+inline constexpr double most_colour = 32768;
+
+/// The rotation of a unit quaternion w x y z; columns are the principal axes.
+template <class Real>
+WARPAGG_HD mat3<Real> rotation_of(const vec4<Real>& q) {
+    const Real w = q.x, x = q.y, y = q.z, z = q.w;
+    return {1 - 2 * (y * y + z * z), 2 * (x * y + w * z),     2 * (x * z - w * y),
+            2 * (x * y - w * z),     1 - 2 * (x * x + z * z), 2 * (y * z + w * x),
+            2 * (x * z + w * y),     2 * (y * z - w * x),     1 - 2 * (x * x + y * y)};
+}
+
+/// The gradient by the quaternion's components of sum(g * rotation_of(q)), element by element.
+template <class Real>
+WARPAGG_HD vec4<Real> rotation_gradient(const vec4<Real>& q, const mat3<Real>& g) {
+    const Real w = q.x, x = q.y, y = q.z, z = q.w;
+    // g[c][r] belongs to column c, row r.
+    return Real(2) * vec4<Real>(z * (g[0][1] - g[1][0]) + y * (g[2][0] - g[0][2]) + x * (g[1][2] - g[2][1]),
+                                y * (g[0][1] + g[1][0]) + z * (g[0][2] + g[2][0]) + w * (g[1][2] - g[2][1]) -
+                                    2 * x * (g[1][1] + g[2][2]),
+                                x * (g[0][1] + g[1][0]) + z * (g[1][2] + g[2][1]) + w * (g[2][0] - g[0][2]) -
+                                    2 * y * (g[0][0] + g[2][2]),
+                                x * (g[0][2] + g[2][0]) + y * (g[1][2] + g[2][1]) + w * (g[0][1] - g[1][0]) -
+                                    2 * z * (g[0][0] + g[1][1]));
+}
+
+/// How a camera sees a Gaussian: all that both directions of the chain rule need.
+template <class Real, effect_set Effects>
+struct footprint {
+    projection_of<Real, Effects> seen;
+    vec4<Real> turn;      ///< quaternion of length one
+    Real inverse_length;  ///< of the quaternion
+    vec3<Real> scale;
+    mat3<Real> rotation;  ///< of the Gaussian
+    /// The Jacobian's rows times rotation times scale: the covariance is their Gram matrix.
+    vec3<Real> ax, ay;
+    ellipse<Real> shape;
+    flag_of<Real> drawable;  ///< finite
+
+    /// `at`: the mean in camera space, and drawable (see `projection_of`).
+    WARPAGG_HD footprint(const vec3<Real>& at, const vec3<Real>& log_scale, const vec4<Real>& quaternion,
+                         const device_camera<Real>& camera)
+        : seen(at, camera) {
+        const unit<4, Real> unit_turn(quaternion);
+        turn = unit_turn.direction;
+        inverse_length = unit_turn.inverse_length;
+        for (int k = 0; k < 3; ++k) scale[k] = exponential(log_scale[k]);
+        rotation = rotation_of(turn);
+        // v * M is the row vector times the matrix.
+        ax = (seen.px * rotation) * scale;
+        ay = (seen.py * rotation) * scale;
+        shape = ellipse<Real>(ax, ay);
+        drawable = is_finite(at) && is_finite(seen.x) && is_finite(seen.y) && is_finite(log_scale) &&
+                   shape.is_sound();
+    }
+};
+
+/// Where a mean is in camera space.
+template <class Real>
+WARPAGG_HD vec3<Real> in_camera(const vec3<Real>& mean, const device_camera<Real>& camera) {
+    return camera.rotation * mean + camera.translation;
+}
+
+}  // namespace gs::raster

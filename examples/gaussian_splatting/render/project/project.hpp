@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "../../model/spherical_harmonics.hpp"
+#include "../../features/antialiasing/antialiasing.hpp"
+#include "../../core/bits.hpp"
+#include "../geometry/effect_set.hpp"
+#include "gaussian_row.hpp"
+#include "geometry.hpp"
+#include "splat.hpp"
+#include "../tiles/tile_reach.hpp"
+
+namespace gs::raster {
+
+/// Gaussians to splats, a Gaussian a lane.
+template <class W, class Real, effect_set Effects>
+struct project {
+    using real = value_t<W, Real>;
+    using number = value_t<W, std::uint32_t>;
+
+    parameter_arrays<const Real> gaussians;
+    std::size_t count;
+    device_camera<real> camera;
+    int sh_degree;
+    unsigned tiles_across, tiles_down;
+
+    splat<Real>* splats;
+    tile_box* boxes;
+    std::uint32_t* depths;      ///< the depth as a sort key: a positive float's bits are in its order
+    std::uint32_t* identities;  ///< i: the value that is sorted along
+    std::uint32_t* tiles;       ///< how many tiles the splat's box has; zero if it is not drawn
+
+    static std::size_t warps(std::size_t count) { return (count + W::size - 1) / W::size; }
+
+    WARPAGG_HD void operator()(const W& w, unsigned warp_index) const {
+        const number i = w.lane() + warp_index * W::size;
+        const mask_t<W> inside = i < number(static_cast<std::uint32_t>(count));
+        gaussian_row<W> row{std::size_t{warp_index} * W::size, inside, inside};
+        const vec3<real> mean = row.template load<3>(w, gaussians.mean, 0, 3);
+        const vec3<real> at = in_camera(mean, camera);
+        row.active = inside && projection_of<real, Effects>::is_drawn(at, camera);
+        drawing d{};
+        if (w.any(row.active)) draw(w, row, mean, at, d);
+
+        const auto first = static_cast<std::ptrdiff_t>(row.first);
+        const auto drawn = [&]<class V>(const V& value) { return select(row.active, value, V(0)); };
+        const auto depth = warpagg::math::convert<float>(projection_of<real, Effects>::depth(at));
+        w.store_row(identities, first, i, inside);
+        w.store_row(depths, first, select(row.active, bits_of<number>(depth), number(0xffffffffu)), inside);
+        w.store_row(tiles, first, drawn((d.x1 - d.x0) * (d.y1 - d.y0)), inside);
+        // As they lie in memory.
+        auto* corners = reinterpret_cast<std::uint32_t*>(boxes);
+        w.store(corners, 2 * i, drawn(d.x0 | d.y0 << number(16u)), inside);
+        w.store(corners, 2 * i + 1, drawn(d.x1 | d.y1 << number(16u)), inside);
+        const splat<real>& s = d.shape;
+        const real values[splat_width] = {drawn(s.x),       drawn(s.y),     drawn(s.p),
+                                          drawn(s.q),       drawn(s.r),     drawn(s.slope_x),
+                                          drawn(s.slope_y), drawn(s.reach), drawn(s.strength),
+                                          drawn(s.red),     drawn(s.green), drawn(s.blue)};
+        w.store_packed(reinterpret_cast<Real*>(splats), i * splat_width, values, inside);
+    }
+
+  private:
+    struct drawing {
+        splat<real> shape;
+        number x0, y0, x1, y1;  ///< its `tile_box`
+    };
+
+    /// Of the row's active Gaussians; those that are not to be drawn are not active afterwards.
+    WARPAGG_HD void draw(const W& w, gaussian_row<W>& row, const vec3<real>& mean, const vec3<real>& at,
+                         drawing& d) const {
+        const auto log_scale = row.template load<3>(w, gaussians.log_scale, 0, 3);
+        const auto quaternion = row.template load<4>(w, gaussians.quaternion, 0, 4);
+        const real logit = row.template load<1>(w, gaussians.opacity, 0, 1).x;
+        const footprint<real, Effects> f(at, log_scale, quaternion, camera);
+        real opacity = sigmoid(logit);
+        if constexpr (Effects.antialiasing) opacity *= opacity_left(whitened_axes<real>(f.shape, f.ax, f.ay));
+        splat<real>& s = d.shape;
+        s.strength = warpagg::math::log2(opacity);
+        s.reach = warpagg::math::log2(opacity * constant<real>(1 / least_alpha));
+        row.active = row.active && f.drawable && is_finite(logit) && s.reach > real(0);
+        if (!w.any(row.active)) return;
+        s.x = f.seen.x;
+        s.y = f.seen.y;
+        s.p = f.shape.p;
+        s.q = f.shape.q;
+        s.r = f.shape.r;
+        s.slope_x = f.shape.slope_x;
+        s.slope_y = f.shape.slope_y;
+        const real far = warpagg::math::sqrt(s.reach);
+        bound(far * f.shape.width, far * f.shape.height, d);
+        row.active = reaches_any_tile(w, s, d.x0, d.x1, d.y0, d.y1, row.active);
+        if (!w.any(row.active)) return;
+
+        const vec3<real> rgb = colour(w, row, mean);
+        row.active = row.active && is_finite(rgb);
+        s.red = held(rgb.x);
+        s.green = held(rgb.y);
+        s.blue = held(rgb.z);
+    }
+
+    /// The tiles that hold a pixel centre within these half extents.
+    WARPAGG_HD void bound(const real& half_x, const real& half_y, drawing& d) const {
+        using namespace warpagg::math;
+        const auto tile = [](const real& pixel, unsigned end) {
+            const real t = pixel * constant<real>(1.0 / tile_size);
+            return convert<std::uint32_t>(convert<int>(min(max(real(0), t), real(Real(end)))));
+        };
+        const real half = constant<real>(0.5), side = constant<real>(tile_size);
+        const real x = d.shape.x - half, y = d.shape.y - half;
+        d.x0 = tile(x - half_x, tiles_across);
+        d.y0 = tile(y - half_y, tiles_down);
+        d.x1 = tile(x + half_x + side, tiles_across);
+        d.y1 = tile(y + half_y + side, tiles_down);
+    }
+
+    static WARPAGG_HD real held(const real& channel) {
+        return warpagg::math::min(warpagg::math::max(channel, real(0)), constant<real>(most_colour));
+    }
+
+    WARPAGG_HD vec3<real> colour(const W& w, const gaussian_row<W>& row, const vec3<real>& mean) const {
+        const int degree = row.degree_of(gaussians, sh_degree);
+        const vec3<real> direction = unit(mean - camera.centre).direction;
+        real basis[16]{};
+        sh_basis(degree, direction, basis);
+        vec3<real> sum(constant<real>(0.5));
+        WARPAGG_UNROLL
+        for (unsigned band = 0; band < 4; ++band) {
+            if (static_cast<int>(band) > degree) break;
+            const unsigned size = 2 * band + 1;
+            WARPAGG_UNROLL
+            for (unsigned m = 0; m < size; ++m)
+                sum += basis[band * band + m] * row.template load<3>(w, gaussians.sh[band], 3 * m, 3 * size);
+        }
+        return sum;
+    }
+};
+
+}  // namespace gs::raster

@@ -1,0 +1,306 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <type_traits>
+
+#include "../device/stages.hpp"
+#include "../core/error.hpp"
+#include "tiles/bin.hpp"
+#include "blend/blend_backward.hpp"
+#include "blend/blend_forward.hpp"
+#include "../features/depth/depth_splats.hpp"
+#include "gradients/gradient_sums.hpp"
+#include "project/project.hpp"
+#include "project/project_backward.hpp"
+
+namespace gs::raster {
+
+/// Gaussians to a picture and, from dL/dpicture, to the gradients of their parameters. Holds what lies in
+/// between.
+template <class Device, class Real, class Cut = cut_for<typename Device::warp>>
+class renderer {
+  public:
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+    using warp = typename Device::warp;
+    using model = parameter_arrays<const Real>;
+
+    explicit renderer(Device& device) : device_(device), sums_(device) {
+        device_.zero(reserve(pairs_, 2).data(), 2);
+        device_.zero(reserve(needed_, 1).data(), 1);
+    }
+
+    /// Of what is drawn from now on, beside what views' lenses call for: none at first.
+    void set_effects(const effect_set& effects) { effects_ = effects; }
+
+    /// Finds how many instances (Gaussian, tile) a view has: see `instances`.
+    void measure(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
+        project_all(gaussians, count, view, sh_degree);
+        list_by_tile(count, 0);
+    }
+    /// How many instances the last view has, whether drawn or measured. Waits for the device.
+    std::uint64_t instances() {
+        std::uint64_t n = 0;
+        device_.download(&n, needed_.data(), 1);
+        return n;
+    }
+
+    /// Makes room for that many instances a view, and for `spare` more as far as 31 bits go. `forward` cuts
+    /// what does not fit: see `room`.
+    void reserve_instances(std::uint64_t most, std::uint64_t spare = 0) {
+        constexpr std::uint64_t limit = std::uint64_t{1} << 31;
+        if (most >= limit)
+            throw error("a view has " + std::to_string(most) +
+                        " pairs of Gaussian and tile, more than 2^31: lower --max-cap or --resolution");
+        capacity_ = std::min(most + spare, limit - 1);
+        gaussian_of_.resize(capacity_);
+    }
+    std::uint64_t reserved_instances() const { return capacity_; }
+
+    /// Draws the view: `picture()`, three planes, is valid afterwards. `backdrop`: three planes that lie
+    /// behind all, in place of the background; until `backward`.
+    void forward(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
+                 const std::array<float, 3>& background, const Real* backdrop = nullptr) {
+        list(gaussians, count, view, sh_degree);
+        blend(background, backdrop);
+    }
+
+    /// The first part of `forward`: who is in the picture, and where.
+    void list(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
+        using device::stage;
+        device_.begin(stage::project);
+        project_all(gaussians, count, view, sh_degree);
+        device_.begin(stage::bin);
+        bin(count);
+        device_.begin(stage::blend_forward);
+        const std::size_t pixels =
+            static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+        picture_.resize(3 * pixels);
+        transmittance_.resize(pixels);
+        last_.resize(pixels);
+        checkpoints_.resize(segments() * checkpoint_values);
+        camera_ = view;
+        count_ = count;
+        gaussians_ = gaussians;
+        sh_degree_ = sh_degree;
+        effects_.depth = false;
+    }
+    /// The rest of it.
+    void blend(const std::array<float, 3>& background, const Real* backdrop = nullptr) {
+        background_ = {colour(background)};
+        backdrop_ = {backdrop};
+        backdrop == nullptr ? blend_forward_by<Cut>(background_, lists(), pairs_.data())
+                            : blend_forward_by<Cut>(backdrop_, lists(), pairs_.data());
+    }
+
+    /// Between both: draws the inverse depths, sum w_i / z_i with the weights that colours have, and zero
+    /// behind. They are the first plane of `picture()` until `blend`. What this and the next function take
+    /// counts as blending forward.
+    void blend_depths() {
+        with_flag(camera_.fisheye.has_value(), [&]<bool Fisheye> {
+            device_.for_each_index(count_, depth_splats<Real, effect_set{.fisheye = Fisheye}>{
+                                               gaussians_.mean, for_device<Real>(camera_), splats_.data(),
+                                               reserve(near_, count_).data()});
+        });
+        background_ = {};
+        blend_forward_by<Cut>(background_, depth_lists(), pairs_.data() + 1);
+    }
+    /// From the gradient by these, three planes of which the last two are zero, for `backward` to go on from
+    /// with the same `largest` and `policy`.
+    void backward_depths(const Real* gradient, float largest, gradient_policy policy) {
+        with_policy<Real, Cut>(policy, [&](auto kernel) {
+            sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()));
+            launch_backward(kernel, depth_lists(), gradient);
+            sums_.set_depths_aside(kernel);
+        });
+        effects_.depth = true;
+    }
+
+    /// From the gradient of the last `forward`'s picture to those of its parameters, colours up to a degree,
+    /// which `sink` is given: see `project_backward`. `largest` is the magnitude of a pixel's gradient,
+    /// about: see `gradient_sums`. `seen` may be null.
+    template <class Sink>
+    void backward(const Real* picture_gradient, float largest, gradient_policy policy, int learned_sh_degree,
+                  const Sink& sink, visibility* seen) {
+        const Real* sums = pixel_sums(picture_gradient, largest, policy);
+        device_.begin(device::stage::project_backward);
+        using narrow = typename Device::narrow_warp;
+        with_effects(effects_of(camera_), [&]<effect_set Effects> {
+            device_.template for_each_warp<narrow>(
+                (count_ + narrow::size - 1) / narrow::size,
+                project_backward<narrow, Real, Sink, Effects>{
+                    gaussians_, count_, for_device<value_t<narrow, Real>>(camera_), sh_degree_,
+                    learned_sh_degree, splats_.data(), tiles_.data(), sums, sink, seen, room()});
+        });
+    }
+
+    /// The first half of `backward`: by Gaussian that was drawn, what `project_backward` begins from.
+    const Real* pixel_sums(const Real* picture_gradient, float largest, gradient_policy policy) {
+        const Real* sums = nullptr;
+        with_policy<Real, Cut>(policy, [&]<class Kernel>(const Kernel& kernel) {
+            if (backdrop_.planes == nullptr) {
+                sums = blend_backward_by(kernel, picture_gradient, largest).data();
+            } else if constexpr (before_colours<Kernel>::is_there) {
+                using same = typename before_colours<Kernel>::type;
+                sums = blend_backward_by(same{}, picture_gradient, largest).data();
+            } else {
+                throw error("a picture before a sky has no gradient by this way of adding up");
+            }
+        });
+        return sums;
+    }
+
+    /// The blending's part of `backward` by this kernel, which is filled in. Returns its sums: see
+    /// `project_backward`.
+    template <class Kernel>
+    const buffer<Real>& blend_backward_by(Kernel kernel, const Real* picture_gradient, float largest) {
+        sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()), effects_.depth);
+        device_.begin(device::stage::blend_backward);
+        launch_backward(kernel, lists(), picture_gradient);
+        return sums_.end(kernel);
+    }
+    /// See `gradient_sums`.
+    std::uint32_t* fault() const { return sums_.fault(); }
+
+    /// Of the last view, by Gaussian.
+    const splat<Real>* splats() const { return splats_.data(); }
+    /// In how many tiles it may be; zero if it is not drawn.
+    const std::uint32_t* tiles_of() const { return tiles_.data(); }
+    const Real* picture() const { return picture_.data(); }
+    /// What is left of light from behind all splats, by pixel of the last `forward`.
+    const Real* transmittance() const { return transmittance_.data(); }
+    /// Whether the last view's instances fit.
+    list_room room() const { return {needed_.data(), capacity_}; }
+    /// On the device: pixel-Gaussian pairs evaluated by all `forward`s so far.
+    const unsigned long long* pairs() const { return pairs_.data(); }
+
+  private:
+    template <class T>
+    static buffer<T>& reserve(buffer<T>& b, std::size_t n) {
+        b.resize(n);
+        return b;
+    }
+
+    effect_set effects_of(const camera& view) const {
+        effect_set effects = effects_;
+        effects.fisheye = view.fisheye.has_value();
+        return effects;
+    }
+
+    std::size_t tiles() const { return std::size_t{tiles_across_} * tiles_down_; }
+    template <class Kernel>
+    void launch_backward(Kernel& kernel, const tile_lists<Real>& lists, const Real* picture_gradient) {
+        kernel.lists = lists;
+        const auto view = [&](const auto& background) {
+            return blended{background,   picture_.data(),     transmittance_.data(),
+                           last_.data(), checkpoints_.data(), picture_gradient};
+        };
+        if constexpr (std::is_same_v<decltype(kernel.view.background), colour_a_pixel<Real>>)
+            kernel.view = view(backdrop_);
+        else
+            kernel.view = view(background_);
+        kernel.tile_of_segment = tile_of_segment_.data();
+        device_.for_each_warp(kernel.template warps<warp>(tiles(), segments()), kernel);
+    }
+    /// Lower patches are shorter work: they are taken where higher ones would leave the device idle.
+    template <class Shape, class Backdrop>
+    void blend_forward_by(const Backdrop& background, const tile_lists<Real>& lists,
+                          unsigned long long* pairs) {
+        using shorter = lower<Shape>;
+        const blend_forward<Real, Shape, Backdrop> blend{lists,
+                                                         order(),
+                                                         background,
+                                                         picture_.data(),
+                                                         transmittance_.data(),
+                                                         last_.data(),
+                                                         checkpoints_.data(),
+                                                         pairs};
+        const std::size_t n = blend.template warps<warp>(tiles());
+        if constexpr (!std::is_same_v<Shape, shorter>) {
+            if (n < device_.resident_warps()) return blend_forward_by<shorter>(background, lists, pairs);
+        }
+        device_.for_each_warp(n, blend);
+    }
+
+    std::size_t segments() const { return most_segments<Cut>(tiles(), capacity_); }
+    tile_lists<Real> lists() const {
+        return {splats_.data(), gaussian_of_.data(), ranges_.data(),
+                tiles_across_,  camera_.width,       camera_.height};
+    }
+    tile_lists<Real> depth_lists() const {
+        tile_lists<Real> all = lists();
+        all.splats = near_.data();
+        return all;
+    }
+
+    void project_all(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
+        require_drawable(view);
+        tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
+        tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
+        using narrow = typename Device::narrow_warp;
+        with_effects(effects_of(view), [&]<effect_set Effects> {
+            constexpr effect_set seen{Effects.antialiasing, Effects.fisheye};
+            using projection = project<narrow, Real, seen>;
+            device_.template for_each_warp<narrow>(
+                projection::warps(count),
+                projection{gaussians, count, for_device<value_t<narrow, Real>>(view), sh_degree,
+                           tiles_across_, tiles_down_, reserve(splats_, count).data(),
+                           reserve(boxes_, count).data(), reserve(depths_, count).data(),
+                           reserve(order_, count).data(), reserve(tiles_, count).data()});
+        });
+    }
+
+    /// Lists of Gaussians per tile, front to back: equal depths keep the order of the Gaussians.
+    void bin(std::size_t count) {
+        device_.sort_pairs(depths_, order_, count);
+        list_by_tile(count, capacity_);
+        device_.for_each_index(segments(),
+                               number_segments<Cut>{ranges_.data(), static_cast<std::uint32_t>(tiles()),
+                                                    reserve(tile_of_segment_, segments()).data()});
+        class_counts_.resize(tile_order::classes);
+        ordered_tiles_.resize(tile_order::classes * tiles());
+        device_.zero(class_counts_.data(), class_counts_.size());
+        device_.for_each_index(tiles(), order_tiles{ranges_.data(), order()});
+    }
+    void list_by_tile(std::size_t count, std::uint64_t room) {
+        device_.distribute(
+            count, splats_by_depth<Real>{order_.data(), splats_.data(), boxes_.data(), tiles_across_},
+            tiles(), room, gaussian_of_.data(), reserve(ranges_, tiles()).data(), needed_.data());
+    }
+
+    tile_order order() const {
+        return {class_counts_.data(), ordered_tiles_.data(), static_cast<std::uint32_t>(tiles())};
+    }
+
+    static vec3<Real> colour(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
+
+    Device& device_;
+    buffer<splat<Real>> splats_, near_;  ///< the second as `depth_splats` has them
+    buffer<tile_box> boxes_;
+    buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_;
+    buffer<std::uint64_t> needed_;
+    buffer<tile_range> ranges_;
+    buffer<Real> picture_, transmittance_, checkpoints_;
+    gradient_sums<Device, Real> sums_;
+    buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
+    buffer<unsigned long long> pairs_;  ///< of colours, and of depths, which nobody asks for
+    std::uint64_t capacity_ = 0;
+
+    unsigned tiles_across_ = 0, tiles_down_ = 0;
+
+    effect_set effects_;
+
+    // What `backward` belongs to.
+    model gaussians_;
+    std::size_t count_ = 0;
+    camera camera_{};
+    int sh_degree_ = 0;
+    one_colour<Real> background_{};
+    colour_a_pixel<Real> backdrop_{};
+};
+
+}  // namespace gs::raster

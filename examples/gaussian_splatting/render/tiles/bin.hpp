@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "../../device/distribute.hpp"
+#include "tile_lists.hpp"
+#include "tile_reach.hpp"
+
+namespace gs::raster {
+
+/// The splats in the order of their depth, as items that go to the tiles that they reach: see
+/// `device::items`. Candidates are the tiles of the box, row by row.
+template <class Real>
+struct splats_by_depth {
+    const std::uint32_t* order;
+    const splat<Real>* splats;
+    const tile_box* boxes;
+    unsigned tiles_across;
+
+    struct item {
+        std::uint32_t value;  ///< the Gaussian
+        tile_box box;
+        float rows_a_tile;  ///< 1 / the tiles in a row of the box
+        unsigned tiles_across;
+        splat<Real> shape;
+
+        WARPAGG_HD std::uint32_t size() const { return box.size(); }
+        WARPAGG_HD std::uint32_t bucket(std::uint32_t k) const {
+            // k / across, exact as long as k is below 2^21: a picture has no more tiles.
+            const auto down = static_cast<unsigned>((static_cast<float>(k) + 0.5f) * rows_a_tile);
+            const unsigned column = box.x0 + (k - down * (box.x1 - box.x0)), row = box.y0 + down;
+            return reaches_tile(shape, column, row) ? row * tiles_across + column : device::no_bucket;
+        }
+    };
+
+    WARPAGG_HD item operator()(std::size_t rank) const {
+        const std::uint32_t gaussian = order[rank];
+        const tile_box& box = boxes[gaussian];
+        return {gaussian, box, 1.0f / static_cast<float>(box.x1 - box.x0), tiles_across, splats[gaussian]};
+    }
+};
+
+}  // namespace gs::raster

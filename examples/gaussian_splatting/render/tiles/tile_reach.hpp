@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "../../core/lane_math.hpp"
+#include "../project/splat.hpp"
+
+namespace gs::raster {
+
+using warpagg::mask_t;
+using warpagg::value_t;
+using warpagg::math::select;
+
+/// The tiles that a splat's bounding box meets: [x0, x1) × [y0, y1).
+struct alignas(4) tile_box {
+    std::uint16_t x0, y0, x1, y1;
+
+    WARPAGG_HD std::uint32_t size() const { return std::uint32_t(x1 - x0) * std::uint32_t(y1 - y0); }
+};
+
+/// Whether the splat's ellipse reaches the rectangle of pixel centres from the first to the last tile's.
+template <class Real, class Index>
+WARPAGG_HD flag_of<Real> reaches_tiles(const splat<Real>& s, const Index& first_column,
+                                       const Index& last_column, const Index& first_row,
+                                       const Index& last_row) {
+    using scalar = typename warpagg::detail::scalar_of<Real>::type;
+    const auto centre = [](const Index& tile) {  // of its first pixel
+        return warpagg::math::convert<scalar>(tile * Index(tile_size)) + constant<Real>(0.5);
+    };
+    const Real side = constant<Real>(tile_size - 1);
+    return least_exponent<Real>(s.p, s.q, s.r, s.slope_x, s.slope_y, centre(first_column) - s.x,
+                                centre(last_column) - s.x + side, centre(first_row) - s.y,
+                                centre(last_row) - s.y + side) <= s.reach;
+}
+
+/// Whether it reaches pixels of the tile in this column and row.
+template <class Real, class Index>
+WARPAGG_HD flag_of<Real> reaches_tile(const splat<Real>& s, const Index& column, const Index& row) {
+    return reaches_tiles(s, column, column, row, row);
+}
+
+/// Whether splats reach any tile in their columns [x0, x1) and rows [y0, y1), a splat a lane, of those that
+/// are `asked`. Tiles are looked at one by one only in rows that are reached as a whole: the box of a large
+/// splat that passes beside the picture has thousands.
+template <class W, class Real, class Number>
+WARPAGG_HD mask_t<W> reaches_any_tile(const W& w, const splat<Real>& s, const Number& x0, const Number& x1,
+                                      const Number& y0, const Number& y1, const mask_t<W>& asked) {
+    using whole = value_t<W, int>;
+    const auto index = [](const Number& n) { return warpagg::math::convert<int>(n); };
+    const whole left = index(x0), right = index(x1) - whole(1), top = index(y0),
+                bottom = index(y1) - whole(1);
+    const mask_t<W> may =
+        asked && left <= right && top <= bottom && reaches_tiles(s, left, right, top, bottom);
+    mask_t<W> found = may && left == right && top == bottom, open = may && !found;
+    whole column = right, row = top - whole(1);  // at the end of a row before the first
+    while (w.any(open)) {
+        const mask_t<W> is_row = column == right;
+        row = select(is_row, row + whole(1), row);
+        const whole first = select(is_row, left, column + whole(1)), last = select(is_row, right, first);
+        const mask_t<W> reached = open && row <= bottom && reaches_tiles(s, first, last, row, row);
+        found = found || (reached && first == last);
+        column = select(is_row, select(reached, left - whole(1), right), first);
+        open = open && !found && row <= bottom;
+    }
+    return found;
+}
+
+}  // namespace gs::raster

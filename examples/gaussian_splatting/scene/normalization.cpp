@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "normalization.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <vector>
+
+#include "scene.hpp"
+
+namespace gs {
+namespace {
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+/// The median over `things` of what `measure` says of one.
+template <class Things, class Measure>
+double median_of(const Things& things, const Measure& measure) {
+    std::vector<double> values;
+    values.reserve(things.size());
+    for (const auto& thing : things) values.push_back(measure(thing));
+    return median(std::move(values));
+}
+
+glm::dvec3 mean_of_cameras(const scene& s) {
+    glm::dvec3 mean(0);
+    for (const view& v : s.train) mean += v.camera.centre() / static_cast<double>(s.train.size());
+    return mean;
+}
+
+glm::dvec3 mean_of(const gaussians& model, std::size_t i) {
+    return {model.mean[3 * i], model.mean[3 * i + 1], model.mean[3 * i + 2]};
+}
+
+/// `change` is done to each mean, `shift` added to each log scale.
+template <class Change>
+gaussians moved(gaussians model, const Change& change, double shift) {
+    for (std::size_t i = 0; i < model.count(); ++i) {
+        const glm::dvec3 mean = change(mean_of(model, i));
+        for (glm::length_t axis = 0; axis < 3; ++axis)
+            model.mean[3 * i + static_cast<std::size_t>(axis)] = static_cast<float>(mean[axis]);
+    }
+    for (float& s : model.log_scale) s = static_cast<float>(static_cast<double>(s) + shift);
+    return model;
+}
+
+}  // namespace
+
+double scene::extent() const {
+    if (train.empty()) return 0;
+    const glm::dvec3 mean = mean_of_cameras(*this);
+    double farthest = 0;
+    for (const view& v : train) farthest = std::max(farthest, glm::distance(mean, v.camera.centre()));
+    double depth = 0;
+    if (!points.empty())
+        depth = median_of(points, [&](const coloured_point& p) { return glm::distance(mean, p.position); });
+    else if (const auto point = looked_at())
+        depth = glm::distance(mean, *point);
+    if (farthest > 1e-6 * depth && farthest > 0) return 1.1 * farthest;
+    return depth > 0 ? depth : 1 / frame.scale;
+}
+
+std::optional<glm::dvec3> scene::looked_at() const {
+    if (train.empty()) return std::nullopt;
+    // Counted from the cameras, so that an origin far away costs no digits.
+    const glm::dvec3 mean = mean_of_cameras(*this), origin = frame.into(glm::dvec3(0)) - mean;
+    constexpr double pull = 1e-10;  // above rounding, and below what axes a hundredth of a degree apart say
+    const auto axis_of = [](const camera& c) { return glm::transpose(c.rotation)[2]; };
+    glm::dmat3 normal(pull);
+    glm::dvec3 right = pull * origin;
+    for (const view& v : train) {
+        const glm::dvec3 axis = axis_of(v.camera);
+        const glm::dmat3 across =
+            (glm::dmat3(1) - glm::outerProduct(axis, axis)) / static_cast<double>(train.size());
+        normal += across;
+        right += across * (v.camera.centre() - mean);
+    }
+    const glm::dvec3 point = glm::inverse(normal) * right;
+    const double depth = median_of(train, [&](const view& v) {
+        return glm::dot(axis_of(v.camera), point - (v.camera.centre() - mean));
+    });
+    // What is no farther off is nothing but the pull.
+    if (!(depth > 100 * pull * glm::length(origin))) return std::nullopt;
+    return mean + point;
+}
+
+frame frame_of(const scene& scene) {
+    const double scale = scene.extent() / internal_extent;
+    return {mean_of_cameras(scene), std::isnormal(scale) ? scale : 1};
+}
+
+frame frame_of(const gaussians& model) {
+    std::vector<std::size_t> all(model.count());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+    frame f;
+    for (glm::length_t axis = 0; axis < 3; ++axis)
+        f.origin[axis] = median_of(all, [&](std::size_t i) { return mean_of(model, i)[axis]; });
+    const double reach = median_of(all, [&](std::size_t i) {
+        const auto first = model.log_scale.begin() + static_cast<std::ptrdiff_t>(3 * i);
+        const double size = std::exp(static_cast<double>(*std::max_element(first, first + 3)));
+        return glm::distance(mean_of(model, i), f.origin) + size;
+    });
+    if (std::isnormal(reach)) f.scale = reach;
+    return f;
+}
+
+void recentre(scene& scene, const std::function<void(const std::string&)>& log) {
+    const frame f = frame_of(scene);
+    for (auto* views : {&scene.train, &scene.test})
+        for (view& v : *views)
+            v.camera.translation = (v.camera.rotation * f.origin + v.camera.translation) / f.scale;
+    for (coloured_point& p : scene.points) p.position = f.into(p.position);
+    constexpr double farthest = 1e9;
+    const std::size_t left_out = std::erase_if(
+        scene.points, [](const coloured_point& p) { return !(glm::length(p.position) <= farthest); });
+    if (left_out > 0)
+        log(std::to_string(left_out) + " of " + std::to_string(scene.points.size() + left_out) +
+            " points left out, which are a billion times farther off than the cameras are apart");
+    scene.frame = f;
+}
+
+gaussians into(const frame& frame, gaussians original) {
+    return moved(
+        std::move(original), [&](const glm::dvec3& p) { return frame.into(p); }, -std::log(frame.scale));
+}
+
+gaussians out_of(const frame& frame, gaussians internal) {
+    return moved(
+        std::move(internal), [&](const glm::dvec3& p) { return frame.out_of(p); }, std::log(frame.scale));
+}
+
+}  // namespace gs

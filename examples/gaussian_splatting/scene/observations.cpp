@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "observations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+
+#include "../core/parallel.hpp"
+
+namespace gs::effects {
+namespace {
+
+constexpr std::size_t most_points = 6000;
+constexpr double spacings = 2.5;                  ///< so far off in the picture a point may hide another
+constexpr double nearer = 0.03;                   ///< by this share of the depth
+constexpr int least_value = 6, most_value = 249;  ///< of a byte that is not saturated
+
+std::vector<place_in_photo> project(const camera& c, const std::vector<coloured_point>& points) {
+    std::vector<place_in_photo> seen;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto p = c.see(points[i].position);
+        if (p && p->x >= 2 && p->y >= 2 && p->x < c.width - 2 && p->y < c.height - 2)
+            seen.push_back({static_cast<std::uint32_t>(i), p->x, p->y, p->depth});
+    }
+    return seen;
+}
+
+/// The depth of the nearest point in cells of the picture, as wide as points hide each other.
+class nearest_depths {
+  public:
+    nearest_depths(const camera& c, const std::vector<place_in_photo>& seen)
+        : cell_(std::max(2.0, spacings * std::sqrt(double(c.width) * c.height / double(seen.size() + 1)))),
+          across_(static_cast<int>(c.width / cell_) + 3),
+          depth_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(c.height / cell_ + 3),
+                 std::numeric_limits<double>::infinity()) {
+        for (const place_in_photo& p : seen) {
+            double& d = depth_[at(p.x, p.y, 0, 0)];
+            d = std::min(d, p.depth);
+        }
+    }
+    /// Whether no point of this cell and its neighbours is clearly nearer.
+    bool shows(const place_in_photo& p) const {
+        for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx)
+                if (depth_[at(p.x, p.y, dx, dy)] < (1 - nearer) * p.depth) return false;
+        return true;
+    }
+
+  private:
+    std::size_t at(double x, double y, int dx, int dy) const {
+        return static_cast<std::size_t>((static_cast<int>(y / cell_) + 1 + dy) * across_ +
+                                        static_cast<int>(x / cell_) + 1 + dx);
+    }
+
+    double cell_;
+    int across_;
+    std::vector<double> depth_;
+};
+
+std::optional<observation> look(const image& photo, const place_in_photo& p) {
+    const auto pixel = [&](int x, int y) {
+        return &photo.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(photo.width) +
+                                static_cast<std::size_t>(x))];
+    };
+    const int column = static_cast<int>(p.x), row = static_cast<int>(p.y);
+    float least = 1, most = 0;
+    observation o;
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+            const std::uint8_t* rgba = pixel(column + dx, row + dy);
+            if (rgba[3] != 255) return std::nullopt;
+            for (int c = 0; c < 3; ++c) {
+                if (rgba[c] < least_value || rgba[c] > most_value) return std::nullopt;
+                o.colour[c] += static_cast<float>(rgba[c]) / (9 * 255);
+            }
+            const float brightness = static_cast<float>(rgba[0] + rgba[1] + rgba[2]) / 765;
+            least = std::min(least, brightness);
+            most = std::max(most, brightness);
+        }
+    o.roughness = (most - least) / most;
+    return o;
+}
+
+}  // namespace
+
+std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<coloured_point>& points) {
+    std::vector<place_in_photo> seen = project(camera, points);
+    const nearest_depths depths(camera, seen);
+    std::erase_if(seen, [&](const place_in_photo& p) { return !depths.shows(p); });
+    return seen;
+}
+
+std::vector<std::vector<observation>> observe_points(const scene& of) {
+    const std::size_t step = of.points.size() / most_points + 1;
+    std::vector<std::vector<std::pair<std::uint32_t, observation>>> by_view(of.train.size());
+    for_each_in_parallel(of.train.size(), [&](std::size_t v) {
+        const view& photo = of.train[v];
+        for (const place_in_photo& p : points_in_sight(photo.camera, of.points)) {
+            if (p.point % step != 0) continue;
+            std::optional<observation> o = look(photo.pixels, p);
+            if (!o) continue;
+            o->view = static_cast<std::uint32_t>(v);
+            o->direction = glm::vec3(glm::normalize(of.points[p.point].position - photo.camera.centre()));
+            o->footprint = static_cast<float>(p.depth / std::sqrt(photo.camera.fx * photo.camera.fy));
+            by_view[v].emplace_back(p.point / static_cast<std::uint32_t>(step), *o);
+        }
+    });
+    std::vector<std::vector<observation>> by_point(of.points.size() / step + 1);
+    for (const auto& seen : by_view)
+        for (const auto& [point, o] : seen) by_point[point].push_back(o);
+    return by_point;
+}
+
+}  // namespace gs::effects

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "scene.hpp"
+
+namespace gs::effects {
+
+/// A point of a scene as one of its photos has it.
+struct observation {
+    std::uint32_t view = 0;
+    glm::vec3 colour{0};     ///< as displayed, [0, 1]: the mean of the 3×3 pixels around it
+    glm::vec3 direction{0};  ///< unit, from the camera to the point
+    float footprint = 0;     ///< of a pixel there, in the scene's unit
+    float roughness = 0;     ///< by which share of the brightest of these pixels the darkest differs
+};
+
+/// Where a photo shows one of the points, in pixels, and how deep: see `camera::image_point`.
+struct place_in_photo {
+    std::uint32_t point;
+    double x, y, depth;
+};
+
+/// The points that a camera sees: all but where a nearer one, a few spacings off in the picture, may hide it.
+std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<coloured_point>& points);
+
+/// What the training photos have of the scene's points, by point; some thousands of the points stand for all.
+/// Left out: what is not `points_in_sight`, and where the photo is transparent or a channel is saturated.
+/// Cost: that of projecting all points into all photos.
+std::vector<std::vector<observation>> observe_points(const scene& of);
+
+}  // namespace gs::effects

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "initialise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <nanoflann.hpp>
+#include <numeric>
+#include <random>
+#include <utility>
+
+#include "../model/spherical_harmonics.hpp"
+
+namespace gs {
+namespace {
+
+constexpr double initial_opacity = 0.1;
+constexpr std::size_t neighbours = 3;
+/// Keeps points that coincide from having no size; by an extent of `internal_extent`.
+constexpr double least_squared_distance = 1e-7;
+/// Of the box in which the objects of NeRF-synthetic scenes lie, by the distance of their cameras.
+constexpr double half_side_of_objects = 1.3 / 4.0311288;
+
+/// Spelt out because the standard leaves the results of its distributions to the implementation.
+double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+/// `most` of the points in their order, each subset as likely as any other.
+std::vector<coloured_point> draw(const std::vector<coloured_point>& points, std::size_t most,
+                                 std::uint64_t seed) {
+    if (points.size() <= most) return points;
+    std::mt19937_64 random(seed);
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    for (std::size_t i = 0; i < most; ++i) {
+        const double left = static_cast<double>(order.size() - i);
+        std::swap(order[i], order[i + static_cast<std::size_t>(uniform(random) * left)]);
+    }
+    order.resize(most);
+    std::sort(order.begin(), order.end());
+
+    std::vector<coloured_point> drawn;
+    drawn.reserve(most);
+    for (const std::size_t i : order) drawn.push_back(points[i]);
+    return drawn;
+}
+
+/// What nanoflann asks of a point set; the names are its own.
+struct point_set {
+    const std::vector<coloured_point>& points;
+
+    std::size_t kdtree_get_point_count() const { return points.size(); }
+    double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+        return points[i].position[static_cast<glm::length_t>(axis)];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+        return false;  // let nanoflann compute it
+    }
+};
+
+/// Per point, the mean squared distance to its nearest other points.
+std::vector<double> neighbour_distances(const std::vector<coloured_point>& points) {
+    using metric = nanoflann::L2_Simple_Adaptor<double, point_set>;
+    using tree_type = nanoflann::KDTreeSingleIndexAdaptor<metric, point_set, 3, std::size_t>;
+    const point_set set{points};
+    const tree_type tree(3, set);
+    const std::size_t others = std::min(neighbours, points.size() - 1);
+
+    std::vector<double> result(points.size(), 0.0);
+#pragma omp parallel for schedule(static)
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        std::size_t index[neighbours + 1];
+        double squared[neighbours + 1] = {};
+        tree.knnSearch(&points[i].position.x, others + 1, index, squared);
+        // The point itself is among those found, at distance 0, or else enough others are at distance 0.
+        const double sum = std::accumulate(std::begin(squared), std::end(squared), 0.0);
+        if (others > 0) result[i] = sum / static_cast<double>(others);
+    }
+    return result;
+}
+
+std::pair<glm::dvec3, double> box_looked_at(const scene& s) {
+    const auto object = s.source == "COLMAP" ? std::nullopt : s.looked_at();
+    if (object) {
+        std::vector<double> distances;
+        for (const view& v : s.train) distances.push_back(glm::distance(*object, v.camera.centre()));
+        const auto median = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+        std::ranges::nth_element(distances, median);
+        return {*object, half_side_of_objects * *median};
+    }
+    glm::dvec3 sum{0};
+    for (const view& v : s.train) sum += v.camera.centre();
+    return {sum / static_cast<double>(s.train.size()), s.extent()};
+}
+
+}  // namespace
+
+gaussians from_points(const std::vector<coloured_point>& points, int sh_degree, std::size_t most,
+                      std::uint64_t seed) {
+    const std::vector<coloured_point> drawn = draw(points, most, seed);
+    const std::vector<double> squared_distance = neighbour_distances(drawn);
+    const std::size_t count = drawn.size();
+
+    gaussians model;
+    model.sh_degree = sh_degree;
+    model.mean.reserve(3 * count);
+    model.log_scale.reserve(3 * count);
+    model.sh_constant.reserve(3 * count);
+    model.quaternion.reserve(4 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double squared = std::max(squared_distance[i], least_squared_distance);
+        const auto log_scale = static_cast<float>(0.5 * std::log(squared));
+        for (glm::length_t axis = 0; axis < 3; ++axis) {
+            model.mean.push_back(static_cast<float>(drawn[i].position[axis]));
+            model.log_scale.push_back(log_scale);
+            model.sh_constant.push_back(sh_from_colour(static_cast<float>(drawn[i].colour[axis]) / 255.0F));
+        }
+        model.quaternion.insert(model.quaternion.end(), {1, 0, 0, 0});
+    }
+    model.opacity.assign(count, static_cast<float>(std::log(initial_opacity / (1 - initial_opacity))));
+    model.sh_rest.assign(count * static_cast<std::size_t>(model.rest_width()), 0.0F);
+    return model;
+}
+
+std::vector<coloured_point> random_points(const scene& scene, std::size_t count, std::uint64_t seed) {
+    const auto [centre, half_side] = box_looked_at(scene);
+    std::mt19937_64 random(seed);
+    std::vector<coloured_point> points(count);
+    for (coloured_point& p : points) {
+        for (glm::length_t axis = 0; axis < 3; ++axis) {
+            p.position[axis] = centre[axis] + half_side * (2 * uniform(random) - 1);
+            p.colour[axis] = static_cast<std::uint8_t>(256 * uniform(random));
+        }
+    }
+    return points;
+}
+
+}  // namespace gs
