@@ -4,7 +4,7 @@
 """Puts one fault at a time into a copy of the headers and demands that the suite notices it.
 
 mutations.toml lists the faults, each with the one test program that must fail. A test of a policy that must not
-compile (compile_fail/) fails by compiling; test_ptx.cpp needs nvcc and is skipped without. Every program must
+compile (compile_fail/) fails by compiling; cuda/test_ptx.cpp needs nvcc and is skipped without. Every program must
 first pass with the headers as they are. The compiler is $CXX, else g++. Ends with 0 if every fault was caught.
 """
 
@@ -79,7 +79,7 @@ class Sweep:
         self.tests = shutil.copytree(repository / "tests", scratch / "tests")
         self.include = shutil.copytree(repository / "include", scratch / "include")
         self.main_object = scratch / "main.o"
-        build(compiler, *flags, "-c", str(self.tests / "main.cpp"), "-o", str(self.main_object))
+        build(compiler, *flags, "-c", str(self.tests / "support/main.cpp"), "-o", str(self.main_object))
 
     def failure_of(self, test, headers, folder):
         """How a test program, named by its path in tests/, fails with these headers; None if it passes."""
@@ -88,7 +88,7 @@ class Sweep:
             return failure(["cmake", f"-DCOMPILER={compiler}", f"-DINCLUDE={headers}", f"-DSOURCE={source}",
                             "-P", str(source.parent / "run.cmake")], folder)
         definitions = []
-        if test == "test_ptx.cpp":
+        if test == "cuda/test_ptx.cpp":
             definitions = [self.compile_ptx(headers, folder)]
         build(compiler, *flags, *definitions, f"-I{headers}", str(source), str(self.main_object),
               "-o", str(folder / "program"))
@@ -99,7 +99,7 @@ class Sweep:
         for architecture in architectures:
             files.append(f'"{folder}/{architecture}.ptx"')
             build(nvcc, "-std=c++20", "-w", "-ptx", f"-arch=sm_{architecture}", f"-I{headers}",
-                  str(self.tests / "ptx/kernels.cu"), "-o", files[-1].strip('"'))
+                  str(self.tests / "cuda/ptx/kernels.cu"), "-o", files[-1].strip('"'))
         return f"-DWARPAGG_PTX_FILES={','.join(files)}"
 
     def without_fault(self, test):
@@ -173,9 +173,9 @@ def main():
         return
     if nvcc is None:
         for m in mutations:
-            if m["caught_by"] == "test_ptx.cpp":
+            if m["caught_by"] == "cuda/test_ptx.cpp":
                 print(f"{m['name']}: skipped, there is no nvcc")
-        mutations = [m for m in mutations if m["caught_by"] != "test_ptx.cpp"]
+        mutations = [m for m in mutations if m["caught_by"] != "cuda/test_ptx.cpp"]
     with tempfile.TemporaryDirectory(prefix="warpagg-mutation-") as scratch:
         sys.exit(0 if Sweep(pathlib.Path(scratch)).run(mutations, arguments.jobs) else 1)
 

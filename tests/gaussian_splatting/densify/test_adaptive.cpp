@@ -1,0 +1,401 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <set>
+
+#include "../training/engines.hpp"
+#include "training/initialise.hpp"
+#include "model/opacity.hpp"
+#include "render/project/geometry.hpp"
+
+namespace {
+
+using gs::gaussians;
+using gs::train::densify_rule;
+using gs::train::engine;
+
+/// A step in each training view by rates of zero: gradients are noted and momentum is gained, nothing moves.
+void look_at_all(engine& e, const gs::scene& scene, const gaussians& model, int sh_degree = 0) {
+    e.set_views(scene.train, scene.test);
+    e.set_model(model);
+    e.reserve();
+    auto still = plan_for(0);
+    still.sh_degree = sh_degree;
+    still.rates = {};
+    for (still.view = 0; still.view < scene.train.size(); ++still.view) e.step(still);
+}
+
+}  // namespace
+
+TEST_CASE("the most urgent grow first, and none past the cap") {
+    const gs::scene scene = small_scene();
+    const gaussians model = gs::from_points(scene.points, 0, 1000, 1);
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(model);
+        e->reserve();
+        for (std::size_t v = 0; v < 4; ++v) e->step(plan_for(v));
+        const gaussians stepped = e->get_model();
+        densify_rule rule;
+        rule.gradient = 1e-12f;  // everything that was seen to move
+        rule.least_opacity = 0;
+        rule.dense_scale = 1e9f;  // copied, not split
+        rule.cap = 1100;
+        rule.revised_opacity = false;
+        e->densify(rule);
+        CHECK(e->count() == 1100);
+
+        // Copies are exact: every Gaussian of before is there once or twice, in its order.
+        const gaussians grown = e->get_model();
+        std::size_t from = 0, twice = 0;
+        for (std::size_t i = 0; i < grown.count(); ++i) {
+            const bool same_as_from =
+                std::equal(grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                           grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i + 3),
+                           stepped.mean.begin() + static_cast<std::ptrdiff_t>(3 * from));
+            if (!same_as_from) ++from;
+            REQUIRE(std::equal(grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                               grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i + 3),
+                               stepped.mean.begin() + static_cast<std::ptrdiff_t>(3 * from)));
+            CHECK(grown.opacity[i] == stepped.opacity[from]);
+            if (i > 0 && same_as_from) ++twice;
+        }
+        CHECK(from == 999);
+        CHECK(twice == 100);
+
+        // Nobody has been seen since: nothing grows.
+        e->densify(rule);
+        CHECK(e->count() == 1100);
+    }
+}
+
+TEST_CASE("births are limited, whatever room there is, to the most urgent") {
+    const gs::scene scene = small_scene();
+    const gaussians model = gs::from_points(scene.points, 0, 1000, 1);
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        auto still = plan_for(0);
+        still.rates = {};
+        densify_rule rule;
+        rule.gradient = 0;  // whatever moved at all
+        rule.least_opacity = 0;
+        rule.dense_scale = 1e9f;
+        rule.cap = 1100;
+        const auto grown = [&](std::size_t most_births) {
+            e->set_model(model);
+            e->reserve();
+            e->step(still);
+            rule.most_births = most_births;
+            e->densify(rule);
+            return e->get_model();
+        };
+        CHECK(grown(0).count() == 1000);
+        const gaussians few = grown(40), many = grown(1000);
+        CHECK(few.count() == 1040);
+        CHECK(many.count() == 1100);
+        // The 40 are among the 100: all that is there twice in one is in the other.
+        const auto places_there_twice = [](const gaussians& g) {
+            std::set<std::array<float, 3>> once, twice;
+            for (std::size_t i = 0; i < g.count(); ++i) {
+                const std::array place{g.mean[3 * i], g.mean[3 * i + 1], g.mean[3 * i + 2]};
+                if (!once.insert(place).second) twice.insert(place);
+            }
+            return twice;
+        };
+        const auto first = places_there_twice(few), all = places_there_twice(many);
+        CHECK(first.size() == 40);
+        CHECK(std::ranges::includes(all, first));
+    }
+}
+
+TEST_CASE("a copy and its original together are as opaque as it was alone") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 0, 200, 1);
+    for (std::size_t i = 0; i < 200; ++i) model.opacity[i] = -8 + 0.1f * static_cast<float>(i % 160);
+    model.opacity[0] = 200;
+    for (const auto make : engines()) {
+        const auto e = make();
+        look_at_all(*e, scene, model);
+        densify_rule rule;
+        rule.gradient = 1e-12f;
+        rule.least_opacity = 0;
+        rule.dense_scale = 1e9f;
+        rule.cap = 1000;
+        rule.revised_opacity = true;
+        e->densify(rule);
+        const gaussians grown = e->get_model();
+        REQUIRE(grown.count() > 300);
+        for (std::size_t i = 0, parent = 0; i < grown.count(); ++parent) {
+            const double logit = static_cast<double>(model.opacity[parent]);
+            const bool is_copied = i + 1 < grown.count() &&
+                                   std::equal(grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                                              grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i + 3),
+                                              grown.mean.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
+            CAPTURE(logit);
+            if (!is_copied) {
+                CHECK(grown.opacity[i++] == model.opacity[parent]);
+                continue;
+            }
+            CHECK(std::isfinite(grown.opacity[i]));
+            CHECK(grown.opacity[i] == grown.opacity[i + 1]);
+            // What shines through both is what shone through one: log1p(e^logit) is -log of that.
+            const double through_one = std::log1p(std::exp(static_cast<double>(grown.opacity[i])));
+            if (logit < 80)
+                CHECK(2 * through_one == doctest::Approx(std::log1p(std::exp(logit))).epsilon(1e-5));
+            i += 2;
+        }
+    }
+}
+
+TEST_CASE("a split leaves two that are 1.6 times smaller, near their parent") {
+    const gs::scene scene = small_scene();
+    const gaussians model = gs::from_points(scene.points, 0, 200, 1);
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(model);
+        e->reserve();
+        auto still = plan_for(0);
+        still.rates = {};
+        e->step(still);
+        densify_rule rule;
+        rule.gradient = 1e-12f;
+        rule.least_opacity = 0;
+        rule.dense_scale = 1e-9f;  // split, not copied
+        rule.cap = 1000;
+        e->densify(rule);
+        const gaussians grown = e->get_model();
+        REQUIRE(grown.count() > 300);
+        std::size_t halves = 0;
+        for (std::size_t i = 0, parent = 0; i < grown.count(); ++parent) {
+            REQUIRE(parent < model.count());
+            const float shrunk = model.log_scale[3 * parent] - std::log(1.6f);
+            const bool is_split = std::abs(grown.log_scale[3 * i] - shrunk) < 1e-5f;
+            for (std::size_t half = 0; half < (is_split ? 2 : 1); ++half, ++i) {
+                float distance = 0;
+                for (std::size_t k = 0; k < 3; ++k)
+                    distance =
+                        std::max(distance, std::abs(grown.mean[3 * i + k] - model.mean[3 * parent + k]));
+                if (is_split) {
+                    ++halves;
+                    CHECK(grown.log_scale[3 * i] == doctest::Approx(shrunk));
+                    CHECK(distance > 0);
+                    CHECK(distance < 6 * std::exp(model.log_scale[3 * parent]));
+                } else {
+                    CHECK(distance == 0);
+                }
+            }
+        }
+        CHECK(halves == 2 * (grown.count() - model.count()));
+    }
+}
+
+TEST_CASE("the transparent are dropped, and none for its size") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 0, 300, 1);
+    for (std::size_t i = 0; i < 300; i += 3) model.opacity[i] = -10;
+    for (std::size_t i = 1; i < 300; i += 3) model.log_scale[3 * i + 1] = 3;
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_model(model);
+        densify_rule rule;
+        rule.gradient = 1e9f;
+        rule.cap = 1000;
+        e->densify(rule);
+        CHECK(e->count() == 200);
+    }
+}
+
+TEST_CASE("pruning drops the share that the views made least of, and keeps the others to the bit") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 1, 300, 1);
+    for (std::size_t i = 0; i < 300; i += 4) model.opacity[i] = -20;  // in no picture
+    for (const auto make : engines()) {
+        const auto e = make();
+        look_at_all(*e, scene, model);
+        e->prune(0.001);  // less than one
+        CHECK(e->count() == 300);
+        e->prune(0.2);
+        const gaussians rest = e->get_model();
+        REQUIRE(rest.count() == 240);
+        CHECK(std::ranges::count(rest.opacity, -20.0f) == 15);
+        for (std::size_t i = 0, from = 0; i < 240; ++i, ++from) {
+            while (from < 300 && rest.mean[3 * i] != model.mean[3 * from]) {
+                CHECK(model.opacity[from] == -20);
+                ++from;
+            }
+            REQUIRE(from < 300);
+            CHECK(rest.opacity[i] == model.opacity[from]);
+            CHECK(std::equal(&rest.sh_rest[9 * i], &rest.sh_rest[9 * i] + 9, &model.sh_rest[9 * from]));
+        }
+    }
+}
+
+TEST_CASE("pruning takes those that are pulled less before those that are pulled more") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 0, 300, 1);
+    for (std::size_t i = 0; i < 300; i += 4) model.opacity[i] = -20;    // in no picture
+    for (std::size_t i = 1; i < 300; i += 4) model.opacity[i] = -5.3f;  // hardly to be seen
+    const auto count = [](const gaussians& of, float opacity) {
+        return std::ranges::count(of.opacity, opacity);
+    };
+    for (const auto make : engines()) {
+        const auto e = make();
+        look_at_all(*e, scene, model);
+        e->prune(0.4);
+        const gaussians rest = e->get_model();
+        REQUIRE(rest.count() == 180);
+        CHECK(count(rest, -20.0f) == 0);
+        CHECK(count(rest, -5.3f) <= 75 - 40);  // at least 40 of the other 45 that are dropped
+    }
+}
+
+TEST_CASE("momentum goes along with those that pruning keeps") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 1, 300, 1);
+    for (std::size_t i = 0; i < 240; i += 4) model.opacity[i] = -20;  // in no picture: to be dropped
+    for (const auto make : engines()) {
+        const auto e = make();
+        const auto trained = [&](bool prunes) {
+            look_at_all(*e, scene, model, 1);
+            if (prunes) e->prune(0.2);
+            auto plan = plan_for(0);
+            plan.sh_degree = 1;
+            plan.rates.fill(0.01f);
+            e->step(plan);
+            return e->get_model();
+        };
+        const gaussians all = trained(false), rest = trained(true);
+        REQUIRE(rest.count() == 240);
+        // But where a gradient is little more than rounding, and threads add in any order, a step is the
+        // same.
+        std::size_t values = 0, alike = 0;
+        const auto compare = [&](const std::vector<float>& a, const std::vector<float>& b,
+                                 std::size_t width) {
+            for (std::size_t i = 0, from = 0; from < 300; ++from) {
+                if (model.opacity[from] == -20) continue;
+                for (std::size_t k = 0; k < width; ++k, ++values)
+                    if (std::abs(a[i * width + k] - b[from * width + k]) < 1e-4f) ++alike;
+                ++i;
+            }
+        };
+        compare(rest.mean, all.mean, 3);
+        compare(rest.log_scale, all.log_scale, 3);
+        compare(rest.quaternion, all.quaternion, 4);
+        compare(rest.opacity, all.opacity, 1);
+        compare(rest.sh_constant, all.sh_constant, 3);
+        compare(rest.sh_rest, all.sh_rest, 9);
+        CHECK(alike > values / 2);  // a fourteenth where momentum is lost
+    }
+}
+
+TEST_CASE("what a Gaussian missed is made up for, also by those that move up when others are dropped") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 0, 1000, 1);
+    std::ranges::fill(model.opacity, 6.0f);                             // those in front hide others
+    for (float& c : model.sh_constant) c = std::clamp(c, -1.5f, 1.5f);  // black has no gradient
+    constexpr std::size_t dropped = 100;
+    std::fill_n(model.opacity.begin(), dropped, -20.0f);
+    constexpr float rate = 0.01f;
+    const auto plan = [](std::size_t view, float all) {
+        auto p = plan_for(view);
+        p.rates.fill(all);
+        return p;
+    };
+    // By Adam, from two equal gradients five steps apart, at the rates and corrections of the last step.
+    constexpr int missed = 5, last = missed + 2;
+    const double by_first = 1 / (1 - std::pow(0.9, last)), by_second = 1 / (1 - std::pow(0.999, last));
+    double m = 0.1, v = 0.001, expected = 0;
+    for (int step = 0; step <= missed; ++step) {
+        const double gradient = step < missed ? 0 : 1;
+        m = 0.9 * m + 0.1 * gradient;
+        v = 0.999 * v + 0.001 * gradient;
+        expected += rate * m * by_first / std::sqrt(v * by_second);
+    }
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        const auto seen_by = [&](std::size_t view) {
+            e->set_model(model);
+            e->reserve();
+            e->step(plan(view, rate));
+            const gaussians moved = e->get_model();
+            std::vector<bool> is(model.count());
+            for (std::size_t i = 0; i < is.size(); ++i) is[i] = moved.opacity[i] != model.opacity[i];
+            return is;
+        };
+        const std::vector<bool> first = seen_by(0), second = seen_by(1);
+        e->set_model(model);
+        e->step(plan(0, 0));  // gives momentum to what it sees
+        for (int i = 0; i < missed; ++i) e->step(plan(1, 0));
+        densify_rule rule;
+        rule.gradient = 1e30f;
+        e->densify(rule);
+        REQUIRE(e->count() == model.count() - dropped);
+        e->reserve();
+        e->step(plan(0, rate));
+        const gaussians moved = e->get_model();
+        std::size_t values = 0, as_expected = 0;
+        for (std::size_t i = dropped; i < model.count(); ++i) {
+            if (!first[i] || second[i]) continue;
+            for (std::size_t k = 0; k < 3; ++k, ++values) {
+                const float by = moved.sh_constant[3 * (i - dropped) + k] - model.sh_constant[3 * i + k];
+                if (std::abs(std::abs(by) - expected) < 0.02 * expected) ++as_expected;
+            }
+        }
+        CHECK(values > 150);
+        CHECK(as_expected > values * 9 / 10);  // but where a gradient is little more than rounding
+    }
+}
+
+TEST_CASE("opacities are brought down, never up") {
+    const gs::scene scene = small_scene();
+    gaussians model = gs::from_points(scene.points, 0, 4, 1);
+    model.opacity = {-9, -4.6f, 0, 9};
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_model(model);
+        e->reset_opacity(0.01f);
+        const float most = std::log(0.01f / 0.99f);
+        CHECK(e->get_model().opacity == std::vector<float>{-9, -4.6f, most, most});
+    }
+}
+
+TEST_CASE("what is nearer to a training camera than the near plane is hidden, and nothing else") {
+    const gs::scene scene = small_scene();
+    const float near = static_cast<float>(gs::raster::near_plane), hidden = gs::logit(0);
+    // Around each camera, of those to learn from and of those that are held out.
+    std::vector<gs::coloured_point> points;
+    for (const auto* views : {&scene.train, &scene.test})
+        for (const gs::view& v : *views)
+            for (const double distance : {0.0, 0.5, 0.99, 1.01, 3.0})
+                points.push_back(
+                    {v.camera.centre() + distance * double{near} * glm::dvec3(0, 0.6, -0.8), {}});
+    gaussians model = gs::from_points(points, 0, points.size(), 1);
+    for (std::size_t i = 0; i < model.count(); i += 7) model.opacity[i] = hidden - 1;  // no higher
+    std::size_t near_ones = 0;
+    std::vector<float> expected = model.opacity;
+    for (std::size_t i = 0; i < model.count(); ++i) {
+        double least = 1e30;
+        for (const gs::view& v : scene.train)
+            least = std::min(least, glm::distance(v.camera.centre(), points[i].position));
+        if (least >= double{near}) continue;
+        ++near_ones;
+        expected[i] = std::min(expected[i], hidden);
+    }
+    REQUIRE(near_ones == 3 * scene.train.size());
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(model);
+        e->clear_cameras();
+        CHECK(e->get_model().opacity == expected);
+        CHECK(e->get_model().mean == model.mean);
+    }
+}

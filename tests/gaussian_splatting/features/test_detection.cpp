@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "../../../examples/gaussian_splatting/features/decide.hpp"
+#include "../../../examples/gaussian_splatting/core/error.hpp"
+#include "../../../examples/gaussian_splatting/model/spherical_harmonics.hpp"
+#include "../../../examples/gaussian_splatting/readers/synthetic/synthetic_parameters.hpp"
+
+namespace {
+
+using namespace gs::effects;
+
+gs::scene made(const std::string& parameters) {
+    gs::load_options o;
+    o.data = "synthetic:" + parameters;
+    return gs::load_scene(o, {});
+}
+
+}  // namespace
+
+TEST_CASE("a scene calls for what it was made with, and for nothing else") {
+    const struct {
+        const char* scene;
+        std::set<std::string> effects;
+    } cases[] = {
+        {"spheres", {}},
+        {"spheres,noise=0.03", {}},
+        {"spheres,gloss=0.6", {"direction"}},
+        {"spheres,exposure=0.3,noise=0.01", {"exposure"}},
+        {"spheres,scales=4", {"antialiasing"}},
+        {"spheres,sky=0.4,noise=0.03", {"sky"}},
+        {"spheres,sky=1,exposure=0.3,scales=4", {"sky", "exposure", "antialiasing"}},
+        {"spheres,passers=0.1", {"masks"}},
+        {"spheres,fisheye=60,gloss=0.6,sky=0.8", {"lens", "direction", "sky"}},
+        {"alpha,fisheye=60", {"lens", "background"}},
+        {"spheres,depths=0.05,noise=0.01", {"depth"}},
+        {"spheres,depths=2", {}},
+        {"alpha,depths=0,exposure=0.3,passers=0.1", {"depth", "exposure", "masks", "background"}},
+        {"alpha", {"background"}},
+        {"alpha,gloss=0.6,exposure=0.3,passers=0.1", {"direction", "exposure", "masks", "background"}}};
+    for (const auto& c : cases) {
+        INFO(c.scene);
+        const auto found = decide(gather(made(c.scene)));
+        for (const decision& d : found) {
+            INFO(d.name);
+            REQUIRE(d.called_for);
+            CHECK(*d.called_for == c.effects.contains(d.name));
+        }
+    }
+}
+
+TEST_CASE("a sky is what it was made of, and begins from that") {
+    const gs::scene scene = made("spheres,sky=0.8");
+    const sky_evidence found = find_sky(scene, {});
+    CHECK(found.share > 0.3);
+    CHECK(found.share > 0.99 * found.empty);
+    double square = 0, values = 0;
+    for (const gs::view& v : scene.train) {
+        // Three corners, which show no surface.
+        for (const auto& [x, y] : {std::pair{3, 3}, {v.camera.width - 4, 3}, {3, v.camera.height - 4}}) {
+            const auto i = static_cast<std::size_t>(y * v.camera.width + x);
+            const glm::dvec3 ray((x + 0.5 - v.camera.cx) / v.camera.fx, (y + 0.5 - v.camera.cy) / v.camera.fy,
+                                 1);
+            double basis[16];
+            gs::sh_basis<double>(3, glm::normalize(glm::transpose(v.camera.rotation) * ray), basis);
+            for (std::size_t c = 0; c < 3; ++c) {
+                double colour = 0.5;
+                for (std::size_t k = 0; k < 16; ++k)
+                    colour += basis[k] * static_cast<double>(found.coefficients[3 * k + c]);
+                square += std::pow(colour - v.pixels.rgba[4 * i + c] / 255.0, 2);
+                ++values;
+            }
+        }
+    }
+    CHECK(std::sqrt(square / values) < 0.02);
+    CHECK(find_sky(made("spheres,sky=0.04"), {}).brightness < 0.08);
+    gs::scene bare = scene;
+    bare.points.clear();
+    CHECK_FALSE(find_sky(bare, {}).is_asked);
+    CHECK_THROWS_WITH_AS(made("alpha,sky=1"), doctest::Contains("it has no sky"), gs::error);
+}
+
+TEST_CASE("a scene without points is not told what it needs") {
+    gs::scene scene = made("alpha,gloss=0.6");
+    scene.points.clear();
+    const auto found = decide(gather(scene));
+    for (const decision& d : found) {
+        INFO(d.name);
+        const std::set<std::string> of_files = {"background", "masks", "depth", "lens"};
+        CHECK(d.called_for.has_value() == of_files.contains(d.name));
+    }
+    CHECK(sh_degree(gather(scene)) == 3);
+    // With points of which next to none tells there is nothing to tell it by, and with a few more there is.
+    evidence few = gather(scene);
+    few.has_points = true;
+    for (const auto& [points, degree] : {std::pair{0, 0}, {9, 0}, {10, 3}, {49, 3}}) {
+        few.direction_points = static_cast<std::size_t>(points);
+        CHECK(sh_degree(few) == degree);
+        CHECK(decide(few)[0].choice == "--sh-degree " + std::to_string(degree));
+        CHECK_FALSE(decide(few)[0].called_for);
+    }
+}
+
+TEST_CASE("what is matte needs no degree, and what mirrors a sky needs several") {
+    CHECK(sh_degree(gather(made("spheres"))) == 0);
+    CHECK(sh_degree(gather(made("spheres,gloss=0.8"))) >= 2);
+}
+
+TEST_CASE("exposures are found to 0.7 %, on average") {
+    // Each photo's own, by the formula of the synthetic scenes.
+    gs::scene plain = made("spheres"), varied = made("spheres,exposure=0.3");
+    const exposure_estimate found = exposures(observe_points(varied), varied.train.size());
+    double mean = 0, square = 0;
+    std::vector<double> off;
+    for (std::size_t v = 0; v < varied.train.size(); ++v) {
+        if (found.error[v] == 0) continue;
+        // Of the brightness of pixels that neither photo saturates.
+        double brighter = 0;
+        int n = 0;
+        const auto &a = plain.train[v].pixels.rgba, &b = varied.train[v].pixels.rgba;
+        for (std::size_t i = 0; i < a.size(); i += 4)
+            if (a[i] > 60 && b[i] > 60 && a[i] < 240 && b[i] < 240) {
+                brighter += std::log2(double(b[i]) / a[i]);
+                ++n;
+            }
+        REQUIRE(n > 0);
+        off.push_back(found.brighter[v] - brighter / n);
+        mean += off.back();
+    }
+    REQUIRE(off.size() > 30);
+    for (const double x : off) square += std::pow(x - mean / double(off.size()), 2);
+    CHECK(std::sqrt(square / double(off.size())) < 0.01);
+}
+
+TEST_CASE(
+    "exposures along a walk of two thousand photos are found, where each shares points with its neighbours "
+    "alone") {
+    constexpr std::size_t views = 2000, at_once = 5, points_at_once = 5;
+    std::mt19937 random(1);
+    const auto noise = [&](double size) { return size * (static_cast<double>(random()) / 2147483648.0 - 1); };
+    std::vector<double> truth(views);
+    for (std::size_t v = 1; v < views; ++v) truth[v] = 0.98 * truth[v - 1] + noise(0.1);
+    double mean = 0;
+    for (const double x : truth) mean += x / views;
+    std::vector<std::vector<observation>> points;
+    for (std::size_t v = 0; v + at_once <= views; ++v)
+        for (std::size_t k = 0; k < points_at_once; ++k) {
+            points.emplace_back();
+            for (std::size_t i = v; i < v + at_once; ++i) {
+                observation& o = points.back().emplace_back();
+                o.view = static_cast<std::uint32_t>(i);
+                o.colour = glm::vec3(static_cast<float>(0.3 * std::exp2(truth[i] - mean + noise(0.0003))));
+            }
+        }
+    const exposure_estimate found = exposures(points, views);
+    double square = 0;
+    for (std::size_t v = at_once; v < views - at_once; ++v)  // the first and the last share too little
+        square += std::pow(found.brighter[v] - (truth[v] - mean), 2) / views;
+    CHECK(std::sqrt(square) < 0.01);
+}
+
+TEST_CASE(
+    "a line through values and inverse depths is found behind outliers, and is not flattened by noise") {
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    std::vector<depth_pair> pairs;
+    for (int i = 0; i < 2000; ++i) {
+        const double inverse = 0.2 + 0.05 * normal(random);
+        pairs.push_back({1000 + 40000 * (inverse + 0.03 * normal(random)), inverse});
+        if (i % 20 == 0) pairs.back().inverse_depth = 2;
+    }
+    const depth_line line = fit_line(pairs);
+    CHECK(line.scale == doctest::Approx(1 / 40000.0).epsilon(0.1));
+    CHECK(line.scale * (1000 + 40000 * 0.2) + line.offset == doctest::Approx(0.2).epsilon(0.02));
+    CHECK(line.correlation > 0.6);
+    for (depth_pair& p : pairs) p.value = 1000 * normal(random);
+    CHECK(std::abs(fit_line(pairs).correlation) < 0.1);
+    for (depth_pair& p : pairs) p.value = 7;
+    CHECK(fit_line(pairs).correlation == 0);
+}
+
+TEST_CASE("depth maps become the inverse depths of what photos show, and wrong ones are not used") {
+    gs::scene scene = made("spheres,views=6,depths=0.01");
+    scene.train[0].depths = {};
+    for (std::uint16_t& x : scene.train[1].depths.values) x = static_cast<std::uint16_t>(65535 - x);
+    scene.train[2].depths.values.assign(scene.train[2].depths.values.size(), 0);
+    const depth_evidence found = compare_depths(scene);
+    CHECK(found.photos == 6);
+    CHECK(found.with_map == 5);
+    CHECK(found.told == 4);
+    CHECK(found.agreeing == 3);
+    CHECK(found.correlation > 0.95);
+    for (std::size_t v = 0; v < 6; ++v) {
+        CAPTURE(v);
+        const gs::view& photo = scene.train[v];
+        CHECK((found.fits[v].scale > 0) == (v > 2));
+        if (v <= 2) continue;
+        std::vector<double> off;
+        for (const place_in_photo& p : points_in_sight(photo.camera, scene.points)) {
+            const auto i =
+                static_cast<std::size_t>(static_cast<int>(p.y) * photo.depths.width + static_cast<int>(p.x));
+            off.push_back(std::abs(static_cast<double>(found.fits[v].scale) * photo.depths.values[i] +
+                                   static_cast<double>(found.fits[v].offset) - 1 / p.depth) *
+                          p.depth);
+        }
+        std::ranges::nth_element(off, off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2));
+        CHECK(off[off.size() / 2] < 0.015);
+    }
+    CHECK(*decide(gather(scene))[5].called_for);
+    scene.points.clear();
+    CHECK_FALSE(decide(gather(scene))[5].called_for);
+}
+
+TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
+    const auto refusal = [](const std::string& text) -> std::string {
+        try {
+            gs::parse_synthetic(text);
+        } catch (const gs::error& e) {
+            return e.what();
+        }
+        return "";
+    };
+    CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
+    CHECK(refusal("spheres,glos=0.5") ==
+          "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
+          "sky, fisheye, depths, points, views, noise");
+    CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
+    CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
+    CHECK(refusal("spheres,") ==
+          "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
+          "sky, fisheye, depths, points, views, noise");
+    CHECK(refusal("spheres,gloss=nan") ==
+          "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
+    CHECK(refusal("spheres,views=4,depths=0") == "");
+    CHECK(refusal("spheres,views=4.5") ==
+          "the 'views' of a synthetic scene is a whole number from 1 to 48, not '4.5'");
+    CHECK(refusal("spheres,depths=-1") ==
+          "the 'depths' of a synthetic scene is a number from 0 to 10, not '-1'");
+    CHECK(refusal("spheres,gloss=0,gloss=1") ==
+          "a synthetic scene has one 'gloss', not several: spheres,gloss=0,gloss=1");
+}

@@ -1,0 +1,540 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../../../examples/gaussian_splatting/device/cpu/cpu.hpp"
+#include "../../../examples/gaussian_splatting/features/depth/depth_evidence.hpp"
+#include "../../../examples/gaussian_splatting/features/sh_degree/revise_sh_degree.hpp"
+#include "../../../examples/gaussian_splatting/features/simulate.hpp"
+#include "../../../examples/gaussian_splatting/core/error.hpp"
+#include "../../../examples/gaussian_splatting/evaluation/fit_exposure.hpp"
+#include "../../../examples/gaussian_splatting/evaluation/held_out_exposures.hpp"
+#include "../../../examples/gaussian_splatting/evaluation/held_out_views.hpp"
+#include "../../../examples/gaussian_splatting/training/initialise.hpp"
+#include "../../../examples/gaussian_splatting/render/geometry/effect_set.hpp"
+#include "../../../examples/gaussian_splatting/losses/inverse_depth/depth_gradient.hpp"
+#include "../../../examples/gaussian_splatting/features/exposure/exposures.hpp"
+#include "../../../examples/gaussian_splatting/features/sky/sky.hpp"
+#include "../../../examples/gaussian_splatting/training/trainer.hpp"
+#include "../training/engines.hpp"
+
+using namespace gs::effects;
+
+namespace {
+
+gs::scene made(const char* parameters) {
+    gs::load_options o;
+    o.data = std::string("synthetic:") + parameters;
+    return gs::load_scene(o, {});
+}
+
+std::string refusal(const std::string& text) {
+    try {
+        parse_selection(text);
+    } catch (const gs::error& e) {
+        return e.what();
+    }
+    return "";
+}
+
+std::vector<float> random_picture(std::mt19937& random, std::size_t values) {
+    std::vector<float> picture(values);
+    for (float& x : picture) x = static_cast<float>(random() % 1000) / 999;
+    return picture;
+}
+
+}  // namespace
+
+TEST_CASE("what is simulated is what the scene calls for, or what was said") {
+    const gs::scene spheres = made("spheres"), glossy = made("spheres,gloss=0.6,exposure=0.3");
+    const auto simulated = [](const gs::scene& scene, const char* selection, std::optional<int> degree = {}) {
+        return simulate(scene, parse_selection(selection), degree);
+    };
+    const simulation matte = simulated(spheres, "auto");
+    CHECK(matte.sh_degree == 0);
+    CHECK(matte.reviews_bands);
+    CHECK(matte.exposures.empty());
+    CHECK_FALSE(matte.antialiasing);
+    REQUIRE(matte.outcomes.size() == 6);
+    for (const auto& o : matte.outcomes) CHECK_FALSE(o.on);
+    CHECK(matte.outcomes[1].reason.find("brighter or darker") != std::string::npos);
+
+    const simulation much = simulated(glossy, "auto,-exposure,+antialiasing");
+    CHECK(much.sh_degree > 0);
+    CHECK(much.reviews_bands);
+    CHECK(much.exposures.empty());
+    CHECK(much.outcomes[1].reason == "--effects auto,-exposure,+antialiasing");
+    CHECK(much.antialiasing);
+    const simulation exposed = simulated(glossy, "auto,-direction");
+    CHECK(exposed.sh_degree == 0);
+    CHECK_FALSE(exposed.reviews_bands);
+    CHECK(*std::ranges::max_element(exposed.exposures) > 1.2f);
+    CHECK(*std::ranges::min_element(exposed.exposures) < 0.8f);
+
+    CHECK(simulated(spheres, "all").sh_degree == 3);
+    CHECK(simulated(spheres, "all").exposures == std::vector<float>(48, 1.0f));
+    CHECK_FALSE(simulated(spheres, "all").reviews_bands);
+    CHECK(simulated(glossy, "none").sh_degree == 0);
+    CHECK(simulated(spheres, "+direction,-exposure,-antialiasing,-sky,-masks,-depth").sh_degree == 3);
+    const simulation listed = simulated(spheres, "exposure,direction");
+    CHECK_FALSE(listed.exposures.empty());
+    CHECK(listed.sh_degree == 3);
+    CHECK_FALSE(listed.antialiasing);
+    CHECK(simulated(glossy, "auto", 1).sh_degree == 1);
+    CHECK_FALSE(simulated(glossy, "auto", 0).outcomes[0].on);
+    const simulation settled =
+        simulated(spheres, "auto,-exposure,-antialiasing,-sky,-masks,-depth", 2);  // nothing to look for
+    CHECK(settled.sh_degree == 2);
+    CHECK_FALSE(settled.reviews_bands);
+    CHECK(settled.outcomes[0].reason == "--sh-degree 2");
+
+    const simulation under_sky = simulated(made("spheres,sky=0.7"), "auto");
+    CHECK(under_sky.outcomes[3].on);
+    CHECK(under_sky.sky.size() == gs::sky_width);
+    CHECK(std::abs(under_sky.sky[0]) > 0.1f);
+    CHECK(matte.sky.empty());
+    CHECK(simulated(spheres, "all").sky == std::vector<float>(gs::sky_width, 0.0f));
+    CHECK(simulated(made("alpha"), "all").sky.empty());
+    CHECK(simulated(made("alpha"), "all").outcomes[3].reason == "photos have transparent parts");
+    CHECK(simulated(spheres, "all").outcomes[4].reason == "no mask leaves anything out of a training photo");
+    const simulation masked = simulated(made("spheres,passers=0.1"), "auto");
+    CHECK(masked.outcomes[4].on);
+    CHECK(masked.outcomes[4].reason.starts_with("48 of 48 photos have masks, which leave out "));
+
+    CHECK(simulated(spheres, "all").outcomes[5].reason == "no training photo has a depth map");
+    CHECK(simulated(spheres, "all").depth_fits.empty());
+    const gs::scene estimated = made("spheres,views=4,points=1000,depths=0.02");
+    CHECK(simulated(estimated, "none").depth_fits.empty());
+    for (const char* text : {"auto", "depth"}) {
+        const simulation deep = simulated(estimated, text);
+        CHECK(deep.outcomes[5].on);
+        REQUIRE(deep.depth_fits.size() == 4);
+        for (const gs::depth_fit& fit : deep.depth_fits) CHECK(fit.scale > 0);
+    }
+    const simulation wrong = simulated(made("spheres,views=4,depths=10"), "all");
+    CHECK_FALSE(wrong.outcomes[5].on);
+    CHECK(wrong.outcomes[5].reason.starts_with(
+        "4 of 4 photos have depth maps, of which 0 agree with the points; the median correlation is "));
+}
+
+TEST_CASE("a selection of effects that is none is refused") {
+    for (const char* text : {"auto", "all", "none", "direction", "exposure,antialiasing", "+direction",
+                             "auto,-exposure", "none,+exposure", "all,-direction"}) {
+        CAPTURE(text);
+        CHECK(refusal(text) == "");
+    }
+    CHECK(refusal("glare") ==
+          "--effects: there is no effect 'glare'; there are direction, exposure, antialiasing, sky, masks, "
+          "depth");
+    CHECK(parse_selection("auto").takes(effect::masks));
+    CHECK(parse_selection("masks").takes(effect::masks));
+    CHECK_FALSE(parse_selection("none").takes(effect::masks));
+    CHECK_FALSE(parse_selection("all,-masks").takes(effect::masks));
+    CHECK(parse_selection("all,-masks").takes(effect::depth));
+    for (const char* text : {"auto,exposure", "exposure,+direction", "exposure,auto", ""}) {
+        CAPTURE(text);
+        CHECK(refusal(text).starts_with("--effects"));
+    }
+}
+
+TEST_CASE("gradients by the picture and by the exposure are those of central differences") {
+    using device_type = gs::device::cpu;
+    device_type device;
+    std::mt19937 random(1);
+    for (const std::size_t pixels : {1, 31, 700}) {
+        CAPTURE(pixels);
+        const auto picture = random_picture(random, 3 * pixels), weights = random_picture(random, 3 * pixels);
+        // Of the sum of weights and exposed values, by an exposure that was learnt.
+        gs::train::exposures<device_type> exposures(device);
+        exposures.set({gs::train::unexposed, gs::train::unexposed});
+        const auto show = [&](const std::vector<float>& of) {
+            const float* shown = exposures.show(1, of.data(), pixels);
+            return std::vector<float>(shown, shown + 3 * pixels);
+        };
+        CHECK(show(picture) == picture);
+        for (int i = 0; i < 30; ++i) exposures.learn(1, picture.data(), weights.data(), pixels, 0.02f, {});
+        const auto values = exposures.get();
+        CHECK(values[0] == gs::train::unexposed);
+        for (const float x : {values[1][0], values[1][5], values[1][10]})
+            CHECK(x == doctest::Approx(0.4).epsilon(
+                           1e-3));  // each step is of the rate: all gradients are positive
+        const auto loss = [&](const std::vector<float>& of) {
+            double sum = 0;
+            const auto shown = show(of);
+            for (std::size_t i = 0; i < shown.size(); ++i)
+                sum += static_cast<double>(weights[i]) * static_cast<double>(shown[i]);
+            return sum;
+        };
+        const float* by = exposures.learn(1, picture.data(), weights.data(), pixels, 0, {});
+        for (const std::size_t i : {std::size_t{0}, pixels - 1, 2 * pixels}) {
+            auto more = picture;
+            more[i] += 0.5f;
+            CHECK((loss(more) - loss(picture)) * 2 ==
+                  doctest::Approx(static_cast<double>(by[i])).epsilon(1e-4));
+        }
+        exposures.centre();
+        const auto centred = exposures.get();
+        for (std::size_t k = 0; k < 12; ++k)
+            CHECK(0.5f * (centred[0][k] + centred[1][k]) ==
+                  doctest::Approx(k % 5 == 0 ? 1 : 0).epsilon(1e-6));
+        CHECK(centred[1][0] - centred[0][0] == doctest::Approx(values[1][0] - values[0][0]).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("a step without room, or whose gradient is not finite, leaves the exposure") {
+    gs::device::cpu device;
+    gs::train::exposures<gs::device::cpu> exposures(device);
+    exposures.set({gs::train::unexposed});
+    const auto before = exposures.get();
+    const std::vector<float> picture(3, 0.5f), nothing(3, std::nanf(""));
+    const std::uint64_t needed = 2;
+    exposures.learn(0, picture.data(), picture.data(), 1, 0.1f, {&needed, 1});
+    CHECK(exposures.get() == before);
+    exposures.learn(0, picture.data(), nothing.data(), 1, 0.1f, {});
+    CHECK(exposures.get() == before);
+    exposures.learn(0, picture.data(), picture.data(), 1, 0.1f, {&needed, 2});
+    CHECK(exposures.get() != before);
+}
+
+TEST_CASE("a sky is drawn by direction, and its gradients are those of central differences") {
+    gs::device::cpu device;
+    using warp = gs::device::cpu::warp;
+    std::mt19937 random(3);
+    for (const auto& [width, height, world] : {std::tuple{1, 1, "spheres"},
+                                               {37, 19, "spheres"},
+                                               {64, 8, "spheres"},
+                                               {37, 19, "spheres,fisheye=150"}}) {
+        CAPTURE(width);
+        CAPTURE(world);
+        const auto pixels = static_cast<std::size_t>(width * height);
+        gs::camera camera = small_scene((std::string("synthetic:") + world).c_str(), 32).train[7].camera;
+        camera.width = width;
+        camera.height = height;
+        camera.cx = 0.4 * width;
+        std::vector<float> coefficients = random_picture(random, gs::sky_width);
+        const auto weights = random_picture(random, 3 * pixels), through = random_picture(random, pixels);
+        gs::train::sky<gs::device::cpu> sky(device);
+        CHECK(sky.draw(camera) == nullptr);
+        // Of the sum of weights and what comes through of the sky.
+        const auto loss = [&] {
+            sky.set(coefficients);
+            const float* planes = sky.draw(camera);
+            double sum = 0;
+            for (std::size_t i = 0; i < 3 * pixels; ++i)
+                sum += static_cast<double>(weights[i] * through[i % pixels] * planes[i]);
+            return sum;
+        };
+        gs::train::learned_numbers<gs::device::cpu, gs::sky_width> numbers(device);
+        const auto sums = numbers.sums(gs::train::sky_patch<warp, false>::count(width, height));
+        gs::raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
+            device.for_each_warp(
+                sums.warps, gs::train::sky_backward<warp, Fisheye>{
+                                gs::raster::for_device<warpagg::value_t<warp, float>>(camera), through.data(),
+                                weights.data(), sums});
+        });
+        for (const unsigned k : {0u, 4u, 20u, 47u}) {
+            double by = 0;
+            for (std::size_t part = 0; part < sums.warps; ++part) by += static_cast<double>(*sums(k, part));
+            const float before = coefficients[k];
+            coefficients[k] = before + 0.5f;
+            const double more = loss();
+            coefficients[k] = before - 0.5f;
+            const double error = std::abs(more - loss() - by);
+            CHECK(error < 1e-5 * static_cast<double>(pixels));
+            coefficients[k] = before;
+        }
+        const double first = loss();
+        for (int i = 0; i < 5; ++i) sky.learn(camera, through.data(), weights.data(), 0.01f, {});
+        const auto learnt = sky.get();
+        for (std::size_t k = 0; k < 3; ++k)  // the constant's gradient is positive: steps are of the rate
+            CHECK(learnt[k] == doctest::Approx(coefficients[k] - 0.05f).epsilon(1e-3));
+        coefficients = learnt;
+        CHECK(loss() < first);
+    }
+}
+
+TEST_CASE("behind a scene a sky is learnt, where no surface is") {
+    const gs::scene scene = small_scene("synthetic:spheres,sky=0.9", 48);
+    gs::gaussians points = gs::from_points(scene.points, 0, 3000, 1);
+    for (const auto make : engines()) {
+        const auto psnr_with = [&](const std::vector<float>& sky) {
+            const auto e = make();
+            gs::train::train_options o;
+            o.schedule.iterations = 400;
+            o.schedule.sh_degree = 0;
+            o.max_cap = 4000;
+            gs::gaussians model = points;
+            model.sky = sky;
+            e->set_views(scene.train, scene.test, o.schedule.num_downscales);
+            e->set_model(model);
+            gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
+            const double psnr = gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr();
+            model = e->get_model();
+            CHECK(model.sky.size() == sky.size());
+            if (!sky.empty()) CHECK(model.sky != sky);
+            e->set_model(model);
+            CHECK(gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr() ==
+                  doctest::Approx(psnr).epsilon(1e-6));
+            return psnr;
+        };
+        CHECK(psnr_with(std::vector<float>(gs::sky_width, 0.0f)) > psnr_with({}) + 3);
+    }
+    const auto e = gs::train::make_cpu_engine();
+    points.sky.assign(gs::sky_width, 0.0f);
+    e->set_views(scene.train, {}, 0);
+    e->set_model(points);
+    e->reserve();
+    for (std::size_t p = 0; p < gs::gradient_policy_names.size(); ++p) {
+        CAPTURE(gs::gradient_policy_names[p]);
+        gs::train::step_plan plan = plan_for(0);
+        plan.gradient = static_cast<gs::gradient_policy>(p);
+        plan.sky_rate = 0.01f;
+        if (gs::knows_skies(plan.gradient))
+            CHECK_NOTHROW(e->step(plan));
+        else
+            CHECK_THROWS_WITH_AS(e->step(plan), doctest::Contains("before a sky"), gs::error);
+    }
+}
+
+TEST_CASE("an inverse depth is drawn to what its map says, and to nothing that it does not know") {
+    const std::vector<float> drawn{0.2f, 0.4f, 0.3f, 0.3f, 0.1f};
+    const std::vector<std::uint16_t> map{100, 100, 100, 0, 1};  // 0.3, and below zero
+    std::vector<float> gradient(15, 7.0f);
+    const gs::train::depth_gradient kernel{drawn.data(), map.data(), {0.004f, -0.1f},
+                                           0.5f,         5,          gradient.data()};
+    for (std::size_t i = 0; i < 5; ++i) kernel(i);
+    CHECK(gradient[0] == -0.5f);
+    CHECK(gradient[1] == 0.5f);
+    CHECK(std::abs(gradient[2]) <= 0.5f);
+    CHECK(gradient[3] == 0);
+    CHECK(gradient[4] == 0.5f);
+    for (std::size_t i = 5; i < 15; ++i) CHECK(gradient[i] == 0);
+}
+
+TEST_CASE("with depth maps, few photos with few points make a better scene" *
+          doctest::test_suite("quality")) {
+    for (const auto make : engines()) {
+        double gain = 0;
+        for (const std::uint64_t seed : {0, 1, 2, 3}) {
+            gs::load_options from;
+            from.data = "synthetic:spheres,views=4,points=300,depths=0.02";
+            from.resolution = 48;
+            from.eval = true;
+            from.seed = seed;
+            const gs::scene scene = gs::load_scene(from, {});
+            const auto psnr_with = [&](const std::vector<gs::depth_fit>& fits) {
+                const auto e = make();
+                gs::train::train_options o;
+                o.schedule.iterations = 1500;
+                o.schedule.sh_degree = 0;
+                o.max_cap = 4000;
+                o.seed = seed;
+                o.gradient = gs::gradient_policy::fixed;  // the same whenever it is run: runs differ by a dB
+                o.depth_fits = fits;
+                e->set_views(scene.train, scene.test, o.schedule.num_downscales);
+                e->set_model(gs::from_points(scene.points, 0, 4000, seed));
+                gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
+                return gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr();
+            };
+            const depth_evidence found = compare_depths(scene);
+            CHECK(found.agreeing >= 3);
+            gain += psnr_with(found.fits) / 4 - psnr_with({}) / 4;
+        }
+        MESSAGE("depth maps bring " << gain << " dB");
+        CHECK(gain > 0.3);
+    }
+}
+
+TEST_CASE("photos of different exposures are fitted, and their mean stays") {
+    const gs::scene scene = small_scene("synthetic:spheres,exposure=0.4", 32);
+    std::array<double, 2> psnr{};
+    for (const auto make : engines())
+        for (const bool exposes : {false, true}) {
+            const auto e = make();
+            gs::train::train_options o;
+            o.schedule.iterations = 400;
+            o.schedule.sh_degree = 0;
+            o.max_cap = 4000;
+            if (exposes) o.exposures.assign(scene.train.size(), gs::train::unexposed);
+            e->set_views(scene.train, {}, o.schedule.num_downscales);
+            e->set_model(gs::from_points(scene.points, 0, 3000, 1));
+            gs::train::train_events events{[&](const gs::train::progress& p) { psnr[exposes] = p.psnr; },
+                                           [](int) {}, [](int) {}};
+            const auto result = gs::train::train(*e, scene, o, events);
+            CHECK(result.exposures.size() == (exposes ? scene.train.size() : 0));
+            if (!exposes) continue;
+            CHECK(psnr[1] > psnr[0] + 3);
+            double mean = 0, square = 0;
+            for (const auto& x : result.exposures) {
+                mean += static_cast<double>(x[5]);
+                square += static_cast<double>(x[5] * x[5]);
+            }
+            mean /= static_cast<double>(scene.train.size());
+            CHECK(mean == doctest::Approx(1).epsilon(1e-4));
+            CHECK(std::sqrt(square / static_cast<double>(scene.train.size()) - mean * mean) > 0.1);
+        }
+}
+
+TEST_CASE("what passed before photos leaves nothing behind if masks leave it out") {
+    const gs::scene truth = small_scene("synthetic:spheres", 48);
+    for (const auto make : engines()) {
+        const auto psnr_of = [&](const char* data, bool masks) {
+            gs::load_options from;
+            from.data = data;
+            from.resolution = 48;
+            from.eval = true;
+            from.masks = masks;
+            gs::scene scene = gs::load_scene(from, {});
+            scene.test = truth.test;
+            for (std::size_t v = 0; v < scene.train.size(); v += 4)  // and some without
+                scene.train[v] = truth.train[v];
+            const auto e = make();
+            gs::train::train_options o;
+            o.schedule.iterations = 600;
+            o.schedule.sh_degree = 0;
+            o.max_cap = 4000;
+            e->set_views(scene.train, scene.test, o.schedule.num_downscales);
+            e->set_model(gs::from_points(scene.points, 0, 3000, 1));
+            gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
+            return gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr();
+        };
+        const double clean = psnr_of("synthetic:spheres", true);
+        const double masked = psnr_of("synthetic:spheres,passers=0.25", true);
+        const double spoilt = psnr_of("synthetic:spheres,passers=0.25", false);
+        CHECK(masked > clean - 2);  // which has a quarter more to learn from
+        CHECK(masked > spoilt + 1);
+    }
+}
+
+TEST_CASE("bands go, with their memory, where training is told so, and come as zeros") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines())
+        for (const int degree : {0, 1, 2, 3}) {
+            CAPTURE(degree);
+            const auto e = make();
+            gs::train::train_options o;
+            o.schedule.iterations = 40;
+            o.schedule.sh_degree = 2;
+            o.schedule.sh_degree_interval = 5;
+            o.schedule.sh_lr = 1e-9;
+            o.max_cap = 4000;
+            o.review_bands = [&](int sh_degree) {
+                CHECK(sh_degree == 2);
+                return degree;
+            };
+            e->set_views(scene.train, {}, o.schedule.num_downscales);
+            gs::gaussians model = gs::from_points(scene.points, 2, 3000, 1);
+            std::ranges::fill(model.sh_rest, 0.01f);
+            e->set_model(model);
+            const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
+            CHECK(gs::train::train(*e, scene, o, quiet).sh_degree == degree);
+            const gs::gaussians after = e->get_model();
+            CHECK(after.sh_degree == degree);
+            const auto rest = static_cast<std::size_t>(after.rest_width());
+            REQUIRE(after.sh_rest.size() == rest * e->count());
+            std::size_t wrong = 0;
+            for (std::size_t i = 0; i < after.sh_rest.size(); ++i)
+                wrong += std::abs(after.sh_rest[i] - (i % rest < 24 ? 0.01f : 0.0f)) > 1e-5f;
+            CHECK(wrong == 0);
+        }
+}
+
+TEST_CASE("a review adds bands that what is left of photos calls for, and drops those that do not show") {
+    for (const auto make : engines())
+        for (const char* name : {"synthetic:spheres,gloss=0.8", "synthetic:spheres,noise=0.1"}) {
+            CAPTURE(name);
+            const bool glossy = std::string(name).find("gloss") != std::string::npos;
+            const gs::scene scene = small_scene(name, 64);
+            const auto e = make();
+            gs::train::train_options o;
+            o.schedule.iterations = 300;
+            o.schedule.sh_degree = 0;
+            o.max_cap = 2000;
+            e->set_views(scene.train, {}, o.schedule.num_downscales);
+            e->set_model(gs::from_points(scene.points, 0, 2000, 1));
+            const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
+            gs::train::train(*e, scene, o, quiet);
+            const band_review left = review_bands(*e, scene, {}, 0);
+            CHECK((glossy ? left.sh_degree >= 2 : left.sh_degree == 0));
+            CHECK_FALSE(left.change);
+            CHECK(left.unexplained[0] > 0);
+            if (glossy) continue;
+            e->set_sh_degree(2);
+            CHECK(review_bands(*e, scene, {}, 2).sh_degree == 0);
+            gs::gaussians model = e->get_model();
+            for (std::size_t i = 0; i < model.sh_rest.size(); ++i)
+                if (i % 24 < 9) model.sh_rest[i] = 0.02f;  // the band of degree 1
+            e->set_model(model);
+            const band_review kept = review_bands(*e, scene, {}, 2);
+            CHECK(kept.sh_degree == 1);
+            REQUIRE(kept.change);
+            CHECK(*kept.change > band_change_limit);
+        }
+}
+
+TEST_CASE("test photos are exposed as their neighbours, if training photos are") {
+    gs::scene scene;
+    for (const char* name : {"e", "a", "c", "g"}) scene.train.emplace_back().name = name;
+    for (const char* name : {"0", "b", "d", "z"}) scene.test.emplace_back().name = name;
+    const auto gain = [](float x) { return gs::train::exposure{x, 0, 0, 0, 0, x, 0, 0, 0, 0, x, 0}; };
+    const std::vector walk{gain(1.2f), gain(0.8f), gain(1), gain(1.4f)};
+    CHECK(gs::evaluate::test_exposures(scene, walk) ==
+          std::vector{gain(0.8f), gain(0.5f * (0.8f + 1)), gain(0.5f * (1 + 1.2f)), gain(1.4f)});
+    const std::vector jumps{gain(0.6f), gain(0.8f), gain(1.4f), gain(1.2f)};
+    CHECK(gs::evaluate::test_exposures(scene, jumps) == std::vector(4, gs::train::unexposed));
+}
+
+TEST_CASE("what test views are shown with is what they are measured with") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_views(scene.train, scene.test);
+        e->set_model(gs::from_points(scene.points, 0, 1000, 1));
+        std::vector<float> plain, darker;
+        const double before = e->measure(1, {}, &plain).psnr();
+        auto half = std::vector(scene.test.size(), gs::train::unexposed);
+        half[1] = {0.5f, 0, 0, 0.1f, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0};
+        e->set_test_exposures(half);
+        CHECK(e->measure(1, {}, &darker).psnr() < before);
+        for (std::size_t i = 0; i < plain.size(); ++i)
+            CHECK(darker[i] == doctest::Approx(0.5f * plain[i] + (i < plain.size() / 3 ? 0.1f : 0.0f)));
+        CHECK(e->measure(0, {}, &darker).psnr() != before);
+        e->set_test_exposures({});
+        CHECK(e->measure(1, {}).psnr() == before);
+    }
+}
+
+TEST_CASE("a fit finds what an exposure did, on pixels that it is not measured by") {
+    std::mt19937 random(2);
+    constexpr int width = 20, height = 9;
+    const auto picture = random_picture(random, 3 * width * height);
+    gs::image photo{width, height, std::vector<std::uint8_t>(4 * width * height, 255)};
+    for (std::size_t i = 0; i < picture.size(); ++i)
+        photo.rgba[4 * (i % (width * height)) + i / (width * height)] =
+            static_cast<std::uint8_t>(std::lround(255 * (0.6f * picture[i] + 0.1f)));
+    const auto psnr = [&](const gs::image& of) { return *gs::evaluate::psnr_after_fit(picture, of, {}); };
+    const double by_rounding = -20 * std::log10(std::sqrt(1.0 / 12) / 255);
+    CHECK(psnr(photo) == doctest::Approx(by_rounding).epsilon(0.02));
+    // Half of what either half has is spoilt; a mask leaves that out.
+    gs::image spoilt = photo, masked = photo;
+    for (std::size_t i = 0; i < width * height; i += 2) {
+        for (std::size_t c = 0; c < 3; ++c) spoilt.rgba[4 * i + c] = 128;
+        masked.leave_out(i);
+    }
+    CHECK(psnr(spoilt) < 20);
+    CHECK(psnr(masked) == doctest::Approx(by_rounding).epsilon(0.02));
+    for (std::size_t i = 0; i < width * height; ++i)
+        if (i % width >= width / 2) masked.leave_out(i);
+    CHECK_FALSE(gs::evaluate::psnr_after_fit(picture, masked, {}));
+    // Without a left half nothing changes.
+    CHECK(*gs::evaluate::psnr_after_fit({0.5f, 0.5f, 0.5f}, gs::image{1, 1, {153, 128, 128, 255}}, {}) ==
+          doctest::Approx(-10 * std::log10((0.01 + 2 * std::pow(0.5 / 255, 2)) / 3)).epsilon(1e-4));
+}

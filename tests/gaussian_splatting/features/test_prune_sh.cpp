@@ -1,0 +1,281 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "device/cpu/cpu.hpp"
+#include "../training/engines.hpp"
+#include "training/initialise.hpp"
+#include "densify/adaptive/densifier.hpp"
+
+namespace {
+
+using gs::gaussians;
+using gs::train::engine;
+
+constexpr auto how = gs::gradient_policy::fixed;
+
+/// Colours from dark to bright by direction, in bands of every degree, of each Gaussian more than of the one
+/// before.
+gaussians banded_model(const gs::scene& scene, std::size_t count) {
+    gaussians model = gs::from_points(scene.points, 3, count, 1);
+    std::mt19937 random(3);
+    std::normal_distribution<float> normal;
+    const auto rest = static_cast<std::size_t>(model.rest_width());
+    for (std::size_t i = 0; i < model.sh_rest.size(); ++i)
+        model.sh_rest[i] =
+            0.2f * static_cast<float>(i / rest + 1) / static_cast<float>(count) * normal(random);
+    for (float& o : model.opacity) o = normal(random);
+    return model;
+}
+
+std::unique_ptr<engine> engine_with(make_engine make, const gs::scene& scene, const gaussians& model) {
+    auto e = make();
+    e->set_views(scene.train, {});
+    e->set_model(model);
+    e->reserve();
+    return e;
+}
+
+/// By how much what two engines draw of the training views differs, as a root mean square.
+double difference(engine& a, engine& b, const gs::scene& scene) {
+    double sum = 0, values = 0;
+    for (const gs::view& v : scene.train) {
+        const auto x = a.render(v.camera, {}), y = b.render(v.camera, {});
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const double d = static_cast<double>(x[i]) - static_cast<double>(y[i]);
+            sum += d * d;
+        }
+        values += static_cast<double>(x.size());
+    }
+    return std::sqrt(sum / values);
+}
+
+/// Where each Gaussian of `now` was in `before`, by its mean, which no other has.
+std::vector<std::size_t> origins(const gaussians& now, const gaussians& before) {
+    const auto mean = [](const gaussians& g, std::size_t i) {
+        return std::array{g.mean[3 * i], g.mean[3 * i + 1], g.mean[3 * i + 2]};
+    };
+    std::map<std::array<float, 3>, std::size_t> places;
+    for (std::size_t i = 0; i < before.count(); ++i) places[mean(before, i)] = i;
+    CHECK(places.size() == before.count());
+    std::vector<std::size_t> from;
+    for (std::size_t i = 0; i < now.count(); ++i) from.push_back(places.at(mean(now, i)));
+    return from;
+}
+
+/// How many of the first `rows` rows are not those of `before`.
+std::size_t changed(const std::vector<float>& now, const std::vector<float>& before,
+                    const std::vector<std::size_t>& from, std::size_t rows) {
+    const std::size_t width = now.size() / from.size();
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < rows; ++i)
+        n += !std::equal(now.begin() + static_cast<std::ptrdiff_t>(i * width),
+                         now.begin() + static_cast<std::ptrdiff_t>((i + 1) * width),
+                         before.begin() + static_cast<std::ptrdiff_t>(from[i] * width));
+    return n;
+}
+
+/// The second half of a model's colours does not depend on direction.
+gaussians half_banded(const gs::scene& scene, std::size_t count) {
+    gaussians model = banded_model(scene, count);
+    const auto rest = static_cast<std::size_t>(model.rest_width());
+    for (std::size_t i = 0; i < count; i += 2) {
+        std::fill_n(model.sh_rest.begin() + static_cast<std::ptrdiff_t>(i * rest), rest, 0.0f);
+        std::fill_n(model.sh_constant.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 0.0f);
+    }
+    return model;
+}
+
+/// One Gaussian, which is all that pixels show.
+gaussians one_before_all(const gs::scene& scene) {
+    gaussians one = banded_model(scene, 1);
+    one.mean = {0, 0, 0};
+    one.log_scale = {1, 1, 1};
+    one.opacity = {10};
+    return one;
+}
+
+}  // namespace
+
+TEST_CASE("Gaussians lose their bands as long as views change by no more than was said, and no sooner") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines()) {
+        const gaussians model = banded_model(scene, 1000);
+        const auto whole = engine_with(make, scene, model);
+        std::size_t last = 1001;
+        for (const double change : {1e-4, 3e-3, 1e-2, 1.0}) {
+            CAPTURE(change);
+            const auto e = engine_with(make, scene, model);
+            const std::size_t banded = e->drop_bands(change, how);
+            CHECK(banded < last);
+            CHECK((banded == 1000 || banded % gs::block_length == 0));
+            const double differs = difference(*e, *whole, scene);
+            CHECK(differs <= change);
+            if (change == 1e-4)
+                CHECK(banded == 1000);  // a tenth is not worth it
+            else
+                CHECK(differs > 0.15 * std::min(change, 0.05));
+            last = banded;
+        }
+        CHECK(last == 0);
+
+        // Where one Gaussian is all that pixels show, what is said is what comes.
+        const gaussians one = one_before_all(scene);
+        const auto e = engine_with(make, scene, one), before = engine_with(make, scene, one);
+        CHECK(e->drop_bands(1, how) == 0);
+        const double differs = difference(*e, *before, scene);
+        CHECK(differs > 0.01);
+        CHECK(engine_with(make, scene, one)->drop_bands(0.98 * differs, how) == 1);
+        CHECK(engine_with(make, scene, one)->drop_bands(1.05 * differs, how) == 0);
+    }
+}
+
+TEST_CASE("a Gaussian without bands has the colour that pixels of the training views show on average") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines()) {
+        const gaussians one = one_before_all(scene);
+        const auto e = engine_with(make, scene, one), before = engine_with(make, scene, one);
+        CHECK(e->drop_bands(1, how) == 0);
+        for (std::size_t c = 0; c < 3; ++c) {
+            double sum[2] = {};
+            for (const gs::view& v : scene.train) {
+                const auto x = before->render(v.camera, {}), y = e->render(v.camera, {});
+                for (std::size_t i = x.size() / 3 * c; i < x.size() / 3 * (c + 1); ++i) {
+                    sum[0] += static_cast<double>(x[i]);
+                    sum[1] += static_cast<double>(y[i]);
+                }
+            }
+            CHECK(sum[1] == doctest::Approx(sum[0]).epsilon(1e-4));
+        }
+    }
+}
+
+TEST_CASE("all else of Gaussians that lose bands stays, they come last, and the order is kept") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines()) {
+        const gaussians model = banded_model(scene, 1000);
+        const auto e = engine_with(make, scene, model);
+        const std::size_t banded = e->drop_bands(0.01, how);
+        REQUIRE(banded > 0);
+        REQUIRE(banded < 900);
+        const gaussians now = e->get_model();
+        const auto from = origins(now, model);
+        CHECK(changed(now.log_scale, model.log_scale, from, 1000) == 0);
+        CHECK(changed(now.quaternion, model.quaternion, from, 1000) == 0);
+        CHECK(changed(now.opacity, model.opacity, from, 1000) == 0);
+        CHECK(changed(now.sh_constant, model.sh_constant, from, banded) == 0);
+        CHECK(changed(now.sh_rest, model.sh_rest, from, banded) == 0);
+        const auto middle = from.begin() + static_cast<std::ptrdiff_t>(banded);
+        CHECK(std::is_sorted(from.begin(), middle));
+        CHECK(std::is_sorted(middle, from.end()));
+        CHECK(std::all_of(now.sh_rest.begin() + now.rest_width() * static_cast<std::ptrdiff_t>(banded),
+                          now.sh_rest.end(), [](float x) { return x == 0; }));
+
+        // As a model they are drawn alike, and what comes after gives bands back, as zeros.
+        const auto other = engine_with(make, scene, now);
+        CHECK(difference(*e, *other, scene) == 0);
+        e->set_sh_degree(1);
+        CHECK(difference(*e, *other, scene) > 0);
+        e->set_sh_degree(3);
+        auto still = plan_for(0);
+        still.rates = {};
+        e->step(still);
+        e->prune(0.2);
+        const gaussians fewer = e->get_model();
+        REQUIRE(fewer.count() == 800);
+        const auto first = origins(fewer, now);
+        std::size_t wrong = 0;
+        for (std::size_t i = 0; i < 800; ++i)
+            for (std::size_t k = 0; k < 45; ++k)
+                wrong += fewer.sh_rest[45 * i + k] != (k < 9 ? now.sh_rest[45 * first[i] + k] : 0.0f);
+        CHECK(wrong == 0);
+        still.sh_degree = 3;
+        still.rates.fill(1e-3f);
+        e->step(still);
+        const gaussians learnt = e->get_model();
+        CHECK(std::any_of(learnt.sh_rest.begin() + 45 * static_cast<std::ptrdiff_t>(banded),
+                          learnt.sh_rest.end(), [](float x) { return x != 0; }));
+    }
+}
+
+TEST_CASE("training goes on as if the bands that are not there were zero and did not learn") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines())
+        for (const bool updates_sh : {true, false}) {
+            CAPTURE(updates_sh);
+            const gaussians model = half_banded(scene, 1000);
+            const auto whole = engine_with(make, scene, model), e = engine_with(make, scene, model);
+            auto plan = plan_for(0);
+            plan.gradient = how;
+            plan.sh_degree = 3;
+            const auto rates = plan.rates;
+            // Momentum for all, but colours stay: where they are zero, they are so exactly.
+            std::fill(plan.rates.begin() + 4, plan.rates.end(), 0.0f);
+            for (; plan.view < 6; ++plan.view) {
+                whole->step(plan);
+                e->step(plan);
+            }
+            const gaussians before = whole->get_model();
+            const std::size_t banded = e->drop_bands(0, how);
+            CHECK(banded >= 500 - gs::block_length);
+            REQUIRE(banded < 500 + gs::block_length);
+            const auto from = origins(e->get_model(), before);
+            plan.rates = rates;
+            plan.updates_sh = updates_sh;
+            for (; plan.view < (updates_sh ? 7 : 9); ++plan.view) {  // else zeros have learnt
+                whole->step(plan);
+                e->step(plan);
+            }
+            const gaussians a = e->get_model(), b = whole->get_model();
+            CHECK(changed(a.mean, before.mean, from, 1000) > 500);
+            CHECK(changed(a.mean, b.mean, from, 1000) == 0);
+            CHECK(changed(a.log_scale, b.log_scale, from, 1000) == 0);
+            CHECK(changed(a.quaternion, b.quaternion, from, 1000) == 0);
+            CHECK(changed(a.opacity, b.opacity, from, 1000) == 0);
+            CHECK(changed(a.sh_constant, b.sh_constant, from, 1000) == 0);
+            CHECK(changed(a.sh_rest, b.sh_rest, from, banded) == 0);
+            CHECK((changed(a.sh_rest, before.sh_rest, from, banded) > banded / 2) == updates_sh);
+            CHECK(changed(a.sh_rest, before.sh_rest, from, 1000) ==
+                  changed(a.sh_rest, before.sh_rest, from, banded));
+        }
+}
+
+TEST_CASE("bands that are not there have no memory, in values and moments, and those go that show least") {
+    using device = gs::device::cpu;
+    device d;
+    constexpr std::size_t count = 1000;
+    gs::train::trained_parameters<device> of;
+    for (auto* all : {&of.values, &of.first, &of.second}) {
+        all->resize(count, 3);
+        all->zero(d);
+    }
+    of.last_step.resize(count);
+    std::vector<gs::train::colour_spread> spreads(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        of.values[3].data()[i] = static_cast<float>(i);  // the opacity: who it is
+        of.last_step.data()[i] = static_cast<std::uint32_t>(i);
+        spreads[i] = {1, {0.5f, 0.5f, 0.5f}, static_cast<float>((7 * i) % count)};
+    }
+    gs::train::densification<device> densification(d);
+    densification.drop_bands(of, count, 3, spreads.data(), 97 * 96 / 2);  // of 97, by the sum of 0 to 96
+    CHECK(of.values.banded() == count);
+    densification.drop_bands(of, count, 3, spreads.data(), 500 * 499 / 2);
+    CHECK(of.values.banded() == 512);
+    for (auto* all : {&of.values, &of.first, &of.second}) {
+        std::size_t floats = 0;
+        for (std::size_t p = 0; p < gs::parameter_count; ++p) floats += (*all)[p].size();
+        CHECK(floats == 14 * gs::in_whole_blocks(count) + 45 * 512);
+    }
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t who = of.last_step.data()[i];
+        wrong += of.values[3].data()[i] != static_cast<float>(who);
+        wrong += (spreads[who].squares < static_cast<float>(count - 512)) != (i >= 512);
+    }
+    CHECK(wrong == 0);
+}

@@ -1,0 +1,653 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <png.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
+#include <utility>
+
+#include "image/image.hpp"
+#include "image/mask.hpp"
+#include "readers/load_views.hpp"
+#include "../../support/temporary_folder.hpp"
+
+// jpeglib.h leaves it to its user to have declared FILE and size_t.
+#include <jpeglib.h>
+
+namespace {
+
+using gs::image;
+using gs_test::error_of;
+using gs_test::says;
+using gs_test::temporary_folder;
+using pixel = std::array<std::uint8_t, 4>;
+
+pixel pixel_at(const image& from, int x, int y) {
+    const auto i = 4 * static_cast<std::size_t>(y * from.width + x);
+    return {from.rgba[i], from.rgba[i + 1], from.rgba[i + 2], from.rgba[i + 3]};
+}
+
+image random_image(int width, int height, unsigned seed) {
+    std::mt19937 random(seed);
+    image made;
+    made.width = width;
+    made.height = height;
+    for (int i = 0; i < width * height; ++i) {
+        const auto alpha = static_cast<std::uint8_t>(random() % 256);
+        for (int channel = 0; channel < 3; ++channel)
+            made.rgba.push_back(static_cast<std::uint8_t>(random() % (alpha + 1U)));
+        made.rgba.push_back(alpha);
+        made.has_alpha |= alpha != 255;
+    }
+    return made;
+}
+
+// ---------------------------------------------------------------------------------------- PNGs of any kind
+
+struct png_kind {
+    int colour_type;
+    int depth;
+    bool interlaced;
+    bool transparent;  ///< has a tRNS chunk
+};
+
+int channels_of(int colour_type) {
+    switch (colour_type) {
+        case PNG_COLOR_TYPE_GRAY_ALPHA:
+            return 2;
+        case PNG_COLOR_TYPE_RGB:
+            return 3;
+        case PNG_COLOR_TYPE_RGB_ALPHA:
+            return 4;
+        default:
+            return 1;
+    }
+}
+
+/// Random samples of the whole picture, in its depth.
+std::vector<unsigned> random_samples(const png_kind& kind, int width, int height) {
+    std::mt19937 random(7);
+    std::vector<unsigned> samples(static_cast<std::size_t>(width * height * channels_of(kind.colour_type)));
+    for (unsigned& sample : samples) sample = static_cast<unsigned>(random()) & ((1U << kind.depth) - 1U);
+    return samples;
+}
+
+/// Rows of samples as a PNG has them: packed from the highest bit on, 16 bits big-endian.
+std::vector<std::vector<png_byte>> packed(const std::vector<unsigned>& samples, int height, int depth) {
+    std::vector<std::vector<png_byte>> rows(static_cast<std::size_t>(height));
+    const std::size_t per_row = samples.size() / rows.size();
+    for (std::size_t y = 0; y < rows.size(); ++y) {
+        unsigned bits = 0;
+        for (std::size_t x = 0; x < per_row; ++x)
+            for (int bit = depth - 1; bit >= 0; --bit, ++bits) {
+                if (bits % 8 == 0) rows[y].push_back(0);
+                const unsigned value = (samples[y * per_row + x] >> bit) & 1U;
+                rows[y].back() = static_cast<png_byte>(rows[y].back() | (value << (7 - bits % 8)));
+            }
+    }
+    return rows;
+}
+
+pixel palette_entry(unsigned index) {
+    return {static_cast<std::uint8_t>(37 * index + 11), static_cast<std::uint8_t>(91 * index + 5),
+            static_cast<std::uint8_t>(200 - 13 * index),
+            static_cast<std::uint8_t>(index < 3 ? 60 * index : 255)};
+}
+
+constexpr unsigned transparent_sample = 1;  // the grey level, or each of red, green and blue, of tRNS
+
+void write_any_png(const std::filesystem::path& file, const png_kind& kind, int width, int height,
+                   const std::vector<unsigned>& samples) {
+    auto rows = packed(samples, height, kind.depth);
+    std::vector<png_bytep> pointers;
+    for (auto& row : rows) pointers.push_back(row.data());
+    std::array<png_color, 256> palette{};
+    std::array<png_byte, 256> alphas{};
+    for (unsigned i = 0; i < 256; ++i) {
+        const pixel entry = palette_entry(i);
+        palette[i] = {entry[0], entry[1], entry[2]};
+        alphas[i] = entry[3];
+    }
+    png_color_16 colour{};
+    colour.gray = colour.red = colour.green = colour.blue = transparent_sample;
+
+    std::FILE* out = std::fopen(file.c_str(), "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, out);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), kind.depth,
+                 kind.colour_type, kind.interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    const bool has_palette = kind.colour_type == PNG_COLOR_TYPE_PALETTE;
+    if (has_palette) png_set_PLTE(png, info, palette.data(), 1 << kind.depth);
+    if (kind.transparent)
+        png_set_tRNS(png, info, has_palette ? alphas.data() : nullptr, has_palette ? 2 : 1, &colour);
+    png_write_info(png, info);
+    png_write_image(png, pointers.data());
+    png_write_end(png, nullptr);
+    png_destroy_write_struct(&png, &info);
+    std::fclose(out);
+}
+
+std::uint8_t to_8_bit(unsigned sample, int depth) {
+    return static_cast<std::uint8_t>(std::lround(255.0 * sample / ((1U << depth) - 1U)));
+}
+
+/// What the n-th pixel must be once read, from the definition of each colour type.
+pixel expected_pixel(const png_kind& kind, const std::vector<unsigned>& samples, std::size_t n) {
+    const auto channels = static_cast<std::size_t>(channels_of(kind.colour_type));
+    const unsigned* s = samples.data() + n * channels;
+    const auto byte = [&](std::size_t channel) { return to_8_bit(s[channel], kind.depth); };
+    pixel straight{};
+    switch (kind.colour_type) {
+        case PNG_COLOR_TYPE_PALETTE:
+            straight = palette_entry(s[0]);
+            if (!kind.transparent || s[0] >= 2) straight[3] = 255;
+            break;
+        case PNG_COLOR_TYPE_GRAY:
+            straight = {byte(0), byte(0), byte(0), 255};
+            if (kind.transparent && s[0] == transparent_sample) straight[3] = 0;
+            break;
+        case PNG_COLOR_TYPE_GRAY_ALPHA:
+            straight = {byte(0), byte(0), byte(0), byte(1)};
+            break;
+        case PNG_COLOR_TYPE_RGB:
+            straight = {byte(0), byte(1), byte(2), 255};
+            break;
+        default:
+            straight = {byte(0), byte(1), byte(2), byte(3)};
+    }
+    for (std::size_t channel = 0; channel < 3; ++channel)
+        straight[channel] = static_cast<std::uint8_t>(std::lround(straight[channel] * straight[3] / 255.0));
+    return straight;
+}
+
+std::vector<png_kind> every_png_kind() {
+    const std::pair<int, std::vector<int>> allowed[] = {
+        {PNG_COLOR_TYPE_GRAY, {1, 2, 4, 8, 16}}, {PNG_COLOR_TYPE_PALETTE, {1, 2, 4, 8}},
+        {PNG_COLOR_TYPE_GRAY_ALPHA, {8, 16}},    {PNG_COLOR_TYPE_RGB, {8, 16}},
+        {PNG_COLOR_TYPE_RGB_ALPHA, {8, 16}},
+    };
+    std::vector<png_kind> kinds;
+    for (const auto& [type, depths] : allowed)
+        for (const int depth : depths)
+            for (const bool interlaced : {false, true})
+                for (const bool transparent : {false, true}) {
+                    if (transparent && (type & PNG_COLOR_MASK_ALPHA)) continue;
+                    kinds.push_back({type, depth, interlaced, transparent});
+                }
+    return kinds;
+}
+
+void write_grey_png(const std::filesystem::path& file, int width, int height) {
+    const png_kind grey{PNG_COLOR_TYPE_GRAY, 8, false, false};
+    write_any_png(file, grey, width, height, random_samples(grey, width, height));
+}
+
+// ------------------------------------------------------------------------------------------------- JPEGs
+
+/// At the highest quality and without subsampling, so that what is read is what was written but for rounding.
+void write_jpeg(const std::filesystem::path& file, int width, int height, J_COLOR_SPACE space,
+                const std::vector<std::uint8_t>& samples, bool progressive = false) {
+    std::FILE* out = std::fopen(file.c_str(), "wb");
+    jpeg_error_mgr errors;
+    jpeg_compress_struct jpeg{};
+    jpeg.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&jpeg);
+    jpeg_stdio_dest(&jpeg, out);
+    jpeg.image_width = static_cast<JDIMENSION>(width);
+    jpeg.image_height = static_cast<JDIMENSION>(height);
+    jpeg.input_components = space == JCS_GRAYSCALE ? 1 : space == JCS_RGB ? 3 : 4;
+    jpeg.in_color_space = space;
+    jpeg_set_defaults(&jpeg);
+    jpeg_set_quality(&jpeg, 100, TRUE);
+    if (progressive) jpeg_simple_progression(&jpeg);
+    jpeg.comp_info[0].h_samp_factor = jpeg.comp_info[0].v_samp_factor = 1;
+    jpeg_start_compress(&jpeg, TRUE);
+    std::vector<std::uint8_t> copy = samples;
+    const std::size_t row_bytes = static_cast<std::size_t>(width * jpeg.input_components);
+    while (jpeg.next_scanline < jpeg.image_height) {
+        JSAMPROW row = copy.data() + row_bytes * jpeg.next_scanline;
+        jpeg_write_scanlines(&jpeg, &row, 1);
+    }
+    jpeg_finish_compress(&jpeg);
+    jpeg_destroy_compress(&jpeg);
+    std::fclose(out);
+}
+
+std::vector<std::uint8_t> smooth_samples(int width, int height, int channels) {
+    std::vector<std::uint8_t> samples;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int channel = 0; channel < channels; ++channel)
+                samples.push_back(static_cast<std::uint8_t>(
+                    std::lround(128 + 90 * std::sin(0.11 * x + 0.07 * y + channel))));
+    return samples;
+}
+
+// ------------------------------------------------------------------------------------------------ damage
+
+std::uint32_t crc_of(const std::string& bytes) {
+    std::uint32_t crc = 0xFFFFFFFFU;
+    for (const char c : bytes) {
+        crc ^= static_cast<unsigned char>(c);
+        for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1U) ? 0xEDB88320U : 0U);
+    }
+    return ~crc;
+}
+
+void put_big_endian(std::string& bytes, std::size_t at, std::uint32_t value) {
+    for (std::size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<char>(value >> (24 - 8 * i));
+}
+
+/// The PNG with another size in its header, whose checksum is put right.
+std::string with_png_size(std::string png, std::uint32_t width, std::uint32_t height) {
+    put_big_endian(png, 16, width);
+    put_big_endian(png, 20, height);
+    put_big_endian(png, 29, crc_of(png.substr(12, 17)));
+    return png;
+}
+
+/// The baseline JPEG with another size in its frame header.
+std::string with_jpeg_size(std::string jpeg, unsigned width, unsigned height) {
+    const std::size_t frame = jpeg.find("\xFF\xC0");
+    jpeg[frame + 5] = static_cast<char>(height >> 8);
+    jpeg[frame + 6] = static_cast<char>(height);
+    jpeg[frame + 7] = static_cast<char>(width >> 8);
+    jpeg[frame + 8] = static_cast<char>(width);
+    return jpeg;
+}
+
+std::string error_of_reading(const std::filesystem::path& file) {
+    return error_of([&] { gs::read_image(file); });
+}
+
+std::string error_of_reading_size(const std::filesystem::path& file) {
+    int width = 0, height = 0;
+    return error_of([&] { gs::read_image_size(file, width, height); });
+}
+
+/// What is printed to stderr meanwhile goes to a file.
+class captured_stderr {
+  public:
+    explicit captured_stderr(const std::filesystem::path& file) : kept_(dup(STDERR_FILENO)) {
+        const int to = open(file.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
+        dup2(to, STDERR_FILENO);
+        close(to);
+    }
+    ~captured_stderr() {
+        dup2(kept_, STDERR_FILENO);
+        close(kept_);
+    }
+    captured_stderr(const captured_stderr&) = delete;
+    captured_stderr& operator=(const captured_stderr&) = delete;
+
+  private:
+    int kept_;
+};
+
+}  // namespace
+
+TEST_CASE("one channel is read in 16 bit, whatever the file has, and several are refused") {
+    const temporary_folder folder;
+    const auto file = folder / "depths.png";
+    for (const int depth : {1, 2, 4, 8, 16})
+        for (const bool interlaced : {false, true}) {
+            CAPTURE(depth);
+            const png_kind grey{PNG_COLOR_TYPE_GRAY, depth, interlaced, false};
+            const auto samples = random_samples(grey, 13, 7);
+            write_any_png(file, grey, 13, 7, samples);
+            int width = 0, height = 0;
+            const std::vector<std::uint16_t> values = gs::read_grey_png(file, width, height);
+            CHECK(std::pair{width, height} == std::pair{13, 7});
+            REQUIRE(values.size() == samples.size());
+            const unsigned spread = 65535 / ((1U << depth) - 1U);
+            for (std::size_t i = 0; i < samples.size(); ++i) CHECK(values[i] == spread * samples[i]);
+        }
+    for (const int colour_type : {PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA}) {
+        const png_kind kind{colour_type, 8, false, false};
+        write_any_png(file, kind, 13, 7, random_samples(kind, 13, 7));
+        CHECK(says(error_of([&] { gs::read_depth_map(file, 13, 7); }), {"depths.png", "one channel"}));
+    }
+    write_jpeg(file, 13, 7, JCS_GRAYSCALE, smooth_samples(13, 7, 1));
+    CHECK(says(error_of([&] { gs::read_depth_map(file, 13, 7); }), {"depths.png", "no PNG"}));
+}
+
+TEST_CASE("a depth map of another size is averaged over what it knows") {
+    const gs::depth_map map{4, 2, {10, 20, 0, 0, 30, 40, 0, 8}};
+    CHECK(gs::resized(map, 2, 1).values == std::vector<std::uint16_t>{25, 0});
+    CHECK(gs::resized(map, 4, 1).values == std::vector<std::uint16_t>{20, 30, 0, 8});
+    const gs::depth_map larger = gs::resized(map, 8, 6);
+    CHECK(std::pair{larger.width, larger.height} == std::pair{8, 6});
+    for (std::size_t y = 0; y < 6; ++y)
+        for (std::size_t x = 0; x < 8; ++x)
+            CHECK(larger.values[8 * y + x] == map.values[4 * (y / 3) + x / 2]);
+    CHECK(gs::resized({3, 1, {30, 60, 90}}, 2, 1).values == std::vector<std::uint16_t>{40, 80});
+    CHECK_FALSE(gs::resized({}, 2, 1).is_there());
+}
+
+TEST_CASE("what write_png writes, read_image reads") {
+    const temporary_folder folder;
+    const int width = 17, height = 16, plane = width * height;
+    std::vector<float> planes;
+    for (int i = 0; i < 3 * plane; ++i) planes.push_back(static_cast<float>((i * 7) % 256) / 255.0F);
+    gs::write_png(folder / "a.png", width, height, planes);
+    const image read = gs::read_image(folder / "a.png");
+    REQUIRE(read.width == width);
+    REQUIRE(read.height == height);
+    CHECK_FALSE(read.has_alpha);
+    for (int i = 0; i < plane; ++i) {
+        const pixel expected{static_cast<std::uint8_t>(i * 7), static_cast<std::uint8_t>((i + plane) * 7),
+                             static_cast<std::uint8_t>((i + 2 * plane) * 7), 255};
+        REQUIRE(pixel_at(read, i % width, i / width) == expected);
+    }
+}
+
+TEST_CASE("write_png clamps, rounds to nearest, and takes NaN for black") {
+    const temporary_folder folder;
+    const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+    gs::write_png(folder / "a.png", 2, 1, {-3.0F, 0.4F / 255, nan, 1.7F, 0.6F / 255, inf});
+    const image read = gs::read_image(folder / "a.png");
+    CHECK(pixel_at(read, 0, 0) == pixel{0, 0, 1, 255});
+    CHECK(pixel_at(read, 1, 0) == pixel{0, 255, 255, 255});
+}
+
+TEST_CASE("write_png names the file it cannot write and leaves nothing behind") {
+    const temporary_folder folder;
+    const std::vector<float> planes(3, 0.5F);
+    CHECK(says(error_of([&] { gs::write_png(folder / "none/a.png", 1, 1, planes); }), {"none/a.png"}));
+    CHECK_THROWS_AS(gs::write_png(folder / "a.png", 2, 1, planes), std::invalid_argument);
+    CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("PNGs of every colour type and depth, interlaced or not, transparent or not") {
+    const temporary_folder folder;
+    const int width = 13, height = 11;  // odd, so that rows end within a byte
+    for (const png_kind& kind : every_png_kind()) {
+        CAPTURE(kind.colour_type);
+        CAPTURE(kind.depth);
+        CAPTURE(kind.interlaced);
+        CAPTURE(kind.transparent);
+        auto samples = random_samples(kind, width, height);
+        for (std::size_t i = 0; i < 3; ++i) samples[i] = transparent_sample;  // 16-bit samples rarely hit it
+        write_any_png(folder / "a.png", kind, width, height, samples);
+        const image read = gs::read_image(folder / "a.png");
+        REQUIRE(read.width == width);
+        REQUIRE(read.height == height);
+        bool transparent = false;
+        for (int i = 0; i < width * height; ++i) {
+            pixel expected = expected_pixel(kind, samples, static_cast<std::size_t>(i));
+            if (kind.transparent && kind.colour_type == PNG_COLOR_TYPE_RGB && i == 0) expected = {0, 0, 0, 0};
+            transparent |= expected[3] != 255;
+            REQUIRE(pixel_at(read, i % width, i / width) == expected);
+        }
+        CHECK(read.has_alpha == transparent);
+    }
+}
+
+TEST_CASE("JPEGs, grey and RGB, baseline and progressive") {
+    const temporary_folder folder;
+    const int width = 37, height = 21;
+    for (const J_COLOR_SPACE space : {JCS_GRAYSCALE, JCS_RGB})
+        for (const bool progressive : {false, true}) {
+            const int channels = space == JCS_GRAYSCALE ? 1 : 3;
+            const auto samples = smooth_samples(width, height, channels);
+            write_jpeg(folder / "a.jpg", width, height, space, samples, progressive);
+            const image read = gs::read_image(folder / "a.jpg");
+            REQUIRE(read.width == width);
+            REQUIRE(read.height == height);
+            CHECK_FALSE(read.has_alpha);
+            for (int i = 0; i < width * height; ++i) {
+                const pixel got = pixel_at(read, i % width, i / width);
+                REQUIRE(got[3] == 255);
+                for (int channel = 0; channel < 3; ++channel) {
+                    const int sample = samples[static_cast<std::size_t>(channels * i + channel % channels)];
+                    // Quantised by 1 in frequency, and rounded on the way to YCbCr and back.
+                    REQUIRE(std::abs(got[static_cast<std::size_t>(channel)] - sample) <= 3);
+                }
+            }
+        }
+}
+
+TEST_CASE("the size alone is the size of the decoded image") {
+    const temporary_folder folder;
+    write_grey_png(folder / "a.png", 19, 7);
+    write_jpeg(folder / "a.jpg", 23, 5, JCS_RGB, smooth_samples(23, 5, 3));
+    int width = 0, height = 0;
+    gs::read_image_size(folder / "a.png", width, height);
+    CHECK(width == 19);
+    CHECK(height == 7);
+    gs::read_image_size(folder / "a.jpg", width, height);
+    CHECK(width == 23);
+    CHECK(height == 5);
+}
+
+TEST_CASE("an image that is not there, or not an image") {
+    const temporary_folder folder;
+    gs_test::write_file(folder / "empty.png", "");
+    gs_test::write_file(folder / "text.png", "this is no image at all, but long enough for one");
+    std::filesystem::create_directory(folder / "folder.png");
+    for (const auto& reading : {error_of_reading, error_of_reading_size}) {
+        CHECK(says(reading(folder / "none.png"), {"none.png", "no such file"}));
+        CHECK(says(reading(folder / "empty.png"), {"empty.png", "empty"}));
+        CHECK(says(reading(folder / "text.png"), {"text.png", "neither a PNG nor a JPEG"}));
+        CHECK(says(reading(folder / "folder.png"), {"folder.png", "not a file"}));
+    }
+}
+
+TEST_CASE("images without pixels, with too many, or with too few bytes for them") {
+    const temporary_folder folder;
+    write_grey_png(folder / "a.png", 5, 4);
+    write_jpeg(folder / "a.jpg", 5, 4, JCS_RGB, smooth_samples(5, 4, 3));
+    const std::string png = gs_test::read_file(folder / "a.png"), jpeg = gs_test::read_file(folder / "a.jpg");
+    const auto error_of_bytes = [&](const std::string& bytes) {
+        gs_test::write_file(folder / "b.img", bytes);
+        return error_of_reading(folder / "b.img");
+    };
+    CHECK(error_of_bytes(with_png_size(png, 5, 4)).empty());
+    CHECK(says(error_of_bytes(with_png_size(png, 0, 4)), {"b.img", "no pixels"}));
+    CHECK(says(error_of_reading_size(folder / "b.img"), {"b.img", "no pixels"}));
+    CHECK(says(error_of_bytes(with_png_size(png, 5, 0)), {"b.img", "no pixels"}));
+    CHECK(says(error_of_bytes(with_png_size(png, 65537, 1)), {"b.img", "65537x1", "too large"}));
+    CHECK(says(error_of_bytes(with_png_size(png, 0xFFFFFFFF, 0xFFFFFFFF)), {"b.img", "too large"}));
+    CHECK(says(error_of_bytes(with_png_size(png, 65536, 65536)), {"b.img", "65536x65536", "too large"}));
+    CHECK(says(error_of_bytes(with_png_size(png, 20000, 20000)), {"b.img", "truncated"}));
+    CHECK(says(error_of_bytes(with_png_size(png, 5, 5)), {"b.img", "truncated"}));
+    CHECK(says(error_of_bytes(with_jpeg_size(jpeg, 5, 0)), {"b.img", "no pixels"}));
+    CHECK(says(error_of_reading_size(folder / "b.img"), {"b.img", "no pixels"}));
+    CHECK(says(error_of_bytes(with_jpeg_size(jpeg, 65500, 65500)), {"b.img", "65500x65500", "too large"}));
+    CHECK(says(error_of_bytes(with_jpeg_size(jpeg, 20000, 20000)), {"b.img", "truncated"}));
+    CHECK(says(error_of_bytes(with_jpeg_size(jpeg, 50, 40)), {"b.img", "truncated"}));
+}
+
+TEST_CASE("a JPEG of more scans than a photo has is refused, however few bytes they take") {
+    const temporary_folder folder;
+    write_jpeg(folder / "a.jpg", 64, 64, JCS_GRAYSCALE, smooth_samples(64, 64, 1), true);
+    const std::string jpeg = gs_test::read_file(folder / "a.jpg");
+    // The first scan, of the blocks' means, again and again: up to the next one's Huffman table.
+    const std::size_t scan = jpeg.find("\xFF\xDA"), end = jpeg.find("\xFF\xC4", scan);
+    const auto with_scans = [&](int more) {
+        std::string bytes = jpeg.substr(0, scan);
+        for (int i = 0; i < more; ++i) bytes += jpeg.substr(scan, end - scan);
+        gs_test::write_file(folder / "b.jpg", bytes + jpeg.substr(scan));
+        return error_of_reading(folder / "b.jpg");
+    };
+    CHECK(with_scans(0).empty());
+    CHECK(with_scans(50).empty());
+    CHECK(says(with_scans(100), {"b.jpg", "more than 100 scans"}));
+}
+
+TEST_CASE("CMYK JPEGs are refused by name") {
+    const temporary_folder folder;
+    write_jpeg(folder / "a.jpg", 8, 8, JCS_CMYK, smooth_samples(8, 8, 4));
+    CHECK(says(error_of_reading(folder / "a.jpg"), {"a.jpg", "CMYK"}));
+}
+
+TEST_CASE("whatever is cut off or changed in an image, the outcome is an error or an image, and silence") {
+    const temporary_folder folder;
+    const png_kind kinds[] = {{PNG_COLOR_TYPE_RGB_ALPHA, 8, true, false},
+                              {PNG_COLOR_TYPE_PALETTE, 4, false, true}};
+    std::vector<std::string> originals;
+    for (const png_kind& kind : kinds) {
+        write_any_png(folder / "a.png", kind, 9, 6, random_samples(kind, 9, 6));
+        originals.push_back(gs_test::read_file(folder / "a.png"));
+    }
+    for (const bool progressive : {false, true}) {
+        write_jpeg(folder / "a.jpg", 9, 6, JCS_RGB, smooth_samples(9, 6, 3), progressive);
+        originals.push_back(gs_test::read_file(folder / "a.jpg"));
+    }
+    std::size_t cut_but_read = 0, nameless = 0, refused = 0;
+    {
+        const captured_stderr silence(folder / "stderr");
+        const auto file = folder / "b.img";
+        for (const std::string& original : originals) {
+            for (std::size_t length = 0; length < original.size(); ++length) {
+                gs_test::write_file(file, original.substr(0, length));
+                const std::string problem = error_of_reading(file);
+                if (problem.empty()) ++cut_but_read;
+                if (!problem.empty() && !says(problem, {"b.img"})) ++nameless;
+            }
+            for (std::size_t i = 0; i < original.size(); ++i) {
+                std::string changed = original;
+                changed[i] = static_cast<char>(~changed[i]);
+                gs_test::write_file(file, changed);
+                const std::string problem = error_of_reading(file);
+                refused += !problem.empty();
+                if (!problem.empty() && !says(problem, {"b.img"})) ++nameless;
+            }
+        }
+    }
+    CHECK(cut_but_read == 0);
+    CHECK(nameless == 0);
+    CHECK(refused > 0);
+    CHECK(gs_test::read_file(folder / "stderr").empty());
+}
+
+TEST_CASE("shrink is the exact area average, rounded to nearest") {
+    const image source = random_image(14, 9, 3);
+    for (const auto& size : {std::pair{14, 9}, {7, 3}, {5, 4}, {13, 8}, {1, 9}, {14, 1}, {1, 1}}) {
+        const int width = size.first, height = size.second;
+        CAPTURE(width);
+        CAPTURE(height);
+        const image small = gs::shrink(source, width, height);
+        REQUIRE(small.width == width);
+        REQUIRE(small.height == height);
+        // Cut each input pixel into width x height cells: an output pixel covers 14 x 9 whole ones.
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                std::array<int, 4> sums{};
+                for (int cell_y = y * 9; cell_y < (y + 1) * 9; ++cell_y)
+                    for (int cell_x = x * 14; cell_x < (x + 1) * 14; ++cell_x)
+                        for (std::size_t channel = 0; channel < 4; ++channel)
+                            sums[channel] += pixel_at(source, cell_x / width, cell_y / height)[channel];
+                for (std::size_t channel = 0; channel < 4; ++channel)
+                    REQUIRE(pixel_at(small, x, y)[channel] == (2 * sums[channel] + 14 * 9) / (2 * 14 * 9));
+            }
+    }
+}
+
+TEST_CASE("a transparent pixel's hidden colour does not bleed into the average") {
+    const temporary_folder folder;
+    const png_kind kind{PNG_COLOR_TYPE_RGB_ALPHA, 8, false, false};
+    write_any_png(folder / "a.png", kind, 2, 1, {255, 0, 0, 255, 0, 255, 0, 0});
+    const image read = gs::read_image(folder / "a.png");
+    CHECK(pixel_at(read, 1, 0) == pixel{0, 0, 0, 0});
+    CHECK(read.has_alpha);
+    const image mean = gs::shrink(read, 1, 1);
+    CHECK(pixel_at(mean, 0, 0) == pixel{128, 0, 0, 128});
+    CHECK(mean.has_alpha);
+}
+
+TEST_CASE("shrinking an opaque image keeps it opaque") {
+    image opaque = random_image(10, 10, 5);
+    for (std::size_t i = 3; i < opaque.rgba.size(); i += 4) opaque.rgba[i] = 255;
+    opaque.has_alpha = false;
+    const image small = gs::shrink(opaque, 3, 7);
+    CHECK_FALSE(small.has_alpha);
+    for (std::size_t i = 3; i < small.rgba.size(); i += 4) REQUIRE(small.rgba[i] == 255);
+}
+
+TEST_CASE("a shrunk view has the camera of its photo") {
+    gs::view full;
+    full.name = "a.png";
+    full.pixels = random_image(35, 9, 4);
+    full.camera.width = 35;
+    full.camera.height = 9;
+    full.camera.fx = 70;
+    full.camera.fy = 18;
+    full.camera.cx = 10.5;
+    full.camera.cy = 4.5;
+    full.camera.translation = {1, 2, 3};
+    const gs::view half = gs::shrunk(full, 2);
+    CHECK(half.name == "a.png");
+    CHECK(half.camera.width == 18);
+    CHECK(half.camera.height == 5);
+    CHECK(half.camera.fx == doctest::Approx(70 * 18.0 / 35));
+    CHECK(half.camera.fy == doctest::Approx(18 * 5.0 / 9));
+    CHECK(half.camera.cx == doctest::Approx(10.5 * 18 / 35));
+    CHECK(half.camera.cy == doctest::Approx(2.5));
+    CHECK(half.camera.translation == full.camera.translation);
+    CHECK(half.pixels.rgba == gs::shrink(full.pixels, 18, 5).rgba);
+    CHECK(gs::shrunk(full, 64).camera.height == 1);
+    CHECK(gs::shrunk(full, 1).pixels.rgba == full.pixels.rgba);
+}
+
+TEST_CASE("a mask leaves pixels out, of averages too") {
+    image photo = random_image(6, 4, 3), mask = photo;
+    for (std::size_t i = 0; i < 24; ++i) {
+        photo.rgba[4 * i + 3] = 255;
+        mask.rgba[4 * i] = i % 6 < 3 ? 127 : 128;  // of rows of six the first three
+        if (i == 5) mask.rgba[4 * i] = 0;
+    }
+    const image whole = photo;
+    gs::apply_mask(mask, photo);
+    CHECK(photo.has_mask);
+    CHECK_FALSE(photo.has_alpha);
+    for (std::size_t i = 0; i < 24; ++i) {
+        CHECK(photo.leaves_out(i) == (i % 6 < 3 || i == 5));
+        if (!photo.leaves_out(i))
+            CHECK(std::equal(&photo.rgba[4 * i], &photo.rgba[4 * i] + 4, &whole.rgba[4 * i]));
+    }
+    const image half = gs::shrink(photo, 3, 2);
+    CHECK(half.has_mask);
+    CHECK_FALSE(half.has_alpha);
+    for (const std::size_t out : {0, 3}) CHECK(half.leaves_out(out));
+    for (const std::size_t kept : {1, 2, 4, 5}) CHECK_FALSE(half.leaves_out(kept));
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto value = [&](std::size_t i) { return whole.rgba[4 * i + c]; };
+        // Half of the second pixel counts, and three quarters of the third.
+        CHECK(std::abs(half.rgba[4 + c] - (value(3) + value(9)) / 2.0) <= 1.5);
+        CHECK(std::abs(half.rgba[8 + c] - (value(4) + value(10) + value(11)) / 3.0) <= 1.5);
+        CHECK(std::abs(half.rgba[20 + c] - (value(16) + value(17) + value(22) + value(23)) / 4.0) <= 0.5);
+    }
+    const float background[3] = {1.0F, 0.5F, 0.25F};
+    const std::vector<float> over = gs::over_background(photo, background);
+    CHECK(over[0] == 1.0F);
+    CHECK(over[24] == 0.5F);
+
+    image clear = whole;
+    clear.rgba[15] = clear.rgba[14] = clear.rgba[13] = clear.rgba[12] = 0;  // transparent, not left out
+    gs::apply_mask(mask, clear);
+    CHECK(clear.has_alpha);
+    CHECK_FALSE(clear.leaves_out(3));
+}
+
+TEST_CASE("over_background lays the image over a colour") {
+    image source;
+    source.width = 3;
+    source.height = 1;
+    source.rgba = {51, 102, 153, 255, 51, 0, 102, 102, 0, 0, 0, 0};
+    const float background[3] = {1.0F, 0.5F, 0.25F};
+    const std::vector<float> over = gs::over_background(source, background);
+    const double expected[] = {0.2, 0.2 + 0.6, 1.0, 0.4, 0.6 * 0.5, 0.5, 0.6, 0.4 + 0.6 * 0.25, 0.25};
+    REQUIRE(over.size() == 9);
+    for (std::size_t i = 0; i < 9; ++i)
+        CHECK(std::abs(static_cast<double>(over[i]) - expected[i]) <
+              2e-7);  // two roundings of numbers up to 1
+}

@@ -1,6 +1,0 @@
-// SPDX-FileCopyrightText: 2026 The warpagg authors
-// SPDX-License-Identifier: MIT
-#include "backends/cuda.hpp"
-
-#define TEST_VALUES std::uint32_t
-#include "warp_reduce_atomic.hpp"

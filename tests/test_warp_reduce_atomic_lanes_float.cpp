@@ -1,6 +1,0 @@
-// SPDX-FileCopyrightText: 2026 The warpagg authors
-// SPDX-License-Identifier: MIT
-#include "backends/lanes.hpp"
-
-#define TEST_VALUES float
-#include "warp_reduce_atomic.hpp"

@@ -1,0 +1,4 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "../support/backends/serial.hpp"
+#include "records.hpp"
