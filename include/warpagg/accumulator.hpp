@@ -7,8 +7,8 @@
 /// order of additions shows. n is the number of additions to a sum S, k its condition number sum|x| / |S|,
 /// u = 2^-24. docs/policies.md has what each costs.
 
-#include "operation.hpp"
-#include "detail/tag.hpp"
+#include "core/axis.hpp"
+#include "core/operation.hpp"
 #include "detail/accumulate/limbs.hpp"
 
 namespace warpagg {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "detail/call_site.hpp"
+#include "core/call_site.hpp"
 
 namespace warpagg {
 

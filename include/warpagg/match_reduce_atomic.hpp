@@ -5,7 +5,7 @@
 /// @file
 /// For lanes whose destinations differ: histograms, graph scatter, particle deposit.
 
-#include "atomic.hpp"
+#include "reduce_atomic.hpp"
 
 namespace warpagg {
 namespace detail {

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "policy.hpp"
-#include "detail/commit/destination.hpp"
+#include "core/tags.hpp"
+#include "detail/destination.hpp"
+#include "warp/concept.hpp"
 
 namespace warpagg {
 

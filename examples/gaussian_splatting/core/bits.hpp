@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
-#include <warpagg/compiler.hpp>
+#include <warpagg/core/compiler.hpp>
 
 namespace gs::raster {
 

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <vector>
-#include <warpagg/compiler.hpp>
+#include <warpagg/core/compiler.hpp>
 
 namespace gs {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
-#include <warpagg/compiler.hpp>
+#include <warpagg/core/compiler.hpp>
 
 namespace gs {
 

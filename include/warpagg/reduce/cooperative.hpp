@@ -9,7 +9,7 @@
 #include <cooperative_groups.h>
 #include <cooperative_groups/reduce.h>
 
-#include "../policy.hpp"
+#include "../core/tags.hpp"
 #include "../warp/cuda.hpp"
 
 namespace warpagg {

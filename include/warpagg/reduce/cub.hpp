@@ -7,7 +7,7 @@
 
 #include <cub/warp/warp_reduce.cuh>
 
-#include "../policy.hpp"
+#include "../core/tags.hpp"
 #include "../warp/cuda.hpp"
 
 namespace warpagg {

@@ -15,3 +15,6 @@
 #include "checked/model.hpp"      // `checked`
 #include "checked/seeds.hpp"      // `for_each_seed`
 #include "checked/watched.hpp"    // `watched`, arrays whose accesses are seen
+#include "concept.hpp"
+
+static_assert(warpagg::warp<warpagg::emulator::checked>);

@@ -9,8 +9,8 @@
 /// the emulator) runs the lanes itself, a SIMD vector where one thread of control holds them all. Code that
 /// uses `select` instead of `if` on lane values runs on every model.
 
-#include "../operation.hpp"
-#include "../math.hpp"
+#include "../core/math.hpp"
+#include "../core/operation.hpp"
 
 namespace warpagg {
 

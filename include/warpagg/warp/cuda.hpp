@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "../operation.hpp"
+#include "../core/operation.hpp"
 #include "concept.hpp"
 
 /// The model of the concept `warp` for a GPU.

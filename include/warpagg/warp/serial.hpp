@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "../detail/atomic_memory.hpp"
+#include "../core/atomic_memory.hpp"
 #include "concept.hpp"
 
 /// Models of the concept `warp` for a CPU.

@@ -5,9 +5,9 @@
 #include <bit>
 #include <utility>
 
-#include "../detail/atomic_memory.hpp"
-#include "counters.hpp"
-#include "../detail/simd_value.hpp"
+#include "../core/atomic_memory.hpp"
+#include "../core/counters.hpp"
+#include "simd_value.hpp"
 
 namespace warpagg::emulator {
 

@@ -12,7 +12,7 @@ export LC_ALL=C
 
 # Those that only nvcc takes, as they call CUDA's intrinsics; and those that it does not, as they are for the host.
 nvcc_only=(warp/cuda.hpp reduce/cooperative.hpp reduce/cub.hpp)
-host_only=(detail/simd_value.hpp warp/simd.hpp 'warp/checked.*')
+host_only=(warp/simd_value.hpp warp/simd.hpp 'warp/checked.*')
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <warpagg/compiler.hpp>
+#include <warpagg/core/compiler.hpp>
 
 namespace gs::raster {
 

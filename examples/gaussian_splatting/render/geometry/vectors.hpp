@@ -7,7 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <warpagg/math.hpp>
+#include <warpagg/core/math.hpp>
 
 #include "../../model/aosoa.hpp"
 #include "../../core/lane_math.hpp"

@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "../commit/destination.hpp"
-#include "../../accumulator.hpp"
+#include "../../warp/concept.hpp"
+#include "../destination.hpp"
 
-namespace warpagg::detail {
+namespace warpagg {
+
+template <class Accumulate>
+struct cell;  // see accumulator.hpp
+
+namespace detail {
 
 /// A destination's cells, as an accessor.
 template <class Accumulate, class Dst>
@@ -129,4 +134,5 @@ WARPAGG_HD void commit_value(const W& w, const cells_of_results<Accumulate, Cell
 }
 /// @}
 
-}  // namespace warpagg::detail
+}  // namespace detail
+}  // namespace warpagg

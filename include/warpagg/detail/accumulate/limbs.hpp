@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "../../math.hpp"
+#include "../../core/math.hpp"
 
 namespace warpagg::accumulate {
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "../../core/tags.hpp"
+#include "../../warp/concept.hpp"
 #include "../accumulate/decompose.hpp"
+#include "../destination.hpp"
 #include "../reduce/scatter.hpp"
-#include "destination.hpp"
 
 namespace warpagg::commit {
 

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "../../policy.hpp"
+#include "../../core/tags.hpp"
+#include "../../warp/concept.hpp"
 
 namespace warpagg::reduce {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string>
 
-#include "../../detail/call_site.hpp"
+#include "../../core/call_site.hpp"
 
 namespace warpagg::emulator {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "../../detail/call_site.hpp"
+#include "../../core/call_site.hpp"
 #include "diagnosis.hpp"
 
 namespace warpagg::emulator::detail {

@@ -5,9 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "../../operation.hpp"
-#include "../../detail/atomic_memory.hpp"
-#include "../concept.hpp"
+#include "../../core/atomic_memory.hpp"
+#include "../../core/operation.hpp"
 #include "simulator.hpp"
 #include "watched.hpp"
 
@@ -341,7 +340,5 @@ class checked {
 
     detail::machine* machine_;
 };
-
-static_assert(warpagg::warp<checked>);
 
 }  // namespace warpagg::emulator

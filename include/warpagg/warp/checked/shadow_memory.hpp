@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "../../detail/call_site.hpp"
+#include "../../core/call_site.hpp"
 
 namespace warpagg::emulator::detail {
 

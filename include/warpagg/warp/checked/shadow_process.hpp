@@ -14,7 +14,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "../../detail/call_site.hpp"
+#include "../../core/call_site.hpp"
 #include "sanitizers.hpp"
 
 namespace warpagg::emulator::detail {

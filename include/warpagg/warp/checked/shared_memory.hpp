@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "../../detail/call_site.hpp"
+#include "../../core/call_site.hpp"
 #include "diagnosis.hpp"
 
 namespace warpagg::emulator::detail {

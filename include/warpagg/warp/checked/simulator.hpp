@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "../counters.hpp"
+#include "../../core/counters.hpp"
 #include "diagnosis.hpp"
 #include "diagnosis_text.hpp"
 #include "lane.hpp"
 #include "scheduler.hpp"
 #include "shadow_memory.hpp"
-#include "shared_memory.hpp"
 #include "shadow_process.hpp"
+#include "shared_memory.hpp"
 #include "undefined.hpp"
 
 // The library unrolls its loops over a warp's operations: what each does stays one function, for the

@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "../../detail/call_site.hpp"
+#include "../../core/call_site.hpp"
 #include "seeds.hpp"
 
 namespace warpagg::emulator::detail {

@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "../operation.hpp"
+#include "operation.hpp"
 
 namespace warpagg::emulator::detail {
 

@@ -16,7 +16,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "../warp/concept.hpp"
+#include "concept.hpp"
 
 namespace warpagg {
 

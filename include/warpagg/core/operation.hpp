@@ -6,8 +6,8 @@
 /// What values are combined by: the associative operations that memory has an atomic for. The default is
 /// `operation::sum`; the others are tags of a policy, e.g. `policy{maximum}`.
 
+#include "axis.hpp"
 #include "math.hpp"
-#include "detail/tag.hpp"
 
 namespace warpagg {
 

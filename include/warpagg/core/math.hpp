@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "detail/std_for_nvrtc.hpp"
 #include "compiler.hpp"
+#include "std_for_nvrtc.hpp"
 
 namespace warpagg {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "../warp/concept.hpp"
+#include "compiler.hpp"
 
 namespace warpagg {
 

@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// For lanes that share one destination: `warp_reduce_atomic` and `skip_if_warp_idle`.
+
+#include "aggregate.hpp"
+#include "core/call_site.hpp"
+#include "default_policy.hpp"
+#include "detail/accumulate/decompose.hpp"
+#include "detail/commit/commit.hpp"
+#include "detail/reduce/scatter.hpp"
+#include "detail/reduce/tree.hpp"
+#include "policy.hpp"
+#include "stage.hpp"
+#include "warp/concept.hpp"
+
+namespace warpagg {
+
+/// True if no lane of the warp is active, in every lane alike; so that a whole warp can `continue` together.
+/// All lanes call it. Cost: one vote, no memory. Source: the paper, Figure 8, lines 18 to 22.
+///
+/// @snippet warp_reduce_atomic.cpp skip_if_warp_idle
+WARPAGG_EXEC_CHECK_DISABLE
+template <warp W>
+WARPAGG_HD bool skip_if_warp_idle(const W& w, const mask_t<W>& active,
+                                  call_site at = call_site::here("skip_if_warp_idle")) {
+    const detail::library_call<W> call(w, at);
+    return !w.any(active);
+}
+
+namespace detail {
+
+/// The flag, as something that the compiler cannot split a loop on.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class W>
+WARPAGG_HD mask_t<W> opaque(const W& w, const mask_t<W>& flag) {
+    if constexpr (requires { w.opaque(flag); }) {
+        return w.opaque(flag);
+    } else {
+        return flag;
+    }
+}
+
+/// The values of active lanes, and what changes no result from the others: a NaN ends here.
+template <class Op, class V, class Mask>
+struct active_values {
+    const V* values;
+    const Mask& active;
+
+    WARPAGG_HD V operator()(int i) const {
+        using math::select;  // and by its arguments, that of SIMD lanes
+        return select(active, values[i], V(Op::template identity<typename scalar_of<V>::type>()));
+    }
+};
+
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Choice, warp W, class Record, class V, int N>
+WARPAGG_HD void reduce_and_commit(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
+    using op = typename Choice::operation;
+    using reduction = typename Choice::reduce;
+    V results[N];
+    over_warp<op>(reduction{}, w, active_values<op, V, mask_t<W>>{values, active}, results);
+    commit::results<op, reduction, typename Choice::commit>(w, record, results);
+}
+
+/// `warp_reduce_atomic`, once its destination is an accessor and its policy is complete.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Choice, warp W, class Record, class V, int N>
+WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
+    using op = typename Choice::operation;
+    using commit_rule = typename Choice::commit;
+    if constexpr (requires { w.observe(active); }) w.observe(active);
+    if constexpr (requires { w.require_uniform(record(0u)); }) w.require_uniform(record(0u));
+    if constexpr (std::is_same_v<typename Choice::reduce, reduce::per_lane>) {
+        commit::each_lane<op, commit_rule>(w, record, values, active);
+    } else if constexpr (is_gated<typename Choice::gate>) {
+        using alone = typename Choice::alone;
+        const unsigned least =
+            commit::is_packed<op, alone, V>(w, record) ? Choice::gate::lanes_if_packed : Choice::gate::lanes;
+        if (math::popcount(w.ballot(active)) < least) [[unlikely]] {
+            V own[N];  // what is indexed by lanes lies in memory, where the values themselves need not
+            WARPAGG_UNROLL
+            for (int i = 0; i < N; ++i) own[i] = values[i];
+            commit::each_lane<op, alone>(w, record, own, active);
+            return;
+        }
+        reduce_and_commit<Choice>(w, record, values, active);
+    } else {
+        if constexpr (std::is_same_v<typename Choice::idle, idle::skip>) {
+            if (!w.any(active)) return;
+        }
+        reduce_and_commit<Choice>(w, record, values, active);
+    }
+}
+
+}  // namespace detail
+
+/// Adds the values of the warp's active lanes to one record in memory: for each i in [0, N),
+/// `dst[i] += sum over the active lanes of values[i]`, atomically and relaxed, component by component.
+///
+/// @snippet warp_reduce_atomic.cpp warp_reduce_atomic
+///
+/// With a policy, with another operation than the sum, and into a structure of arrays:
+///
+/// @snippet warp_reduce_atomic.cpp policy
+/// @snippet warp_reduce_atomic.cpp operation
+/// @snippet warp_reduce_atomic.cpp structure of arrays
+/// @snippet warp_reduce_atomic.cpp accessor
+///
+/// With sums that are kept otherwise than in T, here ones that are rounded once and the same in any order:
+///
+/// @snippet accumulate.cpp exact
+///
+/// @param w       a model of `warp`; all of its lanes call this together
+/// @param dst     `T*`, a span, an accessor `dst(i) -> T*`, or with `policy{staged}` a record of a `stage`;
+/// the
+///                same record for every lane
+/// @param values  N values per lane; those of inactive lanes are ignored, NaN or not
+/// @param active  whether this lane has something to add
+/// @param at      where the call stands, by its default
+/// @param how     see policy.hpp; it may name another operation than the sum, or in what sums of float are
+/// kept:
+///                see accumulate/accumulate.hpp
+///
+/// @pre All lanes of the warp call this, with the same `dst`, which holds N values of T, aligned as T.
+///
+/// Sums that are not native: what a value is taken apart into is computed in idle warps, too (ask
+/// `skip_if_warp_idle` first where many are); a `fixed` that is to tell of faults takes a vote more.
+///
+/// The order in which warps add is not fixed. Inside a warp the tree is, the same for every reduction but
+/// `per_lane`; lanes that the gate leaves to themselves add in any order. Error of a float sum with all lanes
+/// active: (n/32 + 5) u k for n updates of condition k, u = 2^-24; with few of them, up to n u k. Cost by
+/// default, on 32 lanes: one vote, N - 1 + log2(32/N) shuffles (N `redux` instructions for integers of 32
+/// bits), one atomic instruction per 32 components.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class T, int N, warp W, class Dst, class Policy = policy<>>
+WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&values)[N],
+                                   const mask_t<W>& active, Policy how = {},
+                                   call_site at = call_site::here("warp_reduce_atomic")) {
+    static_assert(detail::is_policy<Policy>,
+                  "warp_reduce_atomic takes one policy: put the tags into policy{...}");
+    using accumulation = typename Policy::accumulate;
+    using choice = detail::choice<T, N, Policy>;
+    static_assert(!detail::is_accumulated<accumulation> || std::is_same_v<T, float>,
+                  "only sums of float are kept otherwise than as they are");
+    if constexpr (detail::is_accumulated<accumulation> && !detail::is_between_warps<accumulation>) {
+        using number = typename accumulation::number;
+        value_t<W, number> numbers[N * accumulation::numbers];
+        {
+            const detail::library_call<W> call(w, at);
+            detail::take_apart(w, how.accumulating(), values, active, numbers);
+        }
+        warp_reduce_atomic<number, N * accumulation::numbers>(
+            w, detail::record_of_numbers<accumulation>(dst), numbers, active,
+            typename detail::policy_of_numbers<Policy>::type{}, at);
+    } else {
+        const detail::library_call<W> call(w, at);
+        if constexpr (std::is_same_v<typename choice::idle, idle::assume_busy>) {
+            if constexpr (requires { w.require_busy(active); }) w.require_busy(active);
+        }
+        const auto record = [&] {
+            if constexpr (detail::is_between_warps<accumulation>) {
+                return detail::results_to_cells<typename accumulation::kept>(how.accumulating(), dst);
+            } else {
+                return commit::record_of<typename choice::commit>(dst);
+            }
+        }();
+        detail::aggregate<choice>(w, record, values, detail::opaque(w, active));
+    }
+}
+
+/// The same with T and N deduced from `values`.
+WARPAGG_EXEC_CHECK_DISABLE
+template <warp W, class Dst, class V, int N, class Policy = policy<>>
+WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const V (&values)[N], const mask_t<W>& active,
+                                   Policy how = {}, call_site at = call_site::here("warp_reduce_atomic")) {
+    warp_reduce_atomic<typename detail::scalar_of<V>::type, N>(w, dst, values, active, how, at);
+}
+
+/// The same for a type of yours that consists of numbers: see components.hpp. On models whose lane values are
+/// scalars, not on `emulator::lanes`.
+///
+/// @snippet warp_reduce_atomic.cpp a type of yours
+WARPAGG_EXEC_CHECK_DISABLE
+template <warp W, class Dst, composite R, class Policy = policy<>>
+WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const R& value, const mask_t<W>& active,
+                                   Policy how = {}, call_site at = call_site::here("warp_reduce_atomic")) {
+    const detail::numbers_of<R> numbers(value);
+    warp_reduce_atomic(w, detail::destination_of_numbers(dst), numbers.number, active, how, at);
+}
+
+/// Does not compile: several tags go into one policy.
+template <warp W, class Dst, class V, class Tag, class Next, class... More>
+requires(!std::is_same_v<Next, call_site>)
+    WARPAGG_HD void warp_reduce_atomic(const W&, Dst, const V&, const mask_t<W>&, Tag, Next, More...) {
+    static_assert(std::is_same_v<Next, call_site>,
+                  "warp_reduce_atomic takes one policy: put the tags into policy{...}");
+}
+
+}  // namespace warpagg
