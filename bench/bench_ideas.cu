@@ -18,8 +18,8 @@
 
 namespace {
 
+using warpagg::cuda_warp;
 using warpagg::policy;
-using warpagg::cuda::warp;
 namespace reduce = warpagg::reduce;
 namespace commit = warpagg::commit;
 

@@ -25,7 +25,7 @@ enum class draw { own, rising, rising_far, among, skewed };
 
 template <class T, int N, class Policy>
 __global__ void add(T* memory, draw how, unsigned among) {
-    const warpagg::cuda::warp w;
+    const warpagg::cuda_warp w;
     const unsigned thread = blockIdx.x * blockDim.x + threadIdx.x;
     std::uint32_t mine = seed ^ (thread * 2891336453u), ours = seed ^ (thread / 32 * 747796405u);
     T values[N];

@@ -4,7 +4,7 @@
 #include <warpagg/atomic.hpp>
 
 __global__ void sum(unsigned* totals) {
-    warpagg::cuda::warp w;
+    warpagg::cuda_warp w;
     const unsigned values[2] = {1, threadIdx.x};
     const bool active = threadIdx.x % 3 == 0;  // a lane may have nothing to add
     warpagg::warp_reduce_atomic(w, totals, values, active);

@@ -30,7 +30,7 @@ __device__ inline std::uint32_t next(std::uint32_t& random) {
 /// Warps add to records at random, as the backward pass of splatting does.
 template <class T, int N, class Policy>
 __global__ void add(T* memory, activity lanes) {
-    const warpagg::cuda::warp w;
+    const warpagg::cuda_warp w;
     const unsigned thread = blockIdx.x * blockDim.x + threadIdx.x;
     const std::uint32_t chance = w.lane() < lanes.count ? 0xffffffffu : lanes.chance;
     std::uint32_t record = seed ^ (thread / 32 * 747796405u), lane = seed ^ (thread * 2891336453u);

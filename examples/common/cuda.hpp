@@ -22,13 +22,13 @@ __global__ void launch(W w, Kernel kernel) {
 }
 
 /// Counts atomic operations, those of each lane, as the emulator does.
-struct counting_warp : warpagg::cuda::warp {
+struct counting_warp : warpagg::cuda_warp {
     unsigned long long* atomics;
 
     template <class Op, class Dst, class T>
     __device__ void atomic(Op op, Dst dst, unsigned index, T v, bool active) const {
         if (active) atomicAdd(atomics, 1ull);
-        warpagg::cuda::warp::atomic(op, dst, index, v, active);
+        warpagg::cuda_warp::atomic(op, dst, index, v, active);
     }
     template <unsigned K>
     void atomic_add_packed() const = delete;  // so that each float is committed, and counted, by itself
@@ -122,7 +122,7 @@ struct machine {
     static double milliseconds(const Kernel& kernel) {
         static const stopwatch watch;
         check(cudaEventRecord(watch.from));
-        start(warpagg::cuda::warp{}, kernel);
+        start(warpagg::cuda_warp{}, kernel);
         check(cudaEventRecord(watch.to));
         check(cudaEventSynchronize(watch.to));
         float ms = 0;

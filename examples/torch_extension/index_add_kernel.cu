@@ -9,7 +9,7 @@ namespace {
 /// then those of the next row: narrow rows meet in a warp, and those with the same index are summed first.
 __global__ void index_add(float* table, const std::int64_t* index, const float4* rows, std::int64_t n,
                           unsigned parts) {
-    const warpagg::cuda::warp w;
+    const warpagg::cuda_warp w;
     const std::int64_t i = std::int64_t{blockIdx.x} * blockDim.x + threadIdx.x;
     const bool active = i < n * parts;  // the lanes past the end take part with nothing to add
     unsigned part = 0;

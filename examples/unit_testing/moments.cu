@@ -3,5 +3,5 @@
 #include "moments.hpp"
 
 __global__ void moments_kernel(const float* samples, unsigned n, float* moments) {
-    add_moments(warpagg::cuda::warp{}, blockIdx.x * blockDim.x + threadIdx.x, samples, n, moments);
+    add_moments(warpagg::cuda_warp{}, blockIdx.x * blockDim.x + threadIdx.x, samples, n, moments);
 }

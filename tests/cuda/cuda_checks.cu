@@ -14,14 +14,14 @@ namespace {
 
 /// Lane i adds to the record at `i * step`, if its number is below `active`.
 __global__ void add(float* memory, unsigned step, unsigned active) {
-    const warpagg::cuda::warp w;
+    const warpagg::cuda_warp w;
     const float v[2] = {1.0f, 2.0f};
     warpagg::warp_reduce_atomic(w, memory + w.lane() * step, v, w.lane() < active,
                                 warpagg::policy{warpagg::assume_busy});
 }
 /// The same by keys: all lanes have key 0.
 __global__ void add_by_key(float* memory, unsigned step, unsigned active) {
-    const warpagg::cuda::warp w;
+    const warpagg::cuda_warp w;
     const float v[2] = {1.0f, 2.0f};
     warpagg::warp_match_reduce_atomic(w, memory + w.lane() * step, 0u, v, w.lane() < active,
                                       warpagg::policy{warpagg::assume_busy});

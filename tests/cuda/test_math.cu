@@ -27,7 +27,7 @@ struct evaluate {
     const float* b;
     float* results;
     unsigned count;
-    __device__ void operator()(const warpagg::cuda::warp& w) const {
+    __device__ void operator()(const warpagg::cuda_warp& w) const {
         for (unsigned i = w.lane(); i < count; i += 32) {
             results[power * count + i] = math::exp2(b[i]);
             results[inverse_root * count + i] = math::inverse_sqrt(a[i]);

@@ -18,7 +18,7 @@ constexpr const char* source = R"(
 #include <warpagg/atomic.hpp>
 
 extern "C" __global__ void sums(unsigned* record, unsigned n) {
-    const warpagg::cuda::warp w;
+    const warpagg::cuda_warp w;
     const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
     const unsigned values[2] = {1, i};
     warpagg::warp_reduce_atomic(w, record, values, i < n);
@@ -26,7 +26,7 @@ extern "C" __global__ void sums(unsigned* record, unsigned n) {
 }
 
 extern "C" __global__ void sums_by_key(unsigned* records, unsigned n) {
-    const warpagg::cuda::warp w;
+    const warpagg::cuda_warp w;
     const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
     const unsigned values[2] = {1, i};
     warpagg::warp_match_reduce_atomic(w, records, i % 2, values, i < n);
@@ -40,7 +40,7 @@ struct warpagg::components<particle> : warpagg::consists_of<float, 3> {};
 
 extern "C" __global__ void the_rest(float* floats, long long* wide, unsigned* words, particle* particles, bool active) {
     using namespace warpagg;
-    const cuda::warp w;
+    const cuda_warp w;
     __shared__ float copy[64];
     const stage<float> block(floats, copy, 64);
     block.clear(w, 0, 1);
@@ -61,7 +61,7 @@ extern "C" __global__ void the_rest(float* floats, long long* wide, unsigned* wo
 template <class Accumulate>
 __device__ void keep(void* cells, float* result, bool active, Accumulate how) {
     using namespace warpagg;
-    const cuda::warp w;
+    const cuda_warp w;
     const float two[2] = {1, -1};
     auto* const to = static_cast<cell<Accumulate>*>(cells);
     warp_reduce_atomic(w, to, two, active, policy{how});

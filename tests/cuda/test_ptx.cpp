@@ -67,7 +67,7 @@ TEST_CASE("N = 9 float takes 12 shuffles and 1 atomic by scatter, 45 by the tree
     }
 }
 
-TEST_CASE("cuda::warp adds no instruction to code written with intrinsics") {
+TEST_CASE("cuda_warp adds no instruction to code written with intrinsics") {
     for (const auto& file : files) {
         INFO(file);
         const auto by_hand = opcodes(file, "by_hand");

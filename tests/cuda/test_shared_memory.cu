@@ -19,7 +19,7 @@ constexpr unsigned size = 64;
 struct into_a_stage {
     float* memory;
     unsigned active;
-    __device__ void operator()(const warpagg::cuda::warp& w) const {
+    __device__ void operator()(const warpagg::cuda_warp& w) const {
         __shared__ alignas(16) float copy[size];
         const warpagg::stage sums(memory, copy, size);
         sums.clear(w, 0, 1);
@@ -35,7 +35,7 @@ struct into_a_stage {
 
 struct halves {
     __half2* memory;
-    __device__ void operator()(const warpagg::cuda::warp& w) const {
+    __device__ void operator()(const warpagg::cuda_warp& w) const {
         __shared__ __half2 copy[size];
         const warpagg::stage sums(memory, copy, size);
         sums.clear(w, 0, 1);

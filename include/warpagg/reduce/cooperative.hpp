@@ -15,7 +15,7 @@
 namespace warpagg {
 namespace reduce {
 
-/// `cooperative_groups::reduce`, value by value; every lane ends with the results. Only on `cuda::warp`.
+/// `cooperative_groups::reduce`, value by value; every lane ends with the results. Only on `cuda_warp`.
 struct cooperative {
     static constexpr auto of = axis::reduce;
     static constexpr auto leaves = results_in::every_lane;
@@ -23,7 +23,7 @@ struct cooperative {
 
 /// Cost: N log2(W) shuffles.
 template <class Op, class Values, class T, int N>
-__device__ __forceinline__ void over_warp(cooperative, const cuda::warp&, const Values& value,
+__device__ __forceinline__ void over_warp(cooperative, const cuda_warp&, const Values& value,
                                           T (&results)[N]) {
     namespace groups = ::cooperative_groups;
     const auto warp = groups::tiled_partition<32>(groups::this_thread_block());

@@ -5,10 +5,9 @@
 #include "../core/operation.hpp"
 #include "concept.hpp"
 
-/// The model of the concept `warp` for a GPU.
-namespace warpagg::cuda {
+namespace warpagg {
 
-namespace detail {
+namespace detail::cuda_memory {
 
 /// What CUDA's atomics of 64-bit integers are called with; memory adds two's complement all the same.
 template <class T>
@@ -60,14 +59,15 @@ requires Op::by_exchange __device__ __forceinline__ void atomic(Op, T* to, T v) 
     }
 }
 
-}  // namespace detail
+}  // namespace detail::cuda_memory
 
-/// The warp that the calling thread belongs to. Empty; every operation is one instruction or a few.
+/// The model of the concept `warp` for a GPU: the warp that the calling thread belongs to. Empty; every
+/// operation is one instruction or a few.
 ///
 /// Precondition: all 32 lanes of the warp are launched and call each operation together. A lane takes part or
 /// not by its `active` argument; no mask is taken from `__activemask()`, so results do not depend on how the
 /// compiler converges lanes.
-struct warp {
+struct cuda_warp {
     /// The operation of this name of the concept `warp`.
     /// @{
     static constexpr unsigned size = 32;
@@ -112,10 +112,11 @@ struct warp {
     template <class T, int N>
     __device__ __forceinline__ void load_packed(const T* from, unsigned index, T (&v)[N], bool active) const {
         static_assert(N % 4 == 0);
+        using four = detail::cuda_memory::four<T>;
 #pragma unroll
         for (int i = 0; i < N; i += 4) {
-            detail::four<T> f{};
-            if (active) f = *reinterpret_cast<const detail::four<T>*>(from + index + i);
+            four f{};
+            if (active) f = *reinterpret_cast<const four*>(from + index + i);
 #pragma unroll
             for (int k = 0; k < 4; ++k) v[i + k] = f.at[k];
         }
@@ -123,10 +124,11 @@ struct warp {
     template <class T, int N>
     __device__ __forceinline__ void store_packed(T* to, unsigned index, const T (&v)[N], bool active) const {
         static_assert(N % 4 == 0);
+        using four = detail::cuda_memory::four<T>;
         if (!active) return;
 #pragma unroll
         for (int i = 0; i < N; i += 4)
-            *reinterpret_cast<detail::four<T>*>(to + index + i) = {{v[i], v[i + 1], v[i + 2], v[i + 3]}};
+            *reinterpret_cast<four*>(to + index + i) = {{v[i], v[i + 1], v[i + 2], v[i + 3]}};
     }
     __device__ __forceinline__ void sync() const { __syncwarp(); }
     template <class T>
@@ -151,7 +153,7 @@ struct warp {
     /// `__nv_bfloat162`; the other operations of integers.
     template <class Op, class Dst, class T>
     __device__ __forceinline__ void atomic(Op op, Dst dst, unsigned index, T v, bool active) const {
-        if (active) detail::atomic(op, dst(index), v);
+        if (active) detail::cuda_memory::atomic(op, dst(index), v);
     }
     /// Whether `atomic_add_packed<K>` may add to to[0..K): in global memory, aligned, and on a compute
     /// capability of 9.0 or more.
@@ -245,6 +247,14 @@ struct warp {
     static constexpr unsigned all = 0xffffffffu;
 };
 
-static_assert(warpagg::warp<warp>);
+static_assert(warp<cuda_warp>);
 
-}  // namespace warpagg::cuda
+#if defined(WARPAGG_OLD_CUDA_NAME)
+/// The former place of `cuda_warp`. Without the macro this namespace does not exist: beside `using namespace
+/// warpagg` it would make `cuda::` ambiguous, since the CUDA toolkit has a namespace of that name.
+namespace cuda {
+using warp [[deprecated("use warpagg::cuda_warp")]] = cuda_warp;
+}  // namespace cuda
+#endif
+
+}  // namespace warpagg

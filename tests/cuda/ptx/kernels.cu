@@ -19,13 +19,13 @@ struct nine {
 template <class Policy>
 __device__ __forceinline__ void once(float* to, const float* from, unsigned n) {
     const nine values(from);
-    warpagg::warp_reduce_atomic(warpagg::cuda::warp{}, to, values.v, threadIdx.x < n, Policy{});
+    warpagg::warp_reduce_atomic(warpagg::cuda_warp{}, to, values.v, threadIdx.x < n, Policy{});
 }
 
 /// The flag does not change within the loop, which invites the compiler to split it in two.
 template <class Policy>
 __device__ __forceinline__ void looped(float* to, const float* from, unsigned n) {
-    const warpagg::cuda::warp w;
+    const warpagg::cuda_warp w;
     const bool active = w.lane() < n;
     nine values(from);
     for (unsigned step = 0; step < 2048; ++step) {
@@ -52,7 +52,7 @@ WARPAGG_TEST_KERNEL(butterfly_looped, looped<butterfly>)
 WARPAGG_TEST_KERNEL(per_lane_once, once<per_lane>)
 
 extern "C" __global__ void members(float* to, const float* from, unsigned n) {
-    const warpagg::cuda::warp w;
+    const warpagg::cuda_warp w;
     const unsigned lane = w.lane();
     const bool active = lane < n;
     float v = w.load(from, lane, active) + w.load_row(from, 64, active);

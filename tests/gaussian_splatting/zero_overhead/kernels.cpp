@@ -9,16 +9,16 @@
 #include <warpagg/warp/simd.hpp>
 #endif
 
+#include "losses/l1_ssim/l1_ssim_kernels.hpp"
+#include "optimize/adam.hpp"
 #include "render/project/project.hpp"
 #include "render/project/project_backward.hpp"
-#include "optimize/adam.hpp"
-#include "losses/l1_ssim/l1_ssim_kernels.hpp"
 
 constexpr gs::effect_set effects{.antialiasing = EFFECTS, .fisheye = EFFECTS, .depth = EFFECTS};
 constexpr bool masked = EFFECTS;
 
 #if defined(__CUDACC__)
-using warp = warpagg::cuda::warp;
+using warp = warpagg::cuda_warp;
 
 extern "C" __global__ void forward(gs::raster::project<warp, float, effects> kernel) {
     kernel(warp{}, blockIdx.x);

@@ -58,7 +58,7 @@ struct device_span {
 
 template <class F>
 __global__ void one_warp(F f) {
-    f(warpagg::cuda::warp{});
+    f(warpagg::cuda_warp{});
 }
 
 __global__ void nothing() {}
@@ -72,7 +72,7 @@ inline int compute_capability() {
 
 /// See lanes.hpp.
 struct backend {
-    using warp = warpagg::cuda::warp;
+    using warp = warpagg::cuda_warp;
     static constexpr const char* name = "cuda";
     static constexpr bool commits_in_lane_order = false;
     static constexpr unsigned every_nth_mask = 1;

@@ -15,12 +15,12 @@
 #include <utility>
 #include <warpagg/atomic.hpp>
 
+#include "../scratch.hpp"
 #include "distribute.hpp"
 #include "graph.hpp"
 #include "memory.hpp"
 #include "sort.hpp"
 #include "times.hpp"
-#include "../scratch.hpp"
 
 namespace gs::device {
 
@@ -65,7 +65,7 @@ template <class F>
 __global__ void __launch_bounds__(block_size, least_blocks<F>) for_each_warp(unsigned n, F f) {
     await_kernel_before();
     const unsigned i = blockIdx.x * warps_per_block + threadIdx.x / 32;
-    using warp = warpagg::cuda::warp;
+    using warp = warpagg::cuda_warp;
     if constexpr (has_scratch<F, warp>) {
         __shared__ typename F::template scratch<warp> scratch[warps_per_block];
         if (i < n) f(warp{}, i, scratch[threadIdx.x / 32]);
@@ -79,7 +79,7 @@ __global__ void __launch_bounds__(block_size, least_blocks<F>) for_each_warp(uns
 /// A CUDA device and a stream on it. The interface is that of `basic_cpu`.
 class cuda {
   public:
-    using warp = warpagg::cuda::warp;
+    using warp = warpagg::cuda_warp;
     using narrow_warp = warp;  ///< see `basic_cpu`
 
     template <class T>

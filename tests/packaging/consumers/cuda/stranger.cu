@@ -5,7 +5,7 @@
 
 /// How many numbers there are in all, and how many of them are odd.
 __global__ void count(const unsigned* numbers, unsigned n, unsigned* totals) {
-    const warpagg::cuda::warp warp;
+    const warpagg::cuda_warp warp;
     const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
     const bool active = i < n;
     const unsigned values[2] = {1, active ? numbers[i] % 2 : 0};
