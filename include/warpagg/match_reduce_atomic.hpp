@@ -137,7 +137,7 @@ WARPAGG_HD void match_and_commit(const W& w, Base base, const value_t<W, unsigne
     using math::popcount;
     using math::select;
     using math::uniform;
-    using chosen = choice<typename scalar_of<V>::type, N, Policy>;
+    using chosen = choice<scalar_t<V>, N, Policy>;
     using operation = typename chosen::operation;
     using bits = value_t<W, std::uint32_t>;
     static_assert(
@@ -218,7 +218,7 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
     static_assert(!detail::is_between_warps<accumulation>,
                   "between_warps goes with warp_reduce_atomic: here take what it is of");
     if constexpr (detail::is_accumulated<accumulation>) {
-        static_assert(std::is_same_v<typename detail::scalar_of<V>::type, float>,
+        static_assert(std::is_same_v<scalar_t<V>, float>,
                       "only sums of float are kept otherwise than as they are");
         value_t<W, typename accumulation::number> numbers[N * accumulation::numbers];
         {

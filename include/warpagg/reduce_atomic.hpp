@@ -51,7 +51,7 @@ struct active_values {
 
     WARPAGG_HD V operator()(int i) const {
         using math::select;  // and by its arguments, that of SIMD lanes
-        return select(active, values[i], V(Op::template identity<typename scalar_of<V>::type>()));
+        return select(active, values[i], V(Op::template identity<scalar_t<V>>()));
     }
 };
 
@@ -176,7 +176,7 @@ WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Dst, class V, int N, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const V (&values)[N], const mask_t<W>& active,
                                    Policy how = {}, call_site at = call_site::here("warp_reduce_atomic")) {
-    warp_reduce_atomic<typename detail::scalar_of<V>::type, N>(w, dst, values, active, how, at);
+    warp_reduce_atomic<scalar_t<V>, N>(w, dst, values, active, how, at);
 }
 
 /// The same for a type of yours that consists of numbers: see components.hpp. On models whose lane values are

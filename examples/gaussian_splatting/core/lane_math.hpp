@@ -19,7 +19,7 @@ using flag_of = decltype(std::declval<Real>() < std::declval<Real>());
 
 template <class Real>
 WARPAGG_HD constexpr Real constant(double x) {
-    return Real(static_cast<typename warpagg::detail::scalar_of<Real>::type>(x));
+    return Real(static_cast<warpagg::scalar_t<Real>>(x));
 }
 template <class Real>
 WARPAGG_HD Real magnitude(const Real& x) {

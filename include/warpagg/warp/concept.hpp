@@ -67,7 +67,6 @@ concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i,
 
 namespace detail {
 
-/// The T of a `value_t<W, T>`.
 template <class V>
 struct scalar_of {
     using type = V;
@@ -79,4 +78,9 @@ struct scalar_of<V> {
 };
 
 }  // namespace detail
+
+/// The type of one lane of `V`: the `T` of a `value_t<W, T>`.
+template <class V>
+using scalar_t = typename detail::scalar_of<V>::type;
+
 }  // namespace warpagg

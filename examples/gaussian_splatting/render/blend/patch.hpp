@@ -53,7 +53,7 @@ struct patch {
 template <class V>
 WARPAGG_HD auto is_hit(const V& strength) {
     constexpr double log2_least_alpha = -7.994353436858858;
-    return strength >= V(typename warpagg::detail::scalar_of<V>::type(log2_least_alpha));
+    return strength >= V(warpagg::scalar_t<V>(log2_least_alpha));
 }
 
 /// Some pixel of the lane.

@@ -25,7 +25,7 @@ template <class Real, class Index>
 WARPAGG_HD flag_of<Real> reaches_tiles(const splat<Real>& s, const Index& first_column,
                                        const Index& last_column, const Index& first_row,
                                        const Index& last_row) {
-    using scalar = typename warpagg::detail::scalar_of<Real>::type;
+    using scalar = warpagg::scalar_t<Real>;
     const auto centre = [](const Index& tile) {  // of its first pixel
         return warpagg::math::convert<scalar>(tile * Index(tile_size)) + constant<Real>(0.5);
     };

@@ -54,7 +54,7 @@ WARPAGG_HD void over_warp(butterfly, const W& w, const Values& value, V (&result
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
 WARPAGG_HD void over_warp(redux, const W& w, const Values& value, V (&results)[N]) {
-    using T = typename warpagg::detail::scalar_of<V>::type;
+    using T = warpagg::scalar_t<V>;
     static_assert(std::is_integral_v<T> && sizeof(T) == 4,
                   "redux is for integers of 32 bits: take butterfly or scatter");
     if constexpr (requires { w.redux(Op{}, value(0)); }) {
