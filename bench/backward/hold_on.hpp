@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "contest.hpp"
+#include "lab/accumulator_set.hpp"
 #include "model/parameter_memory.hpp"
 #include "render/renderer.hpp"
 
@@ -56,21 +57,20 @@ class contest_on {
             return static_cast<double>(n);
         });
     }
-    /// The kernels that the product has, or the ways of keeping the last one's sums.
+    /// The kernels of the ladder, or the ways of keeping the last one's sums.
     template <class Cut>
     void enter_ladder() {
         const auto r = renderer<Cut>();
-        constexpr auto split = static_cast<std::size_t>(gs::gradient_policy::split);
-        const std::size_t first = contest_.of_accumulations ? split : 0;
-        const std::size_t end = contest_.of_accumulations ? gs::gradient_policy_names.size() : split + 1;
-        for (std::size_t p = first; p < end; ++p)
-            gs::raster::with_policy<float, Cut>(static_cast<gs::gradient_policy>(p), [&](auto kernel) {
-                enter(std::string(gs::gradient_policy_names[p]), true, r, kernel);
-            });
+        const auto enter_all = [&](const auto& named) {
+            for (const auto& [name, how] : named)
+                gs::lab::lab_accumulators::with_kernel<float, Cut>(
+                    how, [&](auto kernel) { enter(std::string(name), true, r, kernel); });
+        };
+        contest_.of_accumulations ? enter_all(gs::lab::accumulations) : enter_all(gs::lab::ladder);
     }
     template <class Cut>
     void enter_cut() {
-        gs::raster::with_policy<float, Cut>(gs::gradient_policy::split, [&](auto kernel) {
+        gs::raster::product_accumulators::with_kernel<float, Cut>(gs::accumulator::native, [&](auto kernel) {
             enter(std::to_string(Cut::across) + " across, " + std::to_string(Cut::rows) +
                       " a lane, segments of " + std::to_string(Cut::segment) +
                       (Cut::sparse ? ", row by row" : ""),

@@ -44,7 +44,7 @@ std::vector<std::vector<double>> sums_in_double(const contest& c) {
         renderer.reserve_instances(renderer.instances());
         renderer.forward(arrays, c.model.count(), c.cameras[v], c.model.sh_degree, c.background);
         using cut = gs::raster::cut_for<device::warp>;
-        gs::raster::with_policy<double, cut>(gs::gradient_policy::split, [&](auto kernel) {
+        gs::raster::product_accumulators::with_kernel<double, cut>(gs::accumulator::native, [&](auto kernel) {
             const auto& sums = renderer.blend_backward_by(kernel, gradient.data(), 0);
             all.emplace_back(sums.data(), sums.data() + sums.size());
         });

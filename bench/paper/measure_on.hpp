@@ -7,6 +7,7 @@
 #include <functional>
 #include <random>
 
+#include "lab/accumulator_set.hpp"
 #include "measure.hpp"
 #include "model/parameter_memory.hpp"
 #include "render/renderer.hpp"
@@ -45,13 +46,10 @@ class paper_bench {
 
     /// What the trainer offers from the original to the default, and the original without atomics.
     std::vector<paper_kernel> kernels() {
-        using gs::gradient_policy;
-        for (const auto p : {gradient_policy::per_lane, gradient_policy::reduce, gradient_policy::reduce_skip,
-                             gradient_policy::split})
-            gs::raster::with_policy<float, cut>(p, [&](auto kernel) {
-                enter(std::string(gs::gradient_policy_names[static_cast<std::size_t>(p)]), kernel);
-            });
-        with_original([&](auto kernel) { enter("plain adds", with_plain_adds<decltype(kernel)>{kernel}); });
+        for (const auto how : {gs::lab::per_lane, gs::lab::reduce, gs::lab::reduce_skip, gs::lab::native})
+            gs::lab::lab_accumulators::with_kernel<float, cut>(
+                how, [&](auto kernel) { enter(std::string(gs::lab::name_of(how)), kernel); });
+        enter("plain adds", with_plain_adds<original>{});
         compare();
         for (int round = -1; round < subject_.rounds; ++round)  // the first warms up
             for (std::size_t i = 0; i < frames_.size(); ++i) {
@@ -74,25 +72,17 @@ class paper_bench {
         buffer<unsigned long long> counts;
         counts.resize(result.warps.size());
         device_.zero(counts.data(), counts.size());
-        with_original([&](auto kernel) {
-            for (const gs::camera& view : subject_.cameras) {
-                run(with_counts<decltype(kernel)>{kernel, counts.data()}, view);
-                result.listed += renderer_.instances() * (gs::raster::tile_size * gs::raster::tile_size / 32);
-            }
-        });
+        for (const gs::camera& view : subject_.cameras) {
+            run(with_counts<original>{{}, counts.data()}, view);
+            result.listed += renderer_.instances() * (gs::raster::tile_size * gs::raster::tile_size / 32);
+        }
         device_.download(result.warps.data(), counts.data(), counts.size());
         return result;
     }
 
   private:
-    /// f(the kernel of --gradient per-lane)
-    template <class F>
-    static void with_original(const F& f) {
-        gs::raster::with_policy<float, cut>(gs::gradient_policy::per_lane, [&]<class Kernel>(Kernel kernel) {
-            if constexpr (std::is_same_v<typename Kernel::policy, warpagg::policy<warpagg::reduce::per_lane>>)
-                f(kernel);
-        });
-    }
+    using original = gs::lab::per_lane_sums::kernel<float, cut>;
+
     template <class Kernel>
     const buffer<float>& run(const Kernel& kernel, const gs::camera& view) {
         renderer_.forward(model_.read(), subject_.model.count(), view, subject_.model.sh_degree,

@@ -11,14 +11,11 @@
 #include <vector>
 
 #include "../core/error.hpp"
-#include "../render/gradients/gradient_policy.hpp"
 #include "apply_quality_preset.hpp"
 
 namespace gs::cli {
 
 namespace {
-
-constexpr const char* native = "native";
 
 /// Levenshtein's distance.
 std::size_t edits_between(const std::string& a, const std::string& b) {
@@ -236,23 +233,9 @@ CLI::App* add_train(CLI::App& app, settings& s) {
         ->excludes(train->get_option("--densify-grad-threshold"));
     train->add_flag("--revised-opacity,!--no-revised-opacity", s.revised_opacity,
                     "A copied Gaussian and its copy are together as opaque as it was alone");
-    const auto ladder_end = gradient_policy_names.begin() + static_cast<int>(gradient_policy::split) + 1;
-    const std::set<std::string> ladder(gradient_policy_names.begin(), ladder_end);
-    auto* gradient = train->add_option("--gradient", s.gradient, "How gradients are added up")
-                         ->check(CLI::IsMember(ladder))
-                         ->capture_default_str();
-    std::set<std::string> ways(ladder_end, gradient_policy_names.end());
-    ways.insert(native);
-    train
-        ->add_option("--accumulate", s.accumulate,
-                     "In what: native is float; the same bits in any order have fixed, binned and exact")
-        ->check(CLI::IsMember(ways))
-        ->excludes(gradient);
-    train
-        ->add_flag("--deterministic", s.deterministic,
-                   "The same bits in the .ply from the same seed, run after run, with any number of threads: "
-                   "by --accumulate fixed, unless that says binned or exact")
-        ->excludes(gradient);
+    train->add_flag(
+        "--deterministic", s.deterministic,
+        "The same bits in the .ply from the same seed, run after run, with any number of threads");
     add_fit_exposure(*train, s)->needs(train->get_option("--eval"));
     train->add_option("--save-iterations", s.save_iterations, "Save the model then, too");
     train->add_option("--test-iterations", s.test_iterations, "Measure the test views then, too")
@@ -317,16 +300,6 @@ void refuse_pruning_at_no_time(const train::schedule& s) {
                     std::to_string(s.iterations) + " iterations");
 }
 
-gradient_policy policy_of(const settings& s) {
-    const std::string way = !s.accumulate.empty() ? s.accumulate : s.deterministic ? "fixed" : native;
-    const auto name = std::ranges::find(gradient_policy_names, way == native ? s.gradient : way);
-    const auto policy = static_cast<gradient_policy>(name - gradient_policy_names.begin());
-    if (s.deterministic && !is_repeatable(policy))
-        throw error("--deterministic needs sums whose order does not show, which --accumulate " + way +
-                    " has not: take fixed, binned or exact");
-    return policy;
-}
-
 void refuse_large_budget(const settings& s) {
     if (s.max_cap > 0 && s.budget > s.max_cap)
         throw error("--budget " + std::to_string(s.budget) + " is more than --max-cap " +
@@ -370,7 +343,6 @@ settings parse(int argc, char** argv) {
     refuse_endless_shrinking(s.schedule);
     refuse_pruning_at_no_time(s.schedule);
     refuse_large_budget(s);
-    s.policy = policy_of(s);
     if (s.command == "render") s.scene.masks = false;  // its photos are not looked at
     if (s.command == "render" || s.command == "evaluate") s.scene.depths = false;
     if (s.command == "render" && s.scene.data.empty() && s.scene.eval)

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "../features/simulate.hpp"
-#include "../render/gradients/gradient_policy.hpp"
 #include "../scene/scene.hpp"
 #include "../densify/adaptive/densify_config.hpp"
 #include "../training/schedule.hpp"
@@ -34,11 +33,7 @@ struct settings {
     std::size_t max_cap = 0;  ///< 0: by the photos
     std::size_t budget = 0;   ///< 0: none
     bool revised_opacity = true;
-    std::string gradient = "split";
-    std::string accumulate;  ///< empty: by `deterministic`
     bool deterministic = false;
-    /// What `gradient`, `accumulate` and `deterministic` come to.
-    gradient_policy policy = gradient_policy::split;
     std::set<int> save_iterations;
     std::set<int> test_iterations;
 

@@ -20,11 +20,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// In what gradients are added up.
-std::string_view accumulation_of(gradient_policy p) {
-    return p <= gradient_policy::split ? "native" : gradient_policy_names[static_cast<std::size_t>(p)];
-}
-
 train::train_options options_of(const settings& s, const scene& scene,
                                 const train::background_choice& background,
                                 const effects::simulation& simulated) {
@@ -38,7 +33,7 @@ train::train_options options_of(const settings& s, const scene& scene,
     o.budget = s.budget;
     o.revised_opacity = s.revised_opacity;
     o.seed = s.seed;
-    o.gradient = s.policy;
+    o.gradient = s.deterministic ? accumulator::fixed : accumulator::native;
     o.background = background;
     o.save_iterations = s.save_iterations;
     o.save_iterations.insert(s.schedule.iterations);
@@ -107,8 +102,6 @@ ordered_json settings_json(const settings& s, const train::train_options& o,
             {"max_cap", o.max_cap},
             {"budget", o.budget},
             {"revised_opacity", o.revised_opacity},
-            {"gradient", s.gradient},
-            {"accumulate", accumulation_of(s.policy)},
             {"deterministic", s.deterministic},
             {"save_iterations", o.save_iterations},
             {"test_iterations", o.test_iterations},
@@ -186,9 +179,6 @@ void train(const settings& s) {
     const stopwatch loading;
     scene scene = session.load();
     effects::simulation simulated = effects::simulate(scene, s.effects, s.sh_degree);
-    if (!simulated.sky.empty() && !knows_skies(s.policy))
-        simulated.leave_out(effects::effect::sky,
-                            "--gradient and --accumulate draw one only by split and fixed");
     if (!simulated.sky.empty() && s.background != "auto")
         simulated.leave_out(effects::effect::sky, "--background " + s.background);
     for (const auto& o : simulated.outcomes) session.say(o.name + (o.on ? " on: " : " off: ") + o.reason);
@@ -282,8 +272,6 @@ void train(const settings& s) {
     metrics["peak_host_bytes"] = peak_host_bytes();
     metrics["peak_device_bytes"] = engine->peak_device_bytes();
     metrics["device"] = engine->device_name();
-    metrics["gradient"] = s.gradient;
-    metrics["accumulate"] = accumulation_of(s.policy);
     metrics["deterministic"] = s.deterministic;
     metrics["effects"] = effects_json(s, scene, background, simulated, review, result);
     metrics["seed"] = s.seed;

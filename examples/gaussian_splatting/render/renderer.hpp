@@ -20,8 +20,9 @@
 namespace gs::raster {
 
 /// Gaussians to a picture and, from dL/dpicture, to the gradients of their parameters. Holds what lies in
-/// between.
-template <class Device, class Real, class Cut = cut_for<typename Device::warp>>
+/// between. `Accumulators`: an `accumulator_set`, from which `backward` chooses at run time.
+template <class Device, class Real, class Cut = cut_for<typename Device::warp>,
+          class Accumulators = product_accumulators>
 class renderer {
   public:
     template <class T>
@@ -110,9 +111,9 @@ class renderer {
         blend_forward_by<Cut>(background_, depth_lists(), pairs_.data() + 1);
     }
     /// From the gradient by these, three planes of which the last two are zero, for `backward` to go on from
-    /// with the same `largest` and `policy`.
-    void backward_depths(const Real* gradient, float largest, gradient_policy policy) {
-        with_policy<Real, Cut>(policy, [&](auto kernel) {
+    /// with the same `largest` and `how`.
+    void backward_depths(const Real* gradient, float largest, accumulator how) {
+        Accumulators::template with_kernel<Real, Cut>(how, [&](auto kernel) {
             sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()));
             launch_backward(kernel, depth_lists(), gradient);
             sums_.set_depths_aside(kernel);
@@ -124,9 +125,9 @@ class renderer {
     /// which `sink` is given: see `project_backward`. `largest` is the magnitude of a pixel's gradient,
     /// about: see `gradient_sums`. `seen` may be null.
     template <class Sink>
-    void backward(const Real* picture_gradient, float largest, gradient_policy policy, int learned_sh_degree,
+    void backward(const Real* picture_gradient, float largest, accumulator how, int learned_sh_degree,
                   const Sink& sink, visibility* seen) {
-        const Real* sums = pixel_sums(picture_gradient, largest, policy);
+        const Real* sums = pixel_sums(picture_gradient, largest, how);
         device_.begin(device::stage::project_backward);
         using narrow = typename Device::narrow_warp;
         with_effects(effects_of(camera_), [&]<effect_set Effects> {
@@ -139,16 +140,17 @@ class renderer {
     }
 
     /// The first half of `backward`: by Gaussian that was drawn, what `project_backward` begins from.
-    const Real* pixel_sums(const Real* picture_gradient, float largest, gradient_policy policy) {
+    const Real* pixel_sums(const Real* picture_gradient, float largest, accumulator how) {
         const Real* sums = nullptr;
-        with_policy<Real, Cut>(policy, [&]<class Kernel>(const Kernel& kernel) {
+        Accumulators::visit(how, [&]<class Variant>(Variant) {
+            using kernel = typename Variant::template kernel<Real, Cut>;
             if (backdrop_.planes == nullptr) {
-                sums = blend_backward_by(kernel, picture_gradient, largest).data();
-            } else if constexpr (before_colours<Kernel>::is_there) {
-                using same = typename before_colours<Kernel>::type;
-                sums = blend_backward_by(same{}, picture_gradient, largest).data();
+                sums = blend_backward_by(kernel{}, picture_gradient, largest).data();
+            } else if constexpr (Variant::supports_backdrop) {
+                using before_colours = typename Variant::template kernel<Real, Cut, colour_a_pixel<Real>>;
+                sums = blend_backward_by(before_colours{}, picture_gradient, largest).data();
             } else {
-                throw error("a picture before a sky has no gradient by this way of adding up");
+                throw error("this accumulator has no gradient for an image in front of a learned background");
             }
         });
         return sums;

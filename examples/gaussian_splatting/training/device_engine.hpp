@@ -62,7 +62,7 @@ struct close_step {
 };
 
 /// An `engine` on a device: the order of the kernels, and the memory they share.
-template <class Device>
+template <class Device, class Accumulators = raster::product_accumulators>
 class device_engine final : public engine {
     template <class T>
     using buffer = typename Device::template buffer<T>;
@@ -266,7 +266,7 @@ class device_engine final : public engine {
         sh_degree_ = degree;
     }
 
-    std::size_t drop_bands(double change, gradient_policy how) override {
+    std::size_t drop_bands(double change, accumulator how) override {
         if (count_ == 0 || sh_degree_ == 0) return trained_.values.banded();
         buffer<colour_spread> spreads;
         buffer<float> ones;
@@ -425,7 +425,7 @@ class device_engine final : public engine {
     }
 
     Device device_;
-    raster::renderer<Device, float> renderer_;
+    raster::renderer<Device, float, raster::cut_for<typename Device::warp>, Accumulators> renderer_;
     photometric<Device, float> photometric_;
     train::exposures<Device> exposures_, test_exposures_;
     train::sky<Device> sky_;

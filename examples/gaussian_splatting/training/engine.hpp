@@ -10,7 +10,7 @@
 
 #include "../device/stages.hpp"
 #include "../model/gaussians.hpp"
-#include "../render/gradients/gradient_policy.hpp"
+#include "../render/gradients/accumulator.hpp"
 #include "../scene/scene.hpp"
 #include "../densify/adaptive/densify_config.hpp"
 #include "../optimize/fault_report.hpp"
@@ -25,7 +25,7 @@ struct step_plan {
     int sh_degree = 0;
     bool updates_sh = true;  ///< else colours that depend on direction are drawn, but stay as they are
     std::array<float, 3> background{};
-    gradient_policy gradient = gradient_policy::split;
+    accumulator gradient = accumulator::native;
     std::array<float, 8> rates{};  ///< of Adam, by `parameter`
     double ssim_weight = 0.2;
     bool watch = false;       ///< note what `densify` and `prune` want to know
@@ -100,7 +100,7 @@ class engine {
     /// pictures by a root mean square of at most `change`; none if it would be less than a tenth. Returns how
     /// many have bands then. Gaussians change their places, and all have bands again after `densify` and
     /// `prune`. Draws the training views, as small as `set_views` was asked for, and adds up by `how`.
-    virtual std::size_t drop_bands(double change, gradient_policy how) = 0;
+    virtual std::size_t drop_bands(double change, accumulator how) = 0;
     /// What test views are shown with from now on, one each; none: as `render` draws them, as after
     /// `set_views`.
     virtual void set_test_exposures(const std::vector<exposure>& all) = 0;

@@ -28,7 +28,7 @@ struct train_options {
     std::size_t budget = 0;
     bool revised_opacity = true;  ///< see `densify_rule`
     std::uint64_t seed = 0;
-    gradient_policy gradient = gradient_policy::split;
+    accumulator gradient = accumulator::native;
     background_choice background;
     /// Of the training photos, to begin from; none: photos are as the scene is. See exposure_kernels.hpp.
     std::vector<train::exposure> exposures;

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "../../support/bytes.hpp"
-#include "writers/ply/ply.hpp"
-#include "image/image.hpp"
 #include "../../support/temporary_folder.hpp"
+#include "image/image.hpp"
 #include "training/engine.hpp"
+#include "writers/ply/ply.hpp"
 
 namespace {
 
@@ -392,12 +392,6 @@ TEST_CASE("contradictory options are refused") {
                                 {"--budget 2000", "--max-cap 1999"});
     check_refusal_without_trace(train_spheres + words{"--budget", "2000", "--densify-grad-threshold", "1e-4"},
                                 {"--budget", "--densify-grad-threshold"});
-    check_refusal_without_trace(train_spheres + words{"--accumulate", "fixed", "--gradient", "scatter"},
-                                {"--accumulate", "--gradient"});
-    check_refusal_without_trace(train_spheres + words{"--deterministic", "--gradient", "scatter"},
-                                {"--deterministic", "--gradient"});
-    check_refusal_without_trace(train_spheres + words{"--deterministic", "--accumulate", "f64"},
-                                {"--deterministic", "--accumulate f64", "fixed, binned or exact"});
     check_refusal_without_trace({"render", "model.ply", "--orbit-views", "3", "-d", "synthetic:spheres"},
                                 {"--orbit-views", "--data"});
     check_refusal_without_trace({"render", "model.ply", "--eval"}, {"--eval", "--data"});
@@ -465,7 +459,6 @@ TEST_CASE("a number that makes no sense is refused") {
                                                         {"--background", "beige", ""},
                                                         {"--device", "tpu", ""},
                                                         {"--quality", "worst", ""},
-                                                        {"--gradient", "magic", ""},
                                                         {"-i", "99999999999999999999", "--iterations"}};
     for (const auto& [option, value, long_name] : cases)
         check_refusal_without_trace(train_spheres + words{option, value},
@@ -744,24 +737,18 @@ TEST_CASE("rates and intervals are options, by the reference implementation's na
           read_json(folder / "default/metrics.json").at("gaussians"));
 }
 
-TEST_CASE("--deterministic says how it adds up, and saves the same bytes again") {
+TEST_CASE("--deterministic saves the same bytes again") {
     const temporary_folder folder;
     const auto trained = [&](const char* name, const words& options) {
         check_success(small_training(folder / name) + words{"-q"} + options);
         const json metrics = read_json(folder / name / "metrics.json");
-        CHECK(read_json(folder / name / "settings.json").at("accumulate") == metrics.at("accumulate"));
+        CHECK(read_json(folder / name / "settings.json").at("deterministic") == metrics.at("deterministic"));
         return metrics;
     };
-    CHECK(trained("default", {}).at("accumulate") == "native");
-    CHECK(trained("f64", {"--accumulate", "f64"}).at("accumulate") == "f64");
-    CHECK(trained("f64", {"--accumulate", "f64"}).at("deterministic") == false);
-    for (const char* name : {"first", "again"}) {
-        const json metrics = trained(name, {"--deterministic"});
-        CHECK(metrics.at("accumulate") == "fixed");
-        CHECK(metrics.at("deterministic") == true);
-    }
+    CHECK(trained("default", {}).at("deterministic") == false);
+    for (const char* name : {"first", "again"})
+        CHECK(trained(name, {"--deterministic"}).at("deterministic") == true);
     CHECK(contents(folder / "first/point_cloud") == contents(folder / "again/point_cloud"));
-    CHECK(trained("exact", {"--deterministic", "--accumulate", "exact"}).at("accumulate") == "exact");
 }
 
 TEST_CASE("--quality fast sets what pays, and nothing that was said") {

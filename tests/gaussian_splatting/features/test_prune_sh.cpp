@@ -7,17 +7,17 @@
 #include <map>
 #include <random>
 
-#include "device/cpu/cpu.hpp"
 #include "../training/engines.hpp"
-#include "training/initialise.hpp"
 #include "densify/adaptive/densifier.hpp"
+#include "device/cpu/cpu.hpp"
+#include "training/initialise.hpp"
 
 namespace {
 
 using gs::gaussians;
 using gs::train::engine;
 
-constexpr auto how = gs::gradient_policy::fixed;
+constexpr auto how = gs::accumulator::fixed;
 
 /// Colours from dark to bright by direction, in bands of every degree, of each Gaussian more than of the one
 /// before.

@@ -7,18 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "densify/adaptive/densify_config.hpp"
+#include "lab/accumulators.hpp"
+#include "losses/l1_ssim/quality.hpp"
 #include "model/parameters.hpp"
 #include "render/geometry/effect_set.hpp"
-#include "render/gradients/gradient_policy.hpp"
 #include "scene/scene.hpp"
-#include "densify/adaptive/densify_config.hpp"
-#include "losses/l1_ssim/quality.hpp"
 
 /// The hard cases of numerics: one text of tests, put to every device. All numbers are doubles here, and
 /// become the device's own on their way there.
 namespace hard_cases {
 
-using gs::gradient_policy;
+using gs::accumulator;
 
 /// A picture of a few Gaussians and a photo to compare it with.
 struct question {
@@ -30,7 +30,7 @@ struct question {
     std::vector<double> backdrop;  ///< three planes behind all, in place of the background; or none
     /// Of what the loss has beside: the sum of the inverse depths, each times this, one a pixel; or none.
     std::vector<double> depth_weights;
-    gradient_policy policy = gradient_policy::split;
+    accumulator how = accumulator::native;
     std::vector<double> weights;  ///< of the loss's gradient, one a pixel; none for 1 everywhere
     /// The picture at which the loss's gradient is taken; none for the one that is drawn.
     std::vector<double> gradient_at;
@@ -77,7 +77,7 @@ struct blend_question {
     std::vector<flat_splat> splats;
     std::vector<std::vector<std::uint32_t>> lists;  ///< front to back, one a tile; none for all in each
     std::vector<double> gradient;                   ///< by the picture; empty: forward only
-    gradient_policy policy = gradient_policy::split;
+    accumulator how = accumulator::native;
 };
 
 struct blend_answer {
@@ -141,7 +141,7 @@ struct backend {
     /// What a renderer says to this many instances of a view; nothing if it takes them.
     std::string (*complaint_about_instances)(std::uint64_t);
     /// The library's sum of all values into one address.
-    double (*sum)(const std::vector<double>&, gradient_policy);
+    double (*sum)(const std::vector<double>&, accumulator);
 };
 
 /// Double, one lane a warp: what the others are measured by.

@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "bounds.hpp"
-#include "lists.hpp"
 #include "cases.hpp"
+#include "lists.hpp"
 #include "table.hpp"
 
 using namespace hard_cases;
@@ -71,10 +71,10 @@ TEST_CASE("case 1: forward and backward see the same alpha, to the bit") {
         lists.push_back(q);
     }
 
-    on_each_variant([&](const backend& b, gradient_policy policy) {
+    on_each_variant([&](const backend& b, accumulator how) {
         std::size_t seen = 0, other = 0;
         for (blend_question q : single) {
-            q.policy = policy;
+            q.how = how;
             const blend_answer a = b.blend(q);
             for_each_look(q, [&](std::size_t tile, std::size_t channel, std::size_t pixel) {
                 const double alpha = a.picture[channel * pixels + pixel];
@@ -87,7 +87,7 @@ TEST_CASE("case 1: forward and backward see the same alpha, to the bit") {
 
         double least = 2, most = 0;
         for (blend_question q : lists) {
-            q.policy = policy;
+            q.how = how;
             const blend_answer a = b.blend(q);
             for_each_look(q, [&](std::size_t tile, std::size_t channel, std::size_t pixel) {
                 const double T =
@@ -112,8 +112,8 @@ TEST_CASE("case 2: the cap of alpha is the same in both passes") {
         q.splats[0].colour = {1, 1, 1};
         q.gradient = one_pixel_a_tile(random, 16, 16);
         const blend_answer expected = reference().blend(q);
-        on_each_variant([&](const backend& b, gradient_policy policy) {
-            q.policy = policy;
+        on_each_variant([&](const backend& b, accumulator how) {
+            q.how = how;
             const blend_answer a = b.blend(q);
             for_each_look(q, [&](std::size_t, std::size_t channel, std::size_t pixel) {
                 CHECK(std::abs(recovered(a, 0, channel, a.picture[channel * 256 + pixel]) - 1) <= 1e-4);
@@ -145,8 +145,8 @@ TEST_CASE("case 3: no gradient flows through a capped alpha, but to its colour")
     const answer expected_whole = reference().ask(whole);
     REQUIRE(largest(expected_whole.gradients[4]) > 0.01);
 
-    on_each_variant([&](const backend& b, gradient_policy policy) {
-        q.policy = whole.policy = policy;
+    on_each_variant([&](const backend& b, accumulator how) {
+        q.how = whole.how = how;
         const blend_answer a = b.blend(q);
         for (std::size_t k = 0; k < 9; ++k) {
             CAPTURE(k);
@@ -172,8 +172,8 @@ TEST_CASE("case 4: alpha near 1") {
         for (double& o : q.parameters[3]) o = 20;
         q.weights = off_thresholds(q, 1e-4);
         const answer expected = reference().ask(q);
-        on_each_variant([&](const backend& b, gradient_policy policy) {
-            q.policy = policy;
+        on_each_variant([&](const backend& b, accumulator how) {
+            q.how = how;
             const answer a = b.ask(q);
             CHECK(all_finite(a));
             CHECK(distance(a, expected, q) <= 1e-3);
@@ -214,8 +214,8 @@ TEST_CASE("case 5: the transmittance of saturated pixels before a background of 
             worst = std::max(worst, std::abs(got[i] / wanted[i] - 1));
         CHECK(worst <= 1e-5);
     };
-    on_each_variant([&](const backend& b, gradient_policy policy) {
-        q.policy = policy;
+    on_each_variant([&](const backend& b, accumulator how) {
+        q.how = how;
         const blend_answer a = b.blend(q);
         check_close(a.transmittance, expected.transmittance);
         check_close(a.picture, expected.picture);

@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "bounds.hpp"
+#include "cases.hpp"
 #include "checks.hpp"
 #include "differences.hpp"
 #include "healthy.hpp"
-#include "cases.hpp"
 #include "table.hpp"
 
 using namespace hard_cases;
@@ -112,8 +112,8 @@ TEST_CASE("case 10: a quaternion of no length, and of any") {
             CAPTURE(scale);
             question q = unit;
             for (double& x : q.parameters[2]) x *= scale;
-            on_each_variant([&](const backend& b, gradient_policy policy) {
-                q.policy = policy;
+            on_each_variant([&](const backend& b, accumulator how) {
+                q.how = how;
                 answer a = b.ask(q);
                 CHECK(distance(a, exact, q) < 1e-5);
                 // Lengths at the ends of the range have gradients beyond it.

@@ -19,8 +19,8 @@ TEST_CASE("case 6: both passes stop at the same splat, by hand") {
     constexpr std::size_t pixel = 2 * 8 + 3;
     q.gradient.assign(3 * 32, 0.0);
     q.gradient[pixel] = 1;
-    on_each_variant([&](const backend& b, gradient_policy policy) {
-        q.policy = policy;
+    on_each_variant([&](const backend& b, accumulator how) {
+        q.how = how;
         const blend_answer a = b.blend(q);
         CHECK(a.last[pixel] == 3);
         CHECK(a.transmittance[pixel] == doctest::Approx(1.25e-4).epsilon(1e-5));
@@ -43,8 +43,8 @@ TEST_CASE("case 7: splats that a pixel does not see are not counted") {
     constexpr std::size_t pixel = 2 * 8 + 3;
     q.gradient.assign(3 * 32, 0.0);
     q.gradient[pixel] = 1;
-    on_each_variant([&](const backend& b, gradient_policy policy) {
-        q.policy = policy;
+    on_each_variant([&](const backend& b, accumulator how) {
+        q.how = how;
         const blend_answer a = b.blend(q);
         CHECK(a.last[pixel] == 4);
         CHECK(a.last[pixel + 2] == 7);  // where the faint ones are
@@ -75,8 +75,8 @@ TEST_CASE("case 26: a list of 100,000 splats of alpha 1/255") {
     deep.gradient[pixel] = 1;
     wide.gradient.assign(3 * 32, 1.0);
     const blend_answer expected_wide = reference().blend(wide);
-    on_each_variant([&](const backend& b, gradient_policy policy) {
-        deep.policy = wide.policy = policy;
+    on_each_variant([&](const backend& b, accumulator how) {
+        deep.how = wide.how = how;
         const blend_answer a = b.blend(deep);
         CHECK(a.last[pixel] > 2300);
         CHECK(a.last[pixel] < 2400);
@@ -105,9 +105,9 @@ TEST_CASE("case 27: what cancels in the sums of gradients") {
     // Pairs of a million each that leave 1e-3, in 20 orders. u is half an ulp of 1.
     constexpr double u = 0x1p-24;
     const double left = static_cast<double>(1e-3f);
-    on_each_variant([&](const backend& b, gradient_policy policy) {
+    on_each_variant([&](const backend& b, accumulator how) {
         // Each value by itself, or a warp's first.
-        const double lanes = policy == gradient_policy::per_lane ? 1 : b.lanes;
+        const double lanes = how == gs::lab::per_lane ? 1 : b.lanes;
         const auto rounds = [&](double n) { return n / lanes + std::log2(lanes); };
         for (const std::size_t n : {64, 1024}) {
             CAPTURE(n);
@@ -122,7 +122,7 @@ TEST_CASE("case 27: what cancels in the sums of gradients") {
             for (unsigned seed = 0; seed < 20; ++seed) {
                 std::mt19937 random(seed);
                 std::shuffle(values.begin(), values.end(), random);
-                worst = std::max(worst, std::abs(b.sum(values, policy) - left));
+                worst = std::max(worst, std::abs(b.sum(values, how) - left));
             }
             CHECK(worst <= bound);
         }
@@ -134,11 +134,11 @@ TEST_CASE("case 27: what cancels in the sums of gradients") {
         }
         std::mt19937 order(7);
         std::shuffle(exact.begin(), exact.end(), order);
-        CHECK(b.sum(exact, policy) == 0x1p-3);
+        CHECK(b.sum(exact, how) == 0x1p-3);
 
         // The same through the backward pass: under a capped alpha each pixel adds 0.99 times its gradient.
         blend_question q = empty_list(16, 16);
-        q.policy = policy;
+        q.how = how;
         q.splats = {round_splat(8, 8, 3000, 1)};
         std::vector<double> pixels{0x1p-10, 0};
         for (int i = 0; i < 127; ++i) {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "bounds.hpp"
+#include "cases.hpp"
 #include "checks.hpp"
 #include "healthy.hpp"
-#include "cases.hpp"
 #include "render/project/geometry.hpp"
 #include "table.hpp"
 
@@ -23,8 +23,8 @@ TEST_CASE("case 15: nothing to draw") {
         for (question& q : empty) {
             CAPTURE(width);
             CAPTURE(&q - empty.data());
-            on_each_variant([&](const backend& b, gradient_policy policy) {
-                q.policy = policy;
+            on_each_variant([&](const backend& b, accumulator how) {
+                q.how = how;
                 const answer a = b.ask(q);
                 REQUIRE(a.picture.size() == 3 * q.pixels());
                 std::size_t other = 0;
@@ -55,9 +55,9 @@ TEST_CASE("case 16: opacities at the least that is drawn") {
         below = std::nextafter(below, -10.0f);
     }
     logits.push_back(-5.5);
-    on_each_variant([&](const backend& b, gradient_policy policy) {
+    on_each_variant([&](const backend& b, accumulator how) {
         question rest = without(q, victim);
-        q.policy = rest.policy = policy;
+        q.how = rest.how = how;
         const answer alone = b.ask(rest);
         bool was_drawn = false;
         for (const double logit : logits) {
@@ -68,7 +68,7 @@ TEST_CASE("case 16: opacities at the least that is drawn") {
             was_drawn = drawn;
             CHECK(all_finite(a));
             if (std::abs(logit - static_cast<double>(least)) > 1e-5) CHECK(drawn == (logit > least));
-            if (!drawn) CHECK(harm(a, alone, victim, is_loose(b, policy)) == "");
+            if (!drawn) CHECK(harm(a, alone, victim, is_loose(b, how)) == "");
             // Its alpha is 1/255 at most here, its share of the picture no more than that.
             CHECK(distance(a.picture, alone.picture) < 2.0 / 255);
         }
@@ -117,8 +117,8 @@ TEST_CASE("case 17: depths of zero and of either sign, and at the near plane") {
             red += 0.5 * T * static_cast<double>(rank) / 12;
             T *= 0.5;
         }
-        on_each_variant([&](const backend& b, gradient_policy policy) {
-            q.policy = policy;
+        on_each_variant([&](const backend& b, accumulator how) {
+            q.how = how;
             const answer a = b.ask(q);
             for (std::size_t i = 0; i < q.pixels(); ++i)
                 CHECK(a.picture[i] == doctest::Approx(red).epsilon(1e-3));

@@ -5,9 +5,9 @@
 #include <random>
 
 #include "bounds.hpp"
+#include "cases.hpp"
 #include "healthy.hpp"
 #include "model/opacity.hpp"
-#include "cases.hpp"
 #include "table.hpp"
 
 using namespace hard_cases;
@@ -76,10 +76,10 @@ TEST_CASE("case 21: the logit of an opacity of 0 and of 1") {
     CHECK(gs::logit(0) < -80);
     CHECK(gs::logit(1) > 16);
     // And what is drawn of them is finite.
-    on_each_variant([&](const backend& b, gradient_policy policy) {
+    on_each_variant([&](const backend& b, accumulator how) {
         for (const double logit : logits) {
             question q = faint_crowd(21, 10);
-            q.policy = policy;
+            q.how = how;
             q.parameters[3][5] = logit;
             CHECK(all_finite(b.ask(q)));
         }
@@ -106,7 +106,7 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
         rule.gradient = gs::train::densify_rule{}.gradient;
     });
     // A gradient of 1e30 by the picture, on its way through the backward pass into the statistics.
-    on_each_variant([&](const backend& b, gradient_policy policy) {
+    on_each_variant([&](const backend& b, accumulator how) {
         question q = faint_crowd(22, 10);
         // One, bright, whose gradient is larger than floats are.
         question single = empty_question(1, 1);
@@ -115,7 +115,7 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
         g.colour = {20, 20, 20};
         add(single, g);
         single.weights = {3e38};
-        single.policy = q.policy = policy;
+        single.how = q.how = how;
         const auto check_sound = [](const std::vector<sighting>& sightings) {
             for (const sighting& s : sightings) {
                 CHECK(std::isfinite(s.gradient));
@@ -129,7 +129,7 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
         for (const sighting& s : b.ask(single).sightings) {
             CHECK(s.gradient == 0);
             // Fixed point has no NaN: it leaves such sums out, and says so elsewhere.
-            CHECK(s.seen == (policy == gradient_policy::fixed ? 1 : 0));
+            CHECK(s.seen == (how == accumulator::fixed ? 1 : 0));
         }
         for (const double size : {1e30, 1e36, infinity}) {
             CAPTURE(size);
@@ -237,8 +237,8 @@ TEST_CASE("case 24: an opacity of 0.01 at 1.4 standard deviations has no gradien
     add(q, g);
     question visible = q;
     visible.parameters[3] = {logit_of(0.02), logit_of(0.02)};
-    on_each_variant([&](const backend& b, gradient_policy policy) {
-        q.policy = visible.policy = policy;
+    on_each_variant([&](const backend& b, accumulator how) {
+        q.how = visible.how = how;
         const answer a = b.ask(q);
         for (const auto& gradients : a.gradients) CHECK(largest(gradients) == 0);
         // Their tile is theirs to draw in all the same, and that they took no gradient is reported.

@@ -6,8 +6,8 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "bounds.hpp"
-#include "healthy.hpp"
 #include "cases.hpp"
+#include "healthy.hpp"
 #include "table.hpp"
 
 namespace hard_cases {
@@ -29,11 +29,11 @@ std::array<double, 4> turned(double angle, const glm::dvec3& axis) {
 void check_culled(const question& asked) {
     question q = asked;
     const question rest = without(q, victim);
-    on_each_variant([&](const backend& b, gradient_policy policy) {
+    on_each_variant([&](const backend& b, accumulator how) {
         question r = rest;
-        q.policy = r.policy = policy;
+        q.how = r.how = how;
         REQUIRE_FALSE(b.project(q)[victim].drawn);
-        CHECK(harm(b.ask(q), b.ask(r), victim, is_loose(b, policy)) == "");
+        CHECK(harm(b.ask(q), b.ask(r), victim, is_loose(b, how)) == "");
     });
 }
 
@@ -42,8 +42,8 @@ void check_drawn(const question& asked, bool with_gradients) {
     q.weights = off_thresholds(q, 1e-4);
     const answer expected = reference().ask(q);
     const std::vector<projected_splat> splats = reference().project(q);
-    on_each_variant([&](const backend& b, gradient_policy policy) {
-        q.policy = policy;
+    on_each_variant([&](const backend& b, accumulator how) {
+        q.how = how;
         const answer a = b.ask(q);
         const std::vector<projected_splat> drawn = b.project(q);
         for (std::size_t i = 0; i < drawn.size(); ++i) CHECK(drawn[i].drawn == splats[i].drawn);

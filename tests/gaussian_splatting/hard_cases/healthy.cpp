@@ -32,8 +32,6 @@ std::string harm(const answer& with, const answer& rest, std::size_t index, bool
     return said;
 }
 
-bool is_loose(const backend& b, gradient_policy policy) {
-    return b.name == "cuda" && policy == gradient_policy::per_lane;
-}
+bool is_loose(const backend& b, accumulator how) { return b.name == "cuda" && how == gs::lab::per_lane; }
 
 }  // namespace hard_cases

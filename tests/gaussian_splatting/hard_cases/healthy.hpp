@@ -19,6 +19,6 @@ question faint_crowd(unsigned seed, std::size_t count, int width = 8, int height
 std::string harm(const answer& with, const answer& rest, std::size_t index, bool loosely);
 
 /// Whether a backend adds up in an order of its own from run to run, even in one patch.
-bool is_loose(const backend& b, gradient_policy policy);
+bool is_loose(const backend& b, accumulator how);
 
 }  // namespace hard_cases

@@ -7,11 +7,12 @@
 #include <numeric>
 
 #include "backend.hpp"
+#include "lab/accumulator_set.hpp"
 #include "memory_on.hpp"
-#include "render/tiles/bin.hpp"
 #include "render/blend/blend_backward.hpp"
 #include "render/blend/blend_forward.hpp"
 #include "render/gradients/gradient_sums.hpp"
+#include "render/tiles/bin.hpp"
 
 namespace hard_cases {
 
@@ -122,7 +123,7 @@ class lists_on {
         on.put(gradient, q.gradient);
         gradient_sums<Device, Real> sums(device);
         std::vector<double> records;
-        with_policy<Real, shape>(q.policy, [&](auto backward) {
+        gs::lab::lab_accumulators::with_kernel<Real, shape>(q.how, [&](auto backward) {
             backward.lists = lists;
             backward.view = {background,  picture.data(),     transmittance.data(),
                              last.data(), checkpoints.data(), gradient.data()};
@@ -192,7 +193,7 @@ class lists_on {
         return found;
     }
 
-    static double sum(const std::vector<double>& values, gradient_policy policy) {
+    static double sum(const std::vector<double>& values, accumulator how) {
         Device device;
         memory on(device);
         buffer<Real> in;
@@ -200,7 +201,8 @@ class lists_on {
         gs::raster::gradient_sums<Device, Real> sums(device);
         double sum = 0;
         constexpr std::size_t lanes = Device::warp::size;
-        gs::raster::with_policy<Real, gs::raster::cut_for<typename Device::warp>>(policy, [&](auto kernel) {
+        using shape = gs::raster::cut_for<typename Device::warp>;
+        gs::lab::lab_accumulators::with_kernel<Real, shape>(how, [&](auto kernel) {
             sum_values<Real, typename decltype(kernel)::policy> adds{
                 in.data(), static_cast<unsigned>(values.size()), nullptr, {}};
             const std::size_t warps = (values.size() + lanes - 1) / lanes;

@@ -6,8 +6,8 @@
 
 #include "bounds.hpp"
 #include "budget.hpp"
-#include "healthy.hpp"
 #include "cases.hpp"
+#include "healthy.hpp"
 #include "table.hpp"
 
 using namespace hard_cases;
@@ -118,18 +118,18 @@ void check_nothing(const std::string& said, const poisoned& one) {
 TEST_CASE("poison: 22 values in every parameter of one Gaussian of a crowd") {
     const poisoned_crowd poisoned(8, 4, gs::parameter_count);
     REQUIRE(poisoned.all.size() == 22 * 59);
-    on_each_variant([&](const backend& b, gradient_policy policy) {
+    on_each_variant([&](const backend& b, accumulator how) {
         question rest = without(poisoned.healthy, victim);
-        rest.policy = policy;
+        rest.how = how;
         const answer alone = b.ask(rest);
         const std::vector<projected_splat> before = b.project(poisoned.healthy);
         for (const auto& one : poisoned.all) {
             question q = poisoned.with(one);
-            q.policy = policy;
+            q.how = how;
             std::string said = wrong_projection(b.project(q), before, one);
             const answer a = b.ask(q);
             if (!all_finite(a)) said += "not finite; ";
-            if (!one.is_drawn) said += harm(a, alone, victim, is_loose(b, policy));
+            if (!one.is_drawn) said += harm(a, alone, victim, is_loose(b, how));
             if (one.is_drawn && !alike(a.picture, one)) said += "another picture than in double; ";
             check_nothing(said, one);
         }

@@ -5,9 +5,10 @@
 #include <algorithm>
 
 #include "backend.hpp"
+#include "lab/accumulator_set.hpp"
+#include "losses/l1_ssim/photometric.hpp"
 #include "memory_on.hpp"
 #include "render/renderer.hpp"
-#include "losses/l1_ssim/photometric.hpp"
 #include "training/schedule.hpp"
 
 namespace hard_cases {
@@ -31,10 +32,13 @@ class pictures_on {
     using memory = memory_on<Device, Real>;
     using parameters = std::array<buffer<Real>, gs::parameter_count>;
 
+    using renderer = gs::raster::renderer<Device, Real, gs::raster::cut_for<typename Device::warp>,
+                                          gs::lab::lab_accumulators>;
+
     struct session {
         Device device;
         memory on{device};
-        gs::raster::renderer<Device, Real> renderer{device};
+        pictures_on::renderer renderer{device};
         gs::train::photometric<Device, Real> photometric{device};
         parameters values, gradients;
         buffer<std::uint8_t> photo;
@@ -71,7 +75,7 @@ class pictures_on {
             }
             weights.resize(3 * q.pixels());
             on.put(by_depths, weights);
-            renderer.backward_depths(by_depths.data(), largest_gradient(q), q.policy);
+            renderer.backward_depths(by_depths.data(), largest_gradient(q), q.how);
         }
     };
 
@@ -100,7 +104,7 @@ class pictures_on {
         buffer<gs::raster::visibility> seen;
         seen.resize(q.count());
         s.device.zero(seen.data(), q.count());
-        s.renderer.backward(by_picture, largest_gradient(q), q.policy, q.sh_degree,
+        s.renderer.backward(by_picture, largest_gradient(q), q.how, q.sh_degree,
                             gs::raster::store_gradients<Real>{write(s.gradients)}, seen.data());
 
         answer a;
@@ -166,7 +170,7 @@ class pictures_on {
 
     static std::string complaint_about_instances(std::uint64_t instances) {
         Device device;
-        gs::raster::renderer<Device, Real> renderer(device);
+        pictures_on::renderer renderer(device);
         try {
             renderer.reserve_instances(instances);
         } catch (const gs::error& e) {

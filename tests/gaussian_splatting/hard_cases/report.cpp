@@ -25,7 +25,7 @@ std::vector<column> all_columns() {
     std::vector<column> columns;
     for (const backend& b : backends()) {
         columns.push_back({column_of(b.name, no_variant), false});
-        for (const gradient_policy variant : variants())
+        for (const accumulator variant : variants())
             columns.push_back({column_of(b.name, name_of(variant)), true});
     }
     return columns;

@@ -10,9 +10,10 @@
 
 #include "bounds.hpp"
 #include "budget.hpp"
-#include "training/initialise.hpp"
 #include "cases.hpp"
+#include "lab/accumulator_set.hpp"
 #include "table.hpp"
+#include "training/initialise.hpp"
 #include "training/trainer.hpp"
 
 using namespace hard_cases;
@@ -63,13 +64,14 @@ std::vector<measured> measure(const std::vector<question>& questions, bool one_p
 }
 
 /// Each answer within the bounds, and all of a parameter's gradients in all answers together without a bias.
-void check_all(const std::vector<measured>& all, const backend& b, gradient_policy policy) {
+void check_all(const std::vector<measured>& all, const backend& b, accumulator how) {
     std::vector<answer> answers(all.size());
     std::vector<std::string> said(all.size());
     in_parallel(all.size(), [&](std::size_t i) {
         question q = all[i].q;
         // A way that knows no skies is not asked for one.
-        q.policy = q.backdrop.empty() || gs::knows_skies(policy) ? policy : gradient_policy::split;
+        q.how = q.backdrop.empty() || gs::lab::lab_accumulators::supports_backdrop(how) ? how
+                                                                                        : accumulator::native;
         answers[i] = b.ask(q);
         said[i] = excess(answers[i], all[i].expected);
         if (distance(answers[i], all[i].expected, q) > 1e-4) said[i] += "the picture";
@@ -155,7 +157,7 @@ TEST_CASE("100 random scenes: gradients in float against double") {
     }
     const std::vector<measured> all = measure(questions, false);
     CHECK(share_left_out(all) < 0.02);
-    on_each_variant([&](const backend& b, gradient_policy policy) { check_all(all, b, policy); });
+    on_each_variant([&](const backend& b, accumulator how) { check_all(all, b, how); });
 }
 
 TEST_CASE("a trained scene: gradients in float against double") {
@@ -178,9 +180,8 @@ TEST_CASE("a trained scene: gradients in float against double") {
     // The longer one has many splats a pixel, of which one or the other lies near a threshold.
     CHECK(share_left_out(on_cpu) < 0.1);
     CHECK(share_left_out(on_cuda) < 0.2);
-    on_each_variant([&](const backend& b, gradient_policy policy) {
-        check_all(b.name == "cuda" ? on_cuda : on_cpu, b, policy);
-    });
+    on_each_variant(
+        [&](const backend& b, accumulator how) { check_all(b.name == "cuda" ? on_cuda : on_cpu, b, how); });
     remark(name + ", " + std::to_string(on_cpu[0].q.count()) + " Gaussians on the CPU, " +
            std::to_string(on_cpu.size()) + " views, " + std::to_string(100 * share_left_out(on_cpu)) +
            " % of the pixels left out (" + std::to_string(100 * share_left_out(on_cuda)) + " % on a GPU), " +
@@ -189,10 +190,10 @@ TEST_CASE("a trained scene: gradients in float against double") {
 
 TEST_CASE("the variants' gradients agree to 1e-5") {
     question q = random_question(7, 300, 64, 48, 3);
-    on_each_variant([&](const backend& b, gradient_policy policy) {
-        q.policy = gradient_policy::split;
+    on_each_variant([&](const backend& b, accumulator how) {
+        q.how = accumulator::native;
         const answer ours = b.ask(q);
-        q.policy = policy;
+        q.how = how;
         const answer theirs = b.ask(q);
         for (std::size_t p = 0; p < gs::parameter_count; ++p) {
             CAPTURE(parameter_names[p]);

@@ -41,30 +41,27 @@ void on_each_backend(const F& test) {
 
 /// The variants of the backward pass that are tested. Under sanitizers `fixed` and `exact` stand for all ways
 /// of keeping sums in other than floats: one reports faults, one has cells of many numbers.
-inline std::vector<gradient_policy> variants() {
-    std::vector<gradient_policy> all;
-    for (std::size_t p = 0; p < gs::gradient_policy_names.size(); ++p) {
-        const auto policy = static_cast<gradient_policy>(p);
-        const bool is_alike = policy == gradient_policy::f64 || policy == gradient_policy::compensated ||
-                              policy == gradient_policy::binned;
-        if (!brief || !is_alike) all.push_back(policy);
+inline std::vector<accumulator> variants() {
+    using namespace gs::lab;
+    std::vector<accumulator> all;
+    for (const named_accumulator& v : gs::lab::variants) {
+        const bool is_alike = v.value == f64 || v.value == compensated || v.value == binned;
+        if (!brief || !is_alike) all.push_back(v.value);
     }
     return all;
 }
-inline std::string name_of(gradient_policy p) {
-    return std::string(gs::gradient_policy_names[static_cast<std::size_t>(p)]);
-}
+inline std::string name_of(accumulator a) { return std::string(gs::lab::name_of(a)); }
 
-/// Runs a test with each variant of the backward pass on each backend: `test(backend, policy)`.
+/// Runs a test with each variant of the backward pass on each backend: `test(backend, how)`.
 template <class F>
 void on_each_variant(const F& test) {
     for (const backend& b : backends())
-        for (const gradient_policy policy : variants()) {
-            const std::string variant = name_of(policy);
+        for (const accumulator how : variants()) {
+            const std::string variant = name_of(how);
             INFO(b.name);
             INFO(variant);
             const cell here(b.name, variant);
-            test(b, policy);
+            test(b, how);
         }
 }
 

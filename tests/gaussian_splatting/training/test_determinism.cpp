@@ -5,20 +5,20 @@
 
 #include <algorithm>
 
+#include "../hard_cases/budget.hpp"
+#include "core/error.hpp"
 #include "device/cpu/cpu.hpp"
+#include "engines.hpp"
 #include "features/depth/depth_evidence.hpp"
 #include "features/sh_degree/revise_sh_degree.hpp"
-#include "engines.hpp"
-#include "core/error.hpp"
-#include "../hard_cases/budget.hpp"
-#include "training/initialise.hpp"
 #include "render/gradients/gradient_sums.hpp"
+#include "training/initialise.hpp"
 #include "training/trainer.hpp"
 
 namespace {
 
 /// With growth, a reset of opacities, colours that depend on direction, and Gaussians that lose these.
-gs::gaussians trained(gs::train::engine& e, const gs::scene& scene, gs::gradient_policy how) {
+gs::gaussians trained(gs::train::engine& e, const gs::scene& scene) {
     gs::train::train_options o;
     o.schedule.iterations = 200;
     o.schedule.sh_degree_interval = 40;
@@ -28,11 +28,11 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene, gs::gradient
     o.schedule.opacity_reset_interval = 80;
     o.schedule.densify_grad_threshold = 1e-5;
     o.max_cap = 4000;
-    o.gradient = how;
+    o.gradient = gs::accumulator::fixed;
     e.set_views(scene.train, {}, o.schedule.num_downscales);
     gs::gaussians model = gs::from_points(scene.points, o.schedule.sh_degree, 500, 1);
     model.antialiased = true;
-    if (gs::knows_skies(how)) model.sky.assign(gs::sky_width, 0.0f);
+    model.sky.assign(gs::sky_width, 0.0f);
     o.exposures.assign(scene.train.size(), gs::train::unexposed);
     o.depth_fits = gs::effects::compare_depths(scene).fits;
     o.review_bands = [&](int degree) { return gs::effects::review_bands(e, scene, {}, degree).sh_degree; };
@@ -50,28 +50,24 @@ bool are_the_same(const gs::gaussians& a, const gs::gaussians& b) {
 
 }  // namespace
 
-TEST_CASE("sums whose order does not show make training repeatable, with any number of threads") {
+TEST_CASE("sums in fixed point make training repeatable, with any number of threads") {
     const gs::scene scene = small_scene("synthetic:spheres,depths=0.02");
     const int threads = omp_get_max_threads();
-    for (const auto make : engines())
-        for (const auto how :
-             {gs::gradient_policy::fixed, gs::gradient_policy::binned, gs::gradient_policy::exact}) {
-            if (hard_cases::brief && how != gs::gradient_policy::fixed) continue;
-            CAPTURE(static_cast<int>(how));
-            const gs::gaussians first = trained(*make(), scene, how);
-            CHECK(first.count() > 700);
-            REQUIRE(first.sh_degree > 0);
-            const auto last = first.sh_rest.end() - first.rest_width();
-            CHECK(std::all_of(last, first.sh_rest.end(), [](float x) { return x == 0; }));
-            CHECK(std::ranges::any_of(first.sh_rest, [](float x) { return x != 0; }));
-            for (const int n : {1, 2, 9}) {  // 9: the pictures fall into other strips
-                if (n > 1 && (hard_cases::brief || how != gs::gradient_policy::fixed)) continue;
-                CAPTURE(n);
-                omp_set_num_threads(n);
-                CHECK(are_the_same(trained(*make(), scene, how), first));
-            }
-            omp_set_num_threads(threads);
+    for (const auto make : engines()) {
+        const gs::gaussians first = trained(*make(), scene);
+        CHECK(first.count() > 700);
+        REQUIRE(first.sh_degree > 0);
+        const auto last = first.sh_rest.end() - first.rest_width();
+        CHECK(std::all_of(last, first.sh_rest.end(), [](float x) { return x == 0; }));
+        CHECK(std::ranges::any_of(first.sh_rest, [](float x) { return x != 0; }));
+        for (const int n : {1, 2, 9}) {  // 9: the pictures fall into other strips
+            if (n > 1 && hard_cases::brief) continue;
+            CAPTURE(n);
+            omp_set_num_threads(n);
+            CHECK(are_the_same(trained(*make(), scene), first));
         }
+        omp_set_num_threads(threads);
+    }
 }
 
 TEST_CASE("fixed point refuses pictures of so many patches that a sum could overflow") {
@@ -79,11 +75,11 @@ TEST_CASE("fixed point refuses pictures of so many patches that a sum could over
     device d;
     gs::raster::gradient_sums<device, float> sums(d);
     constexpr std::size_t most = std::size_t{1} << gs::raster::fixed_log_warps;
-    for (const auto how :
-         {gs::gradient_policy::split, gs::gradient_policy::fixed, gs::gradient_policy::exact})
-        gs::raster::with_policy<float, gs::raster::cut_for<device::warp>>(how, [&](auto kernel) {
+    using set = gs::raster::product_accumulators;
+    for (const auto how : {gs::accumulator::native, gs::accumulator::fixed})
+        set::with_kernel<float, gs::raster::cut_for<device::warp>>(how, [&](auto kernel) {
             sums.begin(kernel, 1, 1, most);
-            if (how == gs::gradient_policy::fixed)
+            if (how == gs::accumulator::fixed)
                 CHECK_THROWS_WITH_AS(sums.begin(kernel, 1, 1, most + 1), doctest::Contains("2^18 patches"),
                                      gs::error);
             else

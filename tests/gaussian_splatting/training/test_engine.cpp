@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engines.hpp"
 #include "core/error.hpp"
-#include "training/initialise.hpp"
+#include "engines.hpp"
 #include "readers/load_views.hpp"
+#include "training/initialise.hpp"
 #include "training/trainer.hpp"
 
 namespace {
@@ -268,7 +268,7 @@ TEST_CASE("what a photo has no depth map for, or one that does not agree, is lea
             e->set_downscales(downscales);
             e->reserve();
             gs::train::step_plan plan = plan_for(view);
-            plan.gradient = gs::gradient_policy::fixed;
+            plan.gradient = gs::accumulator::fixed;
             plan.depth_weight = weight;
             e->step(plan);
             return e->get_model();

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "engines.hpp"
 #include "core/error.hpp"
-#include "training/initialise.hpp"
+#include "engines.hpp"
 #include "model/opacity.hpp"
+#include "training/initialise.hpp"
 #include "training/trainer.hpp"
 
 namespace {
@@ -123,7 +123,7 @@ TEST_CASE("a sum that fixed point cannot hold is left out, and found where it ap
         for (const bool is_bright : {true, false}) {
             const auto e = ready(make, scene, is_bright ? bright : sound);
             auto plan = plan_for(0);
-            plan.gradient = gs::gradient_policy::fixed;
+            plan.gradient = gs::accumulator::fixed;
             plan.iteration = 5;
             e->step(plan);
             plan.iteration = 6;

@@ -67,7 +67,7 @@ class recorder final : public gs::train::engine {
     std::vector<int> degrees;
     void set_sh_degree(int degree) override { degrees.push_back(degree); }
     std::vector<std::size_t> dropped_bands_after;  ///< so many steps
-    std::size_t drop_bands(double change, gs::gradient_policy) override {
+    std::size_t drop_bands(double change, gs::accumulator) override {
         CHECK(change == 0.01);
         CHECK((pruned_after.empty() || pruned_after.back() <= steps.size()));
         dropped_bands_after.push_back(steps.size());

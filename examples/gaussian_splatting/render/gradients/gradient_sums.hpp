@@ -8,7 +8,7 @@
 
 #include "../../core/error.hpp"
 #include "../../features/depth/depth_splats.hpp"
-#include "with_policy.hpp"
+#include "accumulator_set.hpp"
 
 namespace gs::raster {
 
@@ -63,7 +63,7 @@ class gradient_sums {
             if (warps > std::size_t{1} << fixed_log_warps)
                 throw error("sums in fixed point are of up to 2^" + std::to_string(fixed_log_warps) +
                             " patches, and a picture has " + std::to_string(warps) +
-                            ": lower --resolution or take --accumulate exact");
+                            ": lower --resolution, or train without --deterministic");
             kernel.how = typename Kernel::policy(
                 {}, {}, {fixed_sums{fault_.data(), fixed_sums::scale_to_fit(headroom * largest)}});
         }

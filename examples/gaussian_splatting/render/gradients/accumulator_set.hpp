@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <string>
+#include <type_traits>
+#include <warpagg/atomic.hpp>
+
+#include "../../core/error.hpp"
+#include "../blend/blend_backward.hpp"
+#include "accumulator.hpp"
+
+namespace gs::raster {
+
+/// A variant of the backward blending: tile lists split over warps, and sums in floats.
+struct native_sums {
+    /// Whether a kernel exists for a `Backdrop` other than one color.
+    static constexpr bool supports_backdrop = true;
+    template <class Real, class Cut, class Backdrop = one_colour<Real>>
+    using kernel =
+        blend_backward<Real, Cut, true, warpagg::policy<warpagg::reduce::scatter, warpagg::idle::assume_busy>,
+                       true, Backdrop>;
+};
+
+/// The same kernel, except that the sums of warps are kept as `Accumulate` keeps them. Sums in double are
+/// always kept in double.
+template <class Accumulate, bool SupportsBackdrop = true>
+struct sums_kept_in {
+    static constexpr bool supports_backdrop = SupportsBackdrop;
+    template <class Real>
+    using kept =
+        std::conditional_t<std::is_same_v<Real, float>, warpagg::accumulate::between_warps<Accumulate>,
+                           warpagg::accumulate::native>;
+    template <class Real, class Cut, class Backdrop = one_colour<Real>>
+    using kernel =
+        blend_backward<Real, Cut, true,
+                       warpagg::policy<warpagg::reduce::scatter, warpagg::idle::assume_busy, kept<Real>>,
+                       true, Backdrop>;
+};
+
+/// Fixed point in units of 2^-45 of the largest possible sum, for up to 2^18 warps: an image of 16 million
+/// pixels has as many patches.
+inline constexpr int fixed_log_warps = 18;
+using fixed_sums = warpagg::accumulate::fixed<63 - fixed_log_warps, fixed_log_warps>;
+
+/// The variants that a renderer is compiled with. An `accumulator` is the number of one.
+template <class... Variants>
+struct accumulator_set {
+    /// Calls `f` with a value of the chosen variant's type. Throws `error` if the set has no such variant.
+    template <class F>
+    static void visit(accumulator chosen, const F& f) {
+        auto left = static_cast<std::size_t>(chosen);
+        const bool found = ((left-- == 0 && (f(Variants{}), true)) || ...);
+        if (!found)
+            throw error("this program has " + std::to_string(sizeof...(Variants)) +
+                        " accumulators, but number " + std::to_string(static_cast<int>(chosen)) +
+                        " was requested (they are numbered from 0)");
+    }
+    /// Calls `f` with the chosen variant's `blend_backward`, for a background of one color. The kernel
+    /// follows a `blend_forward` with the same `Cut`.
+    template <class Real, class Cut, class F>
+    static void with_kernel(accumulator chosen, const F& f) {
+        visit(chosen, [&]<class Variant>(Variant) { f(typename Variant::template kernel<Real, Cut>{}); });
+    }
+    static constexpr bool supports_backdrop(accumulator chosen) {
+        constexpr std::array supports{Variants::supports_backdrop...};
+        return supports[static_cast<std::size_t>(chosen)];
+    }
+};
+
+/// The trainer's variants, in the order of `accumulator`.
+using product_accumulators = accumulator_set<native_sums, sums_kept_in<fixed_sums>>;
+
+}  // namespace gs::raster
