@@ -8,16 +8,15 @@
 
 namespace gs::device {
 
-/// What a candidate is worth that comes to nothing.
+/// The bucket of a candidate that goes nowhere.
 inline constexpr std::uint32_t no_bucket = 0xffffffffu;
 
-/// Items that go to any number of buckets: what a device's `distribute` takes. Of `items(i)`
-///
-/// | | |
-/// | --- | --- |
-/// | `size()` | how many candidates it has, buckets that it may go to |
-/// | `bucket(k)` | candidate k, or `no_bucket` if it does not go there; the same whenever it is asked, and no
-/// bucket twice | | `value` | what stands for it in the lists |
+/// Items that each go to any number of buckets: the input of `distribute`, see `device`. Of item i,
+/// `all(i)`:
+/// - `size()`: number of its candidates.
+/// - `bucket(k)`: bucket of candidate k, or `no_bucket`. Depends on nothing but i and k; no two
+///   candidates of an item have the same bucket.
+/// - `value`: represents the item in the lists.
 template <class T>
 concept items = requires(const T& all, std::size_t i, std::uint32_t k) {
     { all(i).size() } -> std::same_as<std::uint32_t>;

@@ -4,8 +4,9 @@
 
 namespace gs::device {
 
-/// Whether a kernel wants memory that its warp's lanes share while it runs: it names the type,
-/// `scratch<Warp>`, and gets one as its last argument, not initialised; in shared memory on a GPU.
+/// Whether a warp kernel asks for memory that the lanes of its warp share while it runs. Such a
+/// kernel names the type, `scratch<Warp>`, and gets an uninitialized object of it as its last
+/// argument. On a GPU the object is in shared memory.
 template <class F, class Warp>
 concept has_scratch = requires {
     typename F::template scratch<Warp>;

@@ -7,13 +7,14 @@
 
 namespace gs::device {
 
-/// The stages of an iteration, for the split of its time. Adam is the end of `project_backward`.
+/// The stages of an iteration whose times are reported separately. `project_backward` includes
+/// Adam.
 enum class stage { project, bin, blend_forward, loss, blend_backward, project_backward, count };
 
 inline constexpr std::array stage_names{"project",         "bin", "blend_forward", "loss", "blend_backward",
                                         "project_backward"};
 
-/// What decides how much memory an iteration needs: equal numbers, equal needs.
+/// Determines how much memory an iteration needs: iterations of equal shapes need the same.
 using iteration_shape = std::array<std::size_t, 6>;
 
 /// Milliseconds per stage, summed over the `sampled` iterations that were timed.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "../device/device.hpp"
 #include "gaussians.hpp"
 #include "aosoa.hpp"
 #include "parameters.hpp"
@@ -13,7 +14,7 @@
 namespace gs {
 
 /// Arrays on a device with a place for each parameter of each Gaussian: see `place`.
-template <class Device>
+template <device::device Device>
 class parameter_memory {
   public:
     using buffer = typename Device::template buffer<float>;

@@ -5,13 +5,14 @@
 #include <cmath>
 #include <vector>
 
+#include "../device/device.hpp"
 #include "ordered_sums.hpp"
 
 namespace gs::train {
 
 /// Rows of `Width` numbers on the device, each of which learns by Adam from sums over pictures, by the steps
 /// that were its own.
-template <class Device, unsigned Width>
+template <device::device Device, unsigned Width>
 class learned_numbers {
     template <class T>
     using buffer = typename Device::template buffer<T>;

@@ -7,7 +7,7 @@
 #include <string>
 #include <type_traits>
 
-#include "../device/stages.hpp"
+#include "../device/device.hpp"
 #include "../core/error.hpp"
 #include "tiles/bin.hpp"
 #include "blend/blend_backward.hpp"
@@ -21,7 +21,7 @@ namespace gs::raster {
 
 /// Gaussians to a picture and, from dL/dpicture, to the gradients of their parameters. Holds what lies in
 /// between. `Accumulators`: an `accumulator_set`, from which `backward` chooses at run time.
-template <class Device, class Real, class Cut = cut_for<typename Device::warp>,
+template <device::device Device, class Real, class Cut = cut_for<typename Device::warp>,
           class Accumulators = product_accumulators>
 class renderer {
   public:

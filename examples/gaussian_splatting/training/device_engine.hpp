@@ -62,7 +62,7 @@ struct close_step {
 };
 
 /// An `engine` on a device: the order of the kernels, and the memory they share.
-template <class Device, class Accumulators = raster::product_accumulators>
+template <device::device Device, class Accumulators = raster::product_accumulators>
 class device_engine final : public engine {
     template <class T>
     using buffer = typename Device::template buffer<T>;

@@ -10,20 +10,21 @@
 #include <limits>
 #include <vector>
 
+#include "../../device/device.hpp"
 #include "../../model/parameter_memory.hpp"
 #include "densify_kernels.hpp"
 
 namespace gs::train {
 
 /// What is trained: values and the moments of Adam.
-template <class Device>
+template <device::device Device>
 struct trained_parameters {
     parameter_memory<Device> values, first, second;
     typename Device::template buffer<std::uint32_t> last_step;
 };
 
 /// From one generation of Gaussians to the next, on a device, and the memory that it takes.
-template <class Device>
+template <device::device Device>
 class densification {
     template <class T>
     using buffer = typename Device::template buffer<T>;

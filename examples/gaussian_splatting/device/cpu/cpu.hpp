@@ -20,13 +20,12 @@
 #include <vector>
 #include <warpagg/warp/simd.hpp>
 
-#include "../distribute.hpp"
+#include "../device.hpp"
 #include "../scratch.hpp"
-#include "../stages.hpp"
 
 namespace gs::device {
 
-/// What this was compiled for, as part of the device's name.
+/// The instruction set that this file is compiled for, as part of the device's name.
 #if defined(__AVX512VL__)
 inline constexpr const char* instruction_set = ", AVX-512";
 #elif defined(__AVX2__)
@@ -35,16 +34,16 @@ inline constexpr const char* instruction_set = ", AVX2";
 inline constexpr const char* instruction_set = "";
 #endif
 
-/// The CPU as a device: an index range or a range of warps is spread over OpenMP threads, and memory is the
-/// host's. `Warp` is the model that warp kernels run on. The interface is that of `cuda`.
+/// Models `device` on the CPU: OpenMP threads share the indices or warps of a launch, and device
+/// memory is host memory. Every member returns when its work is done. `Warp` is the model that warp
+/// kernels run on.
 template <class Warp>
 class basic_cpu {
   public:
     using warp = Warp;
-    /// What kernels over Gaussians run on, which have too many values for the registers with more lanes.
+    /// With 32 lanes, kernels over Gaussians would need more values than there are registers.
     using narrow_warp = std::conditional_t<Warp::size == 32, warpagg::emulator::narrow_lanes<8>, Warp>;
 
-    /// Memory of the device. Growing it loses the contents.
     template <class T>
     class buffer {
       public:
@@ -60,7 +59,7 @@ class basic_cpu {
 
       private:
         static_assert(std::is_trivially_copyable_v<T>);
-        static constexpr std::align_val_t line{64};  // no row of lanes lies in two lines of the cache
+        static constexpr std::align_val_t line{64};  // a row of lanes lies in one cache line
         struct release {
             void operator()(T* p) const { ::operator delete[](p, line); }
         };
@@ -70,7 +69,7 @@ class basic_cpu {
 
     basic_cpu() {
 #if defined(__SSE__)
-        // Flush denormals: as moments of Adam they would cost x86 a hundred cycles each.
+        // Flush denormals to zero: x86 is slow with them, and Adam's moments become denormal.
 #pragma omp parallel
         _mm_setcsr(_mm_getcsr() | 0x8040u);
 #endif
@@ -80,17 +79,13 @@ class basic_cpu {
         return "cpu, " + std::to_string(omp_get_max_threads()) + " threads" + instruction_set;
     }
 
-    /// How many warps keep the device busy: threads take them as they come.
     std::size_t resident_warps() const { return 16 * static_cast<std::size_t>(omp_get_max_threads()); }
 
-    /// f(i) for each i in [0, n).
     template <class F>
     void for_each_index(std::size_t n, const F& f) {
 #pragma omp parallel for schedule(static)
         for (std::size_t i = 0; i < n; ++i) f(i);
     }
-    /// f(warp, i) for each i in [0, n), each on a warp of its own, of the model W; f(warp, i, scratch) if it
-    /// has scratch.
     template <class W = warp, class F>
     void for_each_warp(std::size_t n, const F& f) {
         const std::size_t share = std::clamp<std::size_t>(n / resident_warps(), 1, 8);
@@ -121,13 +116,11 @@ class basic_cpu {
     void upload(T* to, const T* from, std::size_t n) {
         std::copy_n(from, n, to);
     }
-    /// Waits for the device, as does whoever reads a result of it.
     template <class T>
     void download(T* to, const T* from, std::size_t n) {
         std::copy_n(from, n, to);
     }
 
-    /// out[i] = in[0] + ... + in[i - 1] for i in [0, n]; out has n + 1 elements.
     void prefix_sum(const buffer<std::uint32_t>& in, buffer<std::uint64_t>& out, std::size_t n) {
         std::uint64_t sum = 0;
         for (std::size_t i = 0; i < n; ++i) {
@@ -137,14 +130,12 @@ class basic_cpu {
         out.data()[n] = sum;
     }
 
-    /// Lists for each bucket the values of the items [0, n) that go there, in their order: `listed` holds the
-    /// list of bucket b at [ranges[b].begin, ranges[b].end), one bucket's after the other's. `needed` is the
-    /// length of all; what does not fit into `room` places is cut off.
     template <class Range>
-    void distribute(std::size_t n, const items auto& all, std::size_t buckets, std::uint64_t room,
-                    std::uint32_t* listed, Range* ranges, std::uint64_t* needed) {
-        // Slices of the items, more than threads since some have far more candidates; each has its row of
-        // counts, which become places, and keeps what it found for the second time.
+    void distribute(std::size_t n, const items auto& all, std::size_t buckets, std::uint64_t capacity,
+                    std::uint32_t* listed, Range* ranges, std::uint64_t* required) {
+        // The items are cut into more slices than threads, because some items have far more
+        // candidates. Each slice has a row of counts, which become positions, and keeps its
+        // instances for the second pass.
         const auto slices = 4 * static_cast<std::size_t>(omp_get_max_threads());
         places_.resize(slices * buckets);
         totals_.resize(buckets);
@@ -156,14 +147,14 @@ class basic_cpu {
         };
         zero(places_.data(), slices * buckets);
         for_each_slice([&](std::vector<instance>& kept, std::uint64_t* counts, std::size_t s) {
-            auto found = std::move(kept);  // whose end else shares a line of the cache with other threads'
+            auto found = std::move(kept);  // on this thread's stack: its size shares no cache line
             found.clear();
             for (std::size_t i = n * s / slices; i < n * (s + 1) / slices; ++i) {
                 const auto item = all(i);
                 for (std::uint32_t k = 0; k < item.size(); ++k)
                     if (const std::uint32_t bucket = item.bucket(k); bucket != no_bucket) {
                         ++counts[bucket];
-                        if (room > 0) found.push_back({bucket, item.value});
+                        if (capacity > 0) found.push_back({bucket, item.value});
                     }
             }
             kept = std::move(found);
@@ -174,20 +165,19 @@ class basic_cpu {
             totals_.data()[b] = static_cast<std::uint32_t>(total);
         });
         prefix_sum(totals_, first_, buckets);
-        *needed = first_.data()[buckets];
+        *required = first_.data()[buckets];
         for_each_index(buckets, [&](std::size_t b) {
             std::uint64_t at = first_.data()[b];
             for (std::size_t s = 0; s < slices; ++s) at += std::exchange(places_.data()[s * buckets + b], at);
-            ranges[b] = {static_cast<std::uint32_t>(std::min(first_.data()[b], room)),
-                         static_cast<std::uint32_t>(std::min(at, room))};
+            ranges[b] = {static_cast<std::uint32_t>(std::min(first_.data()[b], capacity)),
+                         static_cast<std::uint32_t>(std::min(at, capacity))};
         });
         for_each_slice([&](const std::vector<instance>& found, std::uint64_t* places, std::size_t) {
             for (const auto& [bucket, value] : found)
-                if (const std::uint64_t place = places[bucket]++; place < room) listed[place] = value;
+                if (const std::uint64_t place = places[bucket]++; place < capacity) listed[place] = value;
         });
     }
 
-    /// Sorts the first n pairs by their keys; pairs of equal keys keep their order. n < 2^30.
     void sort_pairs(buffer<std::uint32_t>& keys, buffer<std::uint32_t>& values, std::size_t n) {
         constexpr int bits = 32, digit_bits = 11;
         other_keys_.resize(keys.size());
@@ -199,22 +189,18 @@ class basic_cpu {
         }
     }
 
-    /// Runs an iteration's work.
     template <class F>
     void iteration(const iteration_shape&, const F& f) {
         f();
         end_iteration();
     }
 
-    /// Times every n-th iteration from now on.
     void sample_times(int every) {
         sampling_ = every;
         iteration_ = 0;
         times_ = {};
     }
-    /// What follows belongs to no iteration.
     void pause_times(bool paused) { paused_ = paused; }
-    /// Marks where a stage begins.
     void begin(stage s) {
         if (paused_) return;
         const auto now = clock::now();
@@ -230,7 +216,7 @@ class basic_cpu {
     }
     const stage_times& times() { return times_; }
 
-    std::size_t peak_bytes() const { return 0; }  // the process's own peak says it all
+    std::size_t peak_bytes() const { return 0; }
     void wait() {}
 
   private:
@@ -243,7 +229,7 @@ class basic_cpu {
         const auto digit = [&](std::uint32_t key) { return key >> shift & (digits - 1); };
         std::uint32_t* to_keys = other_keys_.data();
         std::uint32_t* to_values = other_values_.data();
-        // Of a few thousand keys the sums over the slices' digits would take longer.
+        // With few keys per slice, summing the slices' histograms would take longer than the sort.
         const std::size_t slices =
             std::clamp<std::size_t>(n / (2 * digits), 1, static_cast<std::size_t>(omp_get_max_threads()));
         histograms_.resize(digits * slices);
@@ -256,8 +242,8 @@ class basic_cpu {
             std::fill_n(counts, digits, std::size_t{0});
             for (std::size_t i = from; i < to; ++i) ++counts[digit(keys[i])];
         });
-        // Where each digit begins, and in it each slice: by all threads, since what others counted is slow to
-        // come by.
+        // The first position of each digit, and within it of each slice. All threads share this
+        // work, because counts that other threads wrote are slow to read.
         starts_.resize(digits);
         for_each_index(digits, [&](std::size_t d) {
             std::size_t sum = 0;
@@ -291,7 +277,8 @@ class basic_cpu {
     clock::time_point since_;
 };
 
-/// With warps of 8 lanes, whose values take a register each: see `emulator::basic_lanes`.
+/// With warps of 8 lanes, a value of which fits in one AVX register: see `emulator::basic_lanes`.
 using cpu = basic_cpu<warpagg::emulator::narrow_lanes<8>>;
+static_assert(device<cpu>);
 
 }  // namespace gs::device

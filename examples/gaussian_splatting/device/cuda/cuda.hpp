@@ -15,6 +15,7 @@
 #include <utility>
 #include <warpagg/atomic.hpp>
 
+#include "../device.hpp"
 #include "../scratch.hpp"
 #include "distribute.hpp"
 #include "graph.hpp"
@@ -33,7 +34,7 @@ struct wide_sum {
     __device__ std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
 };
 
-/// The first n numbers, and a zero.
+/// The first n numbers, followed by a zero.
 template <class Numbers>
 struct and_a_zero {
     Numbers numbers;
@@ -53,8 +54,8 @@ __global__ void for_each_index(std::size_t n, F f) {
     if (i < n) f(i);
 }
 
-/// Kernels that walk lists say how many of their warps an SM is to have at once: they get few enough
-/// registers for it.
+/// A kernel can specify how many of its warps an SM must be able to hold at once, `warps_at_once`.
+/// The compiler then limits its registers.
 template <class F>
 constexpr int least_blocks = 1;
 template <class F>
@@ -76,11 +77,12 @@ __global__ void __launch_bounds__(block_size, least_blocks<F>) for_each_warp(uns
 
 }  // namespace detail
 
-/// A CUDA device and a stream on it. The interface is that of `basic_cpu`.
+/// Models `device` on an NVIDIA GPU: the current CUDA device and one stream on it. Throws `error`
+/// when the GPU is out of memory.
 class cuda {
   public:
     using warp = warpagg::cuda_warp;
-    using narrow_warp = warp;  ///< see `basic_cpu`
+    using narrow_warp = warp;
 
     template <class T>
     using buffer = cuda_buffer<T>;
@@ -104,15 +106,12 @@ class cuda {
         return std::string("cuda, ") + properties.name;
     }
 
-    /// How many warps keep the device busy: about as many as run at once.
     std::size_t resident_warps() const { return resident_warps_; }
 
-    /// f(i) for each i in [0, n).
     template <class F>
     void for_each_index(std::size_t n, const F& f) {
         launch(detail::for_each_index<F>, blocks(n, detail::block_size), detail::block_size, 0, n, f);
     }
-    /// f(warp, i) for each i in [0, n), each on a warp of its own; f(warp, i, scratch) if it has scratch.
     template <class W = warp, class F>
     void for_each_warp(std::size_t n, const F& f) {
         launch(detail::for_each_warp<F>, blocks(n, detail::warps_per_block), detail::block_size, 0,
@@ -131,22 +130,19 @@ class cuda {
     void upload(T* to, const T* from, std::size_t n) {
         check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyHostToDevice, stream_));
     }
-    /// Waits for the device, as does whoever reads a result of it.
     template <class T>
     void download(T* to, const T* from, std::size_t n) {
         check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToHost, stream_));
         wait();
     }
 
-    /// out[i] = in[0] + ... + in[i - 1] for i in [0, n]; out has n + 1 elements.
     void prefix_sum(const buffer<std::uint32_t>& in, buffer<std::uint64_t>& out, std::size_t n) {
         prefix_sum_of(in.data(), out, n);
     }
 
-    /// See `basic_cpu`.
-    template <class Items, class Range>
-    void distribute(std::size_t n, const Items& all, std::size_t buckets, std::uint64_t room,
-                    std::uint32_t* listed, Range* ranges, std::uint64_t* needed) {
+    template <items Items, class Range>
+    void distribute(std::size_t n, const Items& all, std::size_t buckets, std::uint64_t capacity,
+                    std::uint32_t* listed, Range* ranges, std::uint64_t* required) {
         using namespace detail;
         first_candidate_.resize(n + 1);
         prefix_sum_of(sizes_of<Items>{all}, first_candidate_, n);
@@ -159,12 +155,11 @@ class cuda {
         launch(shared ? count_slice<true, Items> : count_slice<false, Items>, slices,
                counting_warps * warp_size, row, all, first, n, b, table_.data());
         launch(place_buckets<Range>, blocks(buckets, warp_size), placing_warps * warp_size, 0, b,
-               table_.data(), room, ranges, needed, slices_done_.data());
+               table_.data(), capacity, ranges, required, slices_done_.data());
         launch(shared ? append_slice<true, Items, Range> : append_slice<false, Items, Range>, slices,
-               warp_size, row, all, first, n, b, table_.data(), room, ranges, listed);
+               warp_size, row, all, first, n, b, table_.data(), capacity, ranges, listed);
     }
 
-    /// Sorts the first n pairs by their keys; pairs of equal keys keep their order. n < 2^30.
     void sort_pairs(buffer<std::uint32_t>& keys, buffer<std::uint32_t>& values, std::size_t n) {
         using namespace detail;
         other_keys_.resize(n);
@@ -177,14 +172,14 @@ class cuda {
                count, sort_memory_.data());
         std::uint32_t *from[] = {keys.data(), values.data()},
                       *to[] = {other_keys_.data(), other_values_.data()};
-        static_assert(digits_a_key % 2 == 0);  // so that they end where they began
+        static_assert(digits_a_key % 2 == 0);  // so that the result is in `keys` and `values`
         for (unsigned digit = 0; digit < digits_a_key; ++digit, std::swap(from, to))
             launch(sort_by_digit<std::uint32_t, std::uint32_t>, tiles, sorting_threads, 0, from[0], from[1],
                    count, digit * digit_bits, sort_memory(sort_memory_.data(), tiles, digit), to[0], to[1]);
     }
 
-    /// Runs f, which launches an iteration's work and waits for none of it. Iterations of the same `shape`
-    /// need the same memory: from the second on they are launched as one graph, but for those that are timed.
+    /// Iterations of the same shape need the same memory. From the second one on, they are launched
+    /// as one graph, except those that are timed.
     template <class F>
     void iteration(const iteration_shape& shape, const F& f) {
         const bool is_new = shapes_.insert(shape).second;
@@ -195,11 +190,8 @@ class cuda {
         end_iteration();
     }
 
-    /// Times every n-th iteration from now on.
     void sample_times(int every) { times_.sample(every); }
-    /// What follows belongs to no iteration.
     void pause_times(bool paused) { times_.pause(paused); }
-    /// Marks where a stage begins.
     void begin(stage s) { times_.begin(s); }
     void end_iteration() { times_.end_iteration(); }
     const stage_times& times() { return times_.get(); }
@@ -208,7 +200,7 @@ class cuda {
     void wait() { check(cudaStreamSynchronize(stream_)); }
 
   private:
-    /// A stream that other objects can be made with.
+    /// A stream that is destroyed after the members that use it.
     struct owned_stream {
         cudaStream_t stream{};
         owned_stream() { check(cudaStreamCreate(&stream)); }
@@ -258,8 +250,8 @@ class cuda {
     owned_stream stream_;
     cuda_times times_;
     cuda_graph graph_;
-    std::set<iteration_shape> shapes_;  ///< that were seen
-    bool kernels_await_ = false;        ///< they were compiled for a GPU that can
+    std::set<iteration_shape> shapes_;  ///< of the iterations so far
+    bool kernels_await_ = false;        ///< the GPU launches a kernel before its predecessor ends
     std::size_t resident_warps_ = 0;
     buffer<std::uint32_t> other_keys_, other_values_, sort_memory_;
     buffer<char> scratch_;
@@ -267,5 +259,6 @@ class cuda {
     buffer<std::uint32_t> table_;
     buffer<unsigned> slices_done_;
 };
+static_assert(device<cuda>);
 
 }  // namespace gs::device

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "../../device/device.hpp"
 #include "../../training/engine.hpp"
 #include "exposure_kernels.hpp"
 #include "../../optimize/adam_parameters.hpp"
@@ -11,7 +12,7 @@
 namespace gs::train {
 
 /// The exposures of photos, on the device. They can learn: by Adam, each by the steps that show its photo.
-template <class Device>
+template <device::device Device>
 class exposures {
     template <class T>
     using buffer = typename Device::template buffer<T>;

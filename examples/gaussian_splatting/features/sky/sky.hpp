@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "../../device/device.hpp"
 #include "../../render/geometry/effect_set.hpp"
 #include "../../optimize/adam_parameters.hpp"
 #include "sky_kernels.hpp"
@@ -11,7 +12,7 @@
 namespace gs::train {
 
 /// The sky of a model on the device, if it has one. It can learn.
-template <class Device>
+template <device::device Device>
 class sky {
     using warp = typename Device::warp;
     using real = warpagg::value_t<warp, float>;

@@ -5,13 +5,14 @@
 #include <array>
 #include <bit>
 
+#include "../../device/device.hpp"
 #include "l1_ssim_kernels.hpp"
 #include "quality.hpp"
 
 namespace gs::train {
 
 /// Compares pictures with photos: the loss, its gradient, and the measures of quality.
-template <class Device, class Real>
+template <device::device Device, class Real>
 class photometric {
     using warp = typename Device::warp;
     using strip = picture_strip<warp>;

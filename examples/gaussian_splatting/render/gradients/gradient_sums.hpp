@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "../../core/error.hpp"
+#include "../../device/device.hpp"
 #include "../../features/depth/depth_splats.hpp"
 #include "accumulator_set.hpp"
 
@@ -23,7 +24,7 @@ struct round_sums {
 };
 
 /// The sums of a backward blending on a device, and the memory in which it keeps them.
-template <class Device, class Real>
+template <device::device Device, class Real>
 class gradient_sums {
     template <class T>
     using buffer = typename Device::template buffer<T>;

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// The `device` concept: everything that the trainer asks of a machine that stores its data and
+/// runs its kernels. Only the models, `cpu` and `cuda`, know OpenMP and CUDA.
+///
+/// Kernels are function objects whose members are values and pointers to device memory. They run in
+/// the order of their launches. No member waits for the device unless the table says so.
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <warpagg/warp/concept.hpp>
+
+#include "distribute.hpp"
+#include "stages.hpp"
+
+namespace gs::device {
+
+/// What the concept calls the members of a device with.
+namespace archetype {
+
+struct index_kernel {
+    void operator()(std::size_t) const;
+};
+struct warp_kernel {
+    template <warpagg::warp W>
+    void operator()(const W&, unsigned) const;
+};
+struct range {
+    std::uint32_t begin, end;
+};
+struct item {
+    std::uint32_t value;
+    std::uint32_t size() const;
+    std::uint32_t bucket(std::uint32_t) const;
+};
+struct item_list {
+    item operator()(std::size_t) const;
+};
+struct host_work {
+    void operator()() const;
+};
+
+}  // namespace archetype
+
+/// `D::buffer<T>`: an array of trivially copyable values in device memory, empty at first.
+/// - `resize(n)`: sets the size. Allocates, and loses the contents, if n exceeds every size before.
+/// - `data()`, `size()`: pointer to device memory, number of values.
+template <class B, class T>
+concept buffer_of = std::movable<B> && std::default_initializable<B> && requires(B b, const B c) {
+    b.resize(std::size_t{});
+    { c.data() } -> std::same_as<T*>;
+    { c.size() } -> std::same_as<std::size_t>;
+};
+
+/// A device. All pointers are to its memory, except the host side of `upload` and `download`.
+///
+/// Types
+/// - `warp`: the model of `warpagg::warp` that kernels run on.
+/// - `narrow_warp`: the same for kernels that hold many values per lane; may have fewer lanes.
+/// - `buffer<T>`: see `buffer_of`.
+///
+/// Properties
+/// - `name()`: kind and model for reports, such as "cuda, NVIDIA H200".
+/// - `resident_warps()`: number of warps that keep the whole device busy.
+/// - `peak_bytes()`: largest amount of device memory in use so far; zero if it is host memory.
+///
+/// Launches
+/// - `for_each_index(n, f)`: runs `f(i)` for each i in [0, n).
+/// - `for_each_warp<W>(n, f)`: runs `f(W{}, i)` for each i in [0, n), on one warp each. W is `warp`
+///   by default. A kernel that `has_scratch` gets its scratch memory as a third argument.
+/// - `iteration(shape, f)`: runs `f()`, which launches one training iteration. `f` does not wait,
+///   and allocates only in the first iteration of this shape. A device may record the launches and
+///   replay them.
+/// - `wait()`: returns when everything launched so far has run.
+///
+/// Copies of n values
+/// - `zero(p, n)`: sets them to zero.
+/// - `copy(to, from, n)`: copies them within the device; the arrays do not overlap.
+/// - `upload(to, from, n)`: copies them from the host, where they must stay until the next `wait`.
+/// - `download(to, from, n)`: copies them to the host. Waits.
+///
+/// Algorithms
+/// - `prefix_sum(in, out, n)`: `out[i] = in[0] + ... + in[i - 1]` for i in [0, n].
+/// - `sort_pairs(keys, values, n)`: stable sort of the first n pairs by key; n < 2^30. May exchange
+///   the memory of the buffers.
+/// - `distribute(n, items, buckets, capacity, listed, ranges, required)`: lists, for each bucket,
+///   the values of the `items` [0, n) that go there, in their order. Bucket b's list is
+///   `[ranges[b].begin, ranges[b].end)` of `listed`; buckets follow one another. Writes the length
+///   of all lists together to `*required`. Truncates what exceeds `capacity`.
+///
+/// Times of an iteration's stages
+/// - `begin(stage)`: marks where a stage begins.
+/// - `end_iteration()`: marks where the iteration ends; `iteration` calls it.
+/// - `pause_times(paused)`: excludes the launches that follow.
+/// - `sample_times(n)`: times every n-th iteration from now on, and forgets earlier times.
+/// - `times()`: the sums since `sample_times`. Waits for the last timed iteration.
+template <class D>
+concept device = std::default_initializable<D> && warpagg::warp<typename D::warp> &&
+                 warpagg::warp<typename D::narrow_warp> && buffer_of < typename D::template buffer<float>,
+float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, std::uint32_t* listed,
+                   archetype::range* ranges, std::uint64_t* required,
+                   typename D::template buffer<std::uint32_t> numbers,
+                   typename D::template buffer<std::uint64_t> sums) {
+    { c.name() } -> std::same_as<std::string>;
+    { c.resident_warps() } -> std::same_as<std::size_t>;
+    d.for_each_index(n, archetype::index_kernel{});
+    d.for_each_warp(n, archetype::warp_kernel{});
+    d.template for_each_warp<typename D::narrow_warp>(n, archetype::warp_kernel{});
+    d.zero(p, n);
+    d.copy(p, from, n);
+    d.upload(p, from, n);
+    d.download(p, from, n);
+    d.prefix_sum(numbers, sums, n);
+    d.sort_pairs(numbers, numbers, n);
+    d.distribute(n, archetype::item_list{}, n, std::uint64_t{}, listed, ranges, required);
+    d.iteration(iteration_shape{}, archetype::host_work{});
+    d.begin(stage::project);
+    d.pause_times(true);
+    d.sample_times(1);
+    { d.times() } -> std::convertible_to<stage_times>;
+    { c.peak_bytes() } -> std::same_as<std::size_t>;
+    d.wait();
+};
+
+}  // namespace gs::device
