@@ -13,7 +13,7 @@ namespace gs::evaluate {
 
 struct view_quality {
     std::string name;
-    train::quality quality;
+    train::image_quality quality;
     std::optional<double> fitted_psnr;  ///< see fit_exposure.hpp
 };
 

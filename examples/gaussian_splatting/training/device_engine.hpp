@@ -17,7 +17,8 @@
 #include "../losses/inverse_depth/depth_gradient.hpp"
 #include "engine.hpp"
 #include "../features/exposure/exposures.hpp"
-#include "../losses/l1_ssim/photometric.hpp"
+#include "../losses/losses.hpp"
+#include "../metrics/image_comparison.hpp"
 #include "../features/sky/sky.hpp"
 #include "../optimize/finite_check.hpp"
 
@@ -46,15 +47,16 @@ struct close_step {
     raster::list_room room;
     std::uint64_t* skipped;
     std::uint64_t* length;  ///< of the view's lists
-    const double* totals;   ///< of the loss
-    std::uint32_t* unfit;   ///< see `gradient_sums::fault`
+    const double* sums;     ///< see `loss::sums`
+    std::size_t sum_count;
+    std::uint32_t* unfit;  ///< see `gradient_sums::fault`
     train::watch watch;
 
     WARPAGG_HD void operator()(std::size_t) const {
         if (room.exceeded()) ++*skipped;
         *length = *room.needed;
         double sum = 0;
-        for (int k = 0; k < loss_sum_count; ++k) sum += totals[k];
+        for (std::size_t k = 0; k < sum_count; ++k) sum += sums[k];
         if (!raster::is_finite(sum)) watch.note(fault::loss, 0, 0);
         if (*unfit != 0) watch.note(fault::sum, 0, 0);
         *unfit = 0;
@@ -70,7 +72,7 @@ class device_engine final : public engine {
   public:
     device_engine()
         : renderer_(device_),
-          photometric_(device_),
+          comparison_(device_),
           exposures_(device_),
           test_exposures_(device_),
           sky_(device_),
@@ -80,6 +82,7 @@ class device_engine final : public engine {
         found_.resize(1);
         device_.zero(found_.data(), 1);
         take_findings();
+        set_loss(find_loss<Device>(default_loss));
     }
 
     std::string device_name() const override { return device_.name(); }
@@ -158,6 +161,12 @@ class device_engine final : public engine {
 
     std::size_t count() const override { return count_; }
 
+    void set_loss(const std::string& name) override { set_loss(find_loss<Device>(name)); }
+    void set_loss(loss_factory<Device> make) {
+        loss_ = make(device_);
+        ++losses_so_far_;
+    }
+
     void set_downscales(int times) override {
         downscales_ = static_cast<std::size_t>(times);
         if (downscales_ >= train_.size())
@@ -175,7 +184,8 @@ class device_engine final : public engine {
             static_cast<std::size_t>(camera.height),
             static_cast<std::size_t>(plan.gradient),
             (plan.exposure_rate > 0 ? std::size_t{1} : 0) + (sky_.is_there() ? std::size_t{2} : 0) +
-                (learns_depth(plan) ? std::size_t{4} : 0) + (camera.fisheye ? std::size_t{8} : 0)};
+                (learns_depth(plan) ? std::size_t{4} : 0) + (camera.fisheye ? std::size_t{8} : 0) +
+                16 * losses_so_far_};  // a new loss allocates
         device_.iteration(shape, [&] { iterate(plan); });
         lengths_of_[plan.view] = count_;
     }
@@ -237,7 +247,7 @@ class device_engine final : public engine {
             renderer_.reserve_instances(most, static_cast<std::uint64_t>(2 * expected) + 4096);
     }
 
-    quality take_training_quality() override { return photometric_.take(); }
+    loss_report take_training_loss() override { return loss_->take(); }
 
     std::uint64_t skipped_steps() override {
         std::uint64_t n = 0;
@@ -291,10 +301,9 @@ class device_engine final : public engine {
         return trained_.values.banded();
     }
 
-    quality measure(std::size_t test_view, const std::array<float, 3>& background,
-                    std::vector<float>* picture) override {
+    image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
+                          std::vector<float>* picture) override {
         const photo& shot = test_[test_view];
-        photometric_.take();  // what steps added
         draw(shot.camera, background, sh_degree_);
         const std::size_t n = values_of(shot.camera);
         const float* exposed = test_exposures_.count() > 0
@@ -302,11 +311,10 @@ class device_engine final : public engine {
                                    : renderer_.picture();
         shown_.resize(n);
         device_.for_each_index(n, clamp_picture{exposed, shown_.data()});
-        photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height, background,
-                               shot.masked);
-        photometric_.compare(shown_.data());
+        comparison_.set_target(target_of(shot, background));
+        comparison_.compare(shown_.data());
         if (picture != nullptr) *picture = downloaded(exposed, shot.camera);
-        return photometric_.take();
+        return comparison_.take();
     }
 
     void sample_times(int every) override { device_.sample_times(every); }
@@ -328,6 +336,10 @@ class device_engine final : public engine {
         return 3 * static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height);
     }
 
+    target_image target_of(const photo& shot, const std::array<float, 3>& background) const {
+        return {photos_.data() + shot.first, shot.camera.width, shot.camera.height, background, shot.masked};
+    }
+
     /// `trained_` holds `count` Gaussians that nobody has seen.
     void begin_generation(std::size_t count) {
         count_ = count;
@@ -338,8 +350,7 @@ class device_engine final : public engine {
     void iterate(const step_plan& plan) {
         using device::stage;
         const photo& shot = train_[downscales_][plan.view];
-        photometric_.set_photo(photos_.data() + shot.first, shot.camera.width, shot.camera.height,
-                               plan.background, shot.masked);
+        loss_->set_target(target_of(shot, plan.background));
         renderer_.list(trained_.values.read(), count_, shot.camera, plan.sh_degree);
         if (learns_depth(plan)) learn_depth(plan);
         renderer_.blend(plan.background, sky_.draw(shot.camera));
@@ -348,23 +359,35 @@ class device_engine final : public engine {
         const std::size_t pixels = values_of(shot.camera) / 3;
         const float* shown =
             exposes ? exposures_.show(plan.view, renderer_.picture(), pixels) : renderer_.picture();
-        const float* by_picture = photometric_.gradient(shown, plan.ssim_weight, renderer_.room());
+        const float* by_picture = loss_->gradient(shown, renderer_.room());
         if (exposes)
             by_picture = exposures_.learn(plan.view, renderer_.picture(), by_picture, pixels,
                                           plan.exposure_rate, renderer_.room());
         if (sky_.is_there())
             sky_.learn(shot.camera, renderer_.transmittance(), by_picture, plan.sky_rate, renderer_.room());
         const train::watch watch{found_.data(), static_cast<std::uint32_t>(plan.iteration)};
-        renderer_.backward(by_picture, photometric_.largest_gradient(), plan.gradient,
+        renderer_.backward(by_picture, gradient_scale(plan), plan.gradient,
                            plan.updates_sh ? plan.sh_degree : 0, descent(plan, watch),
                            plan.watch ? seen_.data() : nullptr);
+        const std::span<const double> sums = loss_->sums();
         device_.for_each_index(1, close_step{renderer_.room(), skipped_.data(), lengths_.data() + plan.view,
-                                             photometric_.totals(), renderer_.fault(), watch});
+                                             sums.data(), sums.size(), renderer_.fault(), watch});
     }
 
     bool learns_depth(const step_plan& plan) const {
         return plan.depth_weight > 0 && train_[downscales_][plan.view].has_depths &&
                depth_fits_[plan.view].scale > 0;
+    }
+
+    /// Of a pixel of a training photo's depth map.
+    float depth_weight(const step_plan& plan) const {
+        return 3 * plan.depth_weight / static_cast<float>(values_of(train_[downscales_][plan.view].camera));
+    }
+
+    /// The gradients by colors and by inverse depths share their sums.
+    float gradient_scale(const step_plan& plan) const {
+        const float colors = loss_->gradient_scale();
+        return learns_depth(plan) ? std::max(colors, depth_weight(plan)) : colors;
     }
 
     /// Between the renderer's `list` and `blend`.
@@ -374,10 +397,9 @@ class device_engine final : public engine {
         by_depths_.resize(n);
         renderer_.blend_depths();
         device_.for_each_index(
-            n / 3,
-            depth_gradient{renderer_.picture(), depths_.data() + shot.first_depth, depth_fits_[plan.view],
-                           3 * plan.depth_weight / static_cast<float>(n), n / 3, by_depths_.data()});
-        renderer_.backward_depths(by_depths_.data(), photometric_.largest_gradient(), plan.gradient);
+            n / 3, depth_gradient{renderer_.picture(), depths_.data() + shot.first_depth,
+                                  depth_fits_[plan.view], depth_weight(plan), n / 3, by_depths_.data()});
+        renderer_.backward_depths(by_depths_.data(), gradient_scale(plan), plan.gradient);
     }
 
     adam<float> descent(const step_plan& plan, const train::watch& watch) {
@@ -426,7 +448,9 @@ class device_engine final : public engine {
 
     Device device_;
     raster::renderer<Device, float, raster::cut_for<typename Device::warp>, Accumulators> renderer_;
-    photometric<Device, float> photometric_;
+    image_comparison<Device, float> comparison_;
+    std::unique_ptr<loss<float>> loss_;
+    std::size_t losses_so_far_ = 0;
     train::exposures<Device> exposures_, test_exposures_;
     train::sky<Device> sky_;
     buffer<std::uint8_t> photos_;

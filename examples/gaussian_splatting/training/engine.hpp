@@ -14,7 +14,8 @@
 #include "../scene/scene.hpp"
 #include "../densify/adaptive/densify_config.hpp"
 #include "../optimize/fault_report.hpp"
-#include "../losses/l1_ssim/quality.hpp"
+#include "../losses/loss.hpp"
+#include "../metrics/image_quality.hpp"
 
 namespace gs::train {
 
@@ -27,7 +28,6 @@ struct step_plan {
     std::array<float, 3> background{};
     accumulator gradient = accumulator::native;
     std::array<float, 8> rates{};  ///< of Adam, by `parameter`
-    double ssim_weight = 0.2;
     bool watch = false;       ///< note what `densify` and `prune` want to know
     float exposure_rate = 0;  ///< of Adam; 0: photos are as the scene is, and all of this costs nothing
     float sky_rate = 0;       ///< of Adam, for a model that has a sky
@@ -54,6 +54,9 @@ class engine {
     virtual void set_model(const gaussians& model) = 0;
     virtual gaussians get_model() = 0;
     virtual std::size_t count() const = 0;
+    /// The image loss of the following steps, by its name in the table `losses`; at first `default_loss`.
+    /// Throws `error` if there is none of this name.
+    virtual void set_loss(const std::string& name) = 0;
 
     /// Steps from now on learn from photos that were shrunk by two this many times: none after `set_views`.
     /// To be followed by `reserve`. Throws `error` if `set_views` was not asked for that many.
@@ -82,8 +85,8 @@ class engine {
     /// each was when a `step` last saw it, and how many Gaussians there are now. To be called after
     /// `set_model` and `densify`, and now and then.
     virtual void reserve() = 0;
-    /// The means over the `step`s since the last call, or since the last `measure`.
-    virtual quality take_training_quality() = 0;
+    /// The means over the `step`s since the last call.
+    virtual loss_report take_training_loss() = 0;
     /// Steps that changed no parameter, since their lists did not fit.
     virtual std::uint64_t skipped_steps() = 0;
     /// What was not finite in the `step`s since the last call. No parameter ever is: see `adam`.
@@ -106,8 +109,8 @@ class engine {
     virtual void set_test_exposures(const std::vector<exposure>& all) = 0;
     /// A test view against its photo, clamped to [0, 1]. `picture`, where there is one, becomes what is
     /// measured, not clamped.
-    virtual quality measure(std::size_t test_view, const std::array<float, 3>& background,
-                            std::vector<float>* picture = nullptr) = 0;
+    virtual image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
+                                  std::vector<float>* picture = nullptr) = 0;
 
     /// Times every n-th step from now on. By default, what costs nothing: all on the CPU, every 50th on a
     /// GPU.

@@ -41,7 +41,6 @@ struct schedule {
     /// Of the Gaussians, those that matter least are dropped when densification has ended.
     std::optional<double> prune_share;
 
-    static constexpr double ssim_weight = 0.2;
     static constexpr float reset_opacity = 0.01f;
 
     int sh_degree_at(int iteration) const;

@@ -92,7 +92,8 @@ class finite_watch {
                         " is not finite or too large to square; such gradients are left out");
         if (sum.count > 0 && result.left_out_sums == 0)
             events.warn(where(sum) +
-                        ": a sum of gradients does not fit in fixed point; such sums are left out");
+                        ": a sum of gradients exceeds the fixed-point range that gradient_scale() of the loss "
+                        "allows; such sums are left out");
         result.left_out_gradients += gradient.count;
         result.left_out_sums += sum.count;
         if (value.count > 0)
@@ -133,6 +134,7 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     if (exposes) engine.set_exposures(options.exposures);
     if (!options.depth_fits.empty()) engine.set_depth_fits(options.depth_fits);
     engine.take_findings();  // of steps that are not ours
+    engine.set_loss(options.loss);
     int downscales = schedule.downscales_at(1);
     engine.set_downscales(downscales);
     engine.reserve();
@@ -153,7 +155,6 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
         plan.background = options.background.random ? random_colour(colours) : options.background.colour;
         plan.gradient = options.gradient;
         plan.rates = schedule.rates_at(iteration);
-        plan.ssim_weight = schedule::ssim_weight;
         plan.watch = schedule.watches(iteration, views);
         plan.iteration = iteration;
         if (exposes) plan.exposure_rate = schedule.exposure_rate_at(iteration, views);
@@ -199,9 +200,9 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
         if (iteration % report_every == 0 || last || tests || saves)
             watch.look(engine, scene, iteration, events, result);
         if (iteration % report_every == 0 || last || tests) {
-            const quality q = engine.take_training_quality();
-            events.report({iteration, schedule.iterations, q.loss(schedule::ssim_weight), q.psnr(),
-                           engine.count(), seconds_since(start) - outside});
+            const loss_report mean = engine.take_training_loss();
+            events.report({iteration, schedule.iterations, mean.loss, mean.psnr(), engine.count(),
+                           seconds_since(start) - outside});
         }
         if (tests || saves) {
             engine.wait();

@@ -29,6 +29,7 @@ struct train_options {
     bool revised_opacity = true;  ///< see `densify_rule`
     std::uint64_t seed = 0;
     accumulator gradient = accumulator::native;
+    std::string loss = default_loss;  ///< a name in the table `losses`
     background_choice background;
     /// Of the training photos, to begin from; none: photos are as the scene is. See exposure_kernels.hpp.
     std::vector<train::exposure> exposures;

@@ -9,7 +9,7 @@
 
 #include "densify/adaptive/densify_config.hpp"
 #include "lab/accumulators.hpp"
-#include "losses/l1_ssim/quality.hpp"
+#include "metrics/image_quality.hpp"
 #include "model/parameters.hpp"
 #include "render/geometry/effect_set.hpp"
 #include "scene/scene.hpp"
@@ -96,7 +96,8 @@ struct compare_question {
 };
 
 struct compare_answer {
-    gs::train::quality quality;
+    gs::train::image_quality quality;
+    double loss;
     std::vector<double> gradient;  ///< of the training loss, by the picture
 };
 

@@ -6,10 +6,9 @@
 
 #include "backend.hpp"
 #include "lab/accumulator_set.hpp"
-#include "losses/l1_ssim/photometric.hpp"
+#include "losses/l1_ssim/l1_ssim.hpp"
 #include "memory_on.hpp"
 #include "render/renderer.hpp"
-#include "training/schedule.hpp"
 
 namespace hard_cases {
 
@@ -39,7 +38,7 @@ class pictures_on {
         Device device;
         memory on{device};
         pictures_on::renderer renderer{device};
-        gs::train::photometric<Device, Real> photometric{device};
+        gs::train::l1_ssim<Device, Real> loss{device};
         parameters values, gradients;
         buffer<std::uint8_t> photo;
         buffer<Real> backdrop, by_depths;
@@ -62,7 +61,7 @@ class pictures_on {
             if (!q.depth_weights.empty()) draw_depths(q);
             renderer.blend(q.background, q.backdrop.empty() ? nullptr : backdrop.data());
             on.put_bytes(photo, q.view.pixels.rgba);
-            photometric.set_photo(photo.data(), camera.width, camera.height, q.background);
+            loss.set_target({photo.data(), camera.width, camera.height, q.background});
         }
 
         void draw_depths(const question& q) {
@@ -91,8 +90,8 @@ class pictures_on {
         const std::size_t values = 3 * q.pixels();
         buffer<Real> given;
         if (!q.gradient_at.empty()) s.on.put(given, q.gradient_at);
-        const Real* by_picture = s.photometric.gradient(
-            q.gradient_at.empty() ? s.renderer.picture() : given.data(), gs::train::schedule::ssim_weight);
+        const Real* by_picture =
+            s.loss.gradient(q.gradient_at.empty() ? s.renderer.picture() : given.data(), {});
         buffer<Real> weights, weighed;
         if (!q.weights.empty()) {
             s.on.put(weights, q.weights);
@@ -109,7 +108,7 @@ class pictures_on {
 
         answer a;
         a.picture = s.on.get(s.renderer.picture(), values);
-        a.loss = s.photometric.take().loss(gs::train::schedule::ssim_weight) + s.depth_loss;
+        a.loss = s.loss.take().loss + s.depth_loss;
         for (std::size_t p = 0; p < gs::parameter_count; ++p)
             a.gradients[p] = get(s.on, s.gradients[p], q, p);
         const auto sightings = s.on.get_as_they_are(seen.data(), q.count());
@@ -123,8 +122,8 @@ class pictures_on {
     static double loss(const question& q) {
         session s;
         s.draw(q);
-        s.photometric.compare(s.renderer.picture());
-        return s.photometric.take().loss(gs::train::schedule::ssim_weight) + s.depth_loss;
+        s.loss.gradient(s.renderer.picture(), {});
+        return s.loss.take().loss + s.depth_loss;
     }
 
     static std::vector<projected_splat> project(const question& q) {

@@ -5,11 +5,10 @@
 #include <cmath>
 
 #include "backend.hpp"
+#include "densify/adaptive/densify_kernels.hpp"
+#include "losses/l1_ssim/l1_ssim.hpp"
 #include "memory_on.hpp"
 #include "optimize/adam.hpp"
-#include "densify/adaptive/densify_kernels.hpp"
-#include "losses/l1_ssim/photometric.hpp"
-#include "training/schedule.hpp"
 
 namespace hard_cases {
 
@@ -44,16 +43,20 @@ class training_on {
     static compare_answer compare(const compare_question& q) {
         Device device;
         memory on(device);
-        gs::train::photometric<Device, Real> photometric(device);
+        gs::train::l1_ssim<Device, Real> loss(device);
+        gs::train::image_comparison<Device, Real> comparison(device);
         buffer<std::uint8_t> photo;
         buffer<Real> picture;
         on.put_bytes(photo, q.rgba);
         on.put(picture, q.picture);
-        photometric.set_photo(photo.data(), q.width, q.height, q.background);
-        const Real* gradient = photometric.gradient(picture.data(), gs::train::schedule::ssim_weight);
+        const gs::train::target_image target{photo.data(), q.width, q.height, q.background};
+        loss.set_target(target);
+        comparison.set_target(target);
+        comparison.compare(picture.data());
         compare_answer a;
-        a.gradient = on.get(gradient, q.picture.size());
-        a.quality = photometric.take();
+        a.gradient = on.get(loss.gradient(picture.data(), {}), q.picture.size());
+        a.loss = loss.take().loss;
+        a.quality = comparison.take();
         return a;
     }
 

@@ -104,20 +104,20 @@ TEST_CASE("a step learns from photos as small as it is told to") {
             CAPTURE(downscales);
             e->set_downscales(downscales);
             e->reserve();
-            e->take_training_quality();
+            e->take_training_loss();
             e->step(plan);
             const gs::view small = gs::shrunk(scene.train[3], 1 << downscales);
             REQUIRE(small.camera.width == 48 >> downscales);
-            CHECK(e->take_training_quality().psnr() ==
+            CHECK(e->take_training_loss().psnr() ==
                   doctest::Approx(psnr_between(e->render(small.camera, plan.background),
                                                gs::over_background(small.pixels, plan.background.data())))
                       .epsilon(1e-4));
         }
         e->set_views(scene.train, scene.test);
-        e->take_training_quality();
+        e->take_training_loss();
         e->step(plan);
         CHECK(
-            e->take_training_quality().psnr() ==
+            e->take_training_loss().psnr() ==
             doctest::Approx(psnr_between(e->render(scene.train[3].camera, plan.background),
                                          gs::over_background(scene.train[3].pixels, plan.background.data())))
                 .epsilon(1e-4));
@@ -178,12 +178,12 @@ TEST_CASE("colours that depend on direction stay as they are when they are not t
         CHECK(without.sh_rest == model.sh_rest);
         CHECK(without.sh_constant != model.sh_constant);
         CHECK(without.mean != model.mean);
-        const double psnr = e->take_training_quality().psnr();
+        const double psnr = e->take_training_loss().psnr();
         e->set_model(model);
         plan.updates_sh = true;
         e->step(plan);
         CHECK(e->get_model().sh_rest != model.sh_rest);
-        CHECK(e->take_training_quality().psnr() == doctest::Approx(psnr).epsilon(1e-6));  // both drew them
+        CHECK(e->take_training_loss().psnr() == doctest::Approx(psnr).epsilon(1e-6));  // both drew them
     }
 }
 

@@ -179,6 +179,25 @@ TEST_CASE("training says what it leaves out, once, and goes on") {
     }
 }
 
+TEST_CASE("training warns once of sums that fixed point cannot hold") {
+    const gs::scene scene = small_scene();
+    gs::gaussians bright = few(scene);
+    bright.sh_constant[3 * 11] = 1e7f;
+    for (const auto make : engines()) {
+        const auto e = ready(make, scene, bright);
+        std::vector<std::string> warnings;
+        const gs::train::train_events events{[](const gs::train::progress&) {}, [](int) {}, [](int) {},
+                                             [&](const std::string& line) { warnings.push_back(line); }};
+        auto options = short_run(20);
+        options.gradient = gs::accumulator::fixed;
+        const auto result = gs::train::train(*e, scene, options, events);
+        CHECK(result.left_out_sums >= 1);
+        REQUIRE(warnings.size() == 1);
+        CHECK(warnings[0].find("exceeds the fixed-point range") != std::string::npos);
+        CHECK(warnings[0].find("view ") != std::string::npos);
+    }
+}
+
 TEST_CASE("training ends where the loss is not finite, and names the view") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {

@@ -51,6 +51,7 @@ class recorder final : public gs::train::engine {
         CHECK(pruned_after.empty());
         pruned_after.push_back(steps.size());
     }
+    void set_loss(const std::string& name) override { CHECK(name == "l1_ssim"); }
     void reset_opacity(float) override {}
     std::vector<gs::train::exposure> exposures() override { return {}; }
     void set_exposures(const std::vector<gs::train::exposure>&) override {}
@@ -60,7 +61,7 @@ class recorder final : public gs::train::engine {
     std::vector<std::size_t> cleared_after;  ///< so many steps
     void clear_cameras() override { cleared_after.push_back(steps.size()); }
     void reserve() override { sizes_reserved.push_back(downscales_); }
-    gs::train::quality take_training_quality() override { return {}; }
+    gs::train::loss_report take_training_loss() override { return {}; }
     std::uint64_t skipped_steps() override { return 0; }
     gs::train::findings take_findings() override { return {}; }
     std::vector<float> render(const gs::camera&, const std::array<float, 3>&, int) override { return {}; }
@@ -73,7 +74,7 @@ class recorder final : public gs::train::engine {
         dropped_bands_after.push_back(steps.size());
         return 0;
     }
-    gs::train::quality measure(std::size_t, const std::array<float, 3>&, std::vector<float>*) override {
+    gs::train::image_quality measure(std::size_t, const std::array<float, 3>&, std::vector<float>*) override {
         return {};
     }
     void sample_times(int) override {}

@@ -33,7 +33,7 @@ extern "C" __global__ void first_pass(gs::train::sum_and_difference<float, maske
 extern "C" __global__ void second_pass(gs::train::ssim_compare<float, masked> kernel) {
     kernel(warp{}, blockIdx.x);
 }
-extern "C" __global__ void last_pass(gs::train::loss_gradient<float, masked> kernel) {
+extern "C" __global__ void last_pass(gs::train::l1_ssim_gradient<float, masked> kernel) {
     kernel(warp{}, blockIdx.x);
 }
 #else
@@ -53,7 +53,7 @@ extern "C" void first_pass(const gs::train::sum_and_difference<float, masked>& k
 extern "C" void second_pass(const gs::train::ssim_compare<float, masked>& kernel, unsigned index) {
     kernel(warp{}, index);
 }
-extern "C" void last_pass(const gs::train::loss_gradient<float, masked>& kernel, unsigned index) {
+extern "C" void last_pass(const gs::train::l1_ssim_gradient<float, masked>& kernel, unsigned index) {
     kernel(warp{}, index);
 }
 #endif

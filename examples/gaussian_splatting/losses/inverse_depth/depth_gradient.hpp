@@ -10,22 +10,25 @@
 
 namespace gs::train {
 
-/// The gradient, by inverse depths that were drawn, of their mean distance from those of a depth map; pixels
-/// that it does not know have none (Kerbl et al. 2024, hierarchical 3D Gaussians). One index a pixel.
+/// The gradient of `weight` times the sum over all pixels of |d - (scale m + offset)|, with respect
+/// to the rendered inverse depths d; m are the values of a depth map (Kerbl et al. 2024,
+/// hierarchical 3D Gaussians). It is zero where the map has no value. The largest magnitude of its
+/// values is `weight`. One index per pixel.
 struct depth_gradient {
-    const float* drawn;
-    const std::uint16_t* map;
+    const float* render;
+    const std::uint16_t* target;  ///< 0: the depth is unknown
     depth_fit fit;
-    float weight;  ///< over the number of pixels
+    float weight;
     std::size_t pixels;
-    float* gradient;  ///< three planes, the last two of which are zero, as for a picture
+    float* gradient;  ///< three planes, like the gradient of an image; the last two are zero
 
     WARPAGG_HD void operator()(std::size_t i) const {
-        // Nothing lies behind what is infinitely far.
-        const float wanted = warpagg::math::max(fit.scale * static_cast<float>(map[i]) + fit.offset, 0.0f);
-        const float apart = drawn[i] - wanted;
-        const float slope = apart > 0 ? weight : apart < 0 ? -weight : 0.0f;
-        gradient[i] = map[i] != 0 ? slope : 0.0f;
+        // An inverse depth below zero would be farther than infinity.
+        const float expected =
+            warpagg::math::max(fit.scale * static_cast<float>(target[i]) + fit.offset, 0.0f);
+        const float difference = render[i] - expected;
+        const float slope = difference > 0 ? weight : difference < 0 ? -weight : 0.0f;
+        gradient[i] = target[i] != 0 ? slope : 0.0f;
         gradient[i + pixels] = gradient[i + 2 * pixels] = 0;
     }
 };

@@ -9,8 +9,10 @@
 
 namespace gs::train {
 
-/// Three planes of a picture's size in a frame of zeros, which is as wide as the window reaches: to the left
-/// of a row lies the end of the one before, above a plane the end of the one before.
+/// Three planes of an image's size, surrounded by frames of zeros that are as wide as the radius of
+/// the SSIM's window. Rows and planes share their frames: the zeros to the left of a row are those
+/// at the end of the row before it, and the zeros above a plane are those below the plane before
+/// it.
 struct framed_planes {
     static constexpr int frame = ssim_window<float>::radius, alignment = 32;
     int width, height;
@@ -18,25 +20,26 @@ struct framed_planes {
     WARPAGG_HD std::ptrdiff_t pitch() const {
         return (width + frame + alignment - 1) / alignment * alignment;
     }
-    /// How many lines of `pitch()` values there are: one for the frame at the left of the first row, then the
-    /// planes, each below its frame, then the frame of the last.
+    /// Number of lines of `pitch()` values: one for the frame to the left of the first row, then
+    /// each plane with the frame above it, then the frame below the last plane.
     WARPAGG_HD int lines() const { return 1 + 3 * (frame + height) + frame; }
-    /// The place of a row's first pixel.
+    /// The index of a row's first pixel.
     WARPAGG_HD std::ptrdiff_t at(int channel, int row) const {
         return (1 + channel * (frame + height) + frame + row) * pitch();
     }
-    /// How many values there are, with what the last lanes of a warp read of no use.
+    /// Number of values, including those after the end that the last lanes of a warp read and
+    /// ignore.
     std::size_t size() const { return static_cast<std::size_t>(lines() * pitch() + alignment); }
 };
 
-/// Columns as many as a warp has lanes, and some rows of a channel.
+/// The part of an image that one warp processes: `W::size` columns and some rows of one channel.
 template <class W>
-struct picture_strip {
+struct ssim_strip {
     int channel, left, first, last;  ///< the rows are [first, last)
-    mask_t<W> inside;                ///< lanes whose column the picture has
+    mask_t<W> inside;                ///< lanes whose column is in the image
 
-    /// How many rows a strip has if about `wanted` strips are to cover the picture. Lower ones spend too much
-    /// on the rows above and below.
+    /// Rows per strip if about `wanted` strips are to cover the image, but at least 12: lower
+    /// strips would spend too much time on the rows above and below them.
     static int rows_for(int width, int height, std::size_t wanted) {
         constexpr int least = 12;
         const auto chunks = static_cast<int>(std::max<std::size_t>(wanted / (3 * across(width)), 1));
@@ -46,7 +49,7 @@ struct picture_strip {
         return 3 * across(width) * static_cast<std::size_t>((height + rows - 1) / rows);
     }
 
-    WARPAGG_HD picture_strip(const W& w, unsigned index, int width, int height, int rows) {
+    WARPAGG_HD ssim_strip(const W& w, unsigned index, int width, int height, int rows) {
         const auto chunks = static_cast<unsigned>((height + rows - 1) / rows);
         const auto columns = static_cast<unsigned>(across(width));
         left = static_cast<int>(index % columns * W::size);

@@ -12,27 +12,28 @@ using warpagg::value_t;
 using warpagg::math::fma;
 using warpagg::math::select;
 
-/// A weighted mean, and the sum of weighted squares about it: the variance once the weights' sum is 1.
+/// The weighted mean of a group of values and the weighted sum of their squared deviations from it.
+/// That sum is the variance when the weights add up to 1.
 template <class V>
 struct moments {
     V mean, square;
 };
 
-/// The window of the structural similarity: 11 taps of a Gaussian of standard deviation 1.5, normalised
-/// (Wang et al. 2004), and what it takes to merge the values under it, one group after another.
+/// The window of the SSIM (Wang et al. 2004): a normalized Gaussian with a standard deviation of
+/// 1.5 and 11 taps in each direction. The moments of the values under it are merged group by group.
 template <class Real>
 struct ssim_window {
     static constexpr int radius = 5, size = 2 * radius + 1;
 
-    /// To merge a group with those before it (Chan et al. 1979): its weight w, and with the weight W of those
-    /// before, w / (W + w) and w W / (W + w). A variance so merged is a sum of squares, whatever the
-    /// rounding.
+    /// The factors that merge a group of weight w with the groups before it, of total weight W
+    /// (Chan et al. 1979): w, w / (W + w) and w W / (W + w). A variance merged this way is a sum of
+    /// squares, so rounding never makes it negative.
     struct step {
         Real weight, share, between;
     };
 
-    Real tap[radius + 1];   ///< by the distance from the centre
-    step pair[radius + 1];  ///< from the centre outwards, two neighbours at a time
+    Real tap[radius + 1];   ///< by distance from the center
+    step pair[radius + 1];  ///< from the center outward, two neighbors at a time
     step row[size];         ///< from the first row to the last
 
     static ssim_window make() {
@@ -64,8 +65,9 @@ struct ssim_window {
                 fma(V(by.between) * delta, delta, fma(V(by.weight), group.square, before.square))};
     }
 
-    /// For each of N maps the moments of *twice* the values from[-radius] to from[radius], of each lane its
-    /// own. All maps at a time, so that a GPU waits for all of them at once.
+    /// For each of N maps, and for each lane's pixel, the moments along the row of *twice* the
+    /// values from from[-radius] to from[radius]. Reads all maps together, so that a GPU waits for
+    /// their loads only once.
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W, int N>
     WARPAGG_HD void moments_along(const W& w, const Real* const (&from)[N],
@@ -73,8 +75,8 @@ struct ssim_window {
         using real = value_t<W, Real>;
         WARPAGG_UNROLL
         for (int m = 0; m < N; ++m) {
-            const real centre = w.load_row(from[m], 0);
-            all[m] = {centre + centre, real(0)};
+            const real center = w.load_row(from[m], 0);
+            all[m] = {center + center, real(0)};
         }
         WARPAGG_UNROLL
         for (int t = 1; t <= radius; ++t) {
@@ -86,7 +88,7 @@ struct ssim_window {
             }
         }
     }
-    /// For each of N maps the mean of the values from[-radius] to from[radius].
+    /// For each of N maps the weighted mean of the values from from[-radius] to from[radius].
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W, int N>
     WARPAGG_HD void mean_along(const W& w, const Real* const (&from)[N], value_t<W, Real> (&mean)[N]) const {
@@ -101,8 +103,8 @@ struct ssim_window {
         }
     }
 
-    /// One more row for the `size` windows that it is in: the k-th of them has seen k rows before. The last
-    /// one is complete.
+    /// Adds a row to the windows that contain it. Afterwards, `windows[k]` contains the last k + 1
+    /// rows, so that `windows[size - 1]` is complete.
     template <class V>
     WARPAGG_HD void add_row(moments<V> (&windows)[size], const moments<V>& values) const {
         WARPAGG_UNROLL

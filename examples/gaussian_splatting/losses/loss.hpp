@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// The interface of an image loss: a measure of the difference between a render and its target that
+/// training minimizes. To add a loss, implement `loss` in a folder of its own, with the device as a
+/// template parameter, and add a line to the table in losses.hpp.
+
+#include <cmath>
+#include <span>
+
+#include "../metrics/target_image.hpp"
+#include "../render/geometry/list_capacity.hpp"
+
+namespace gs::train {
+
+/// The loss that training minimizes by default: see the table in losses.hpp.
+inline constexpr const char* default_loss = "l1_ssim";
+
+/// Means over the renders of several steps.
+struct loss_report {
+    double loss = 0;
+    double square_error = 0;  ///< mean over pixels and color channels
+
+    /// In decibels, for images with values in [0, 1].
+    double psnr() const { return -10 * std::log10(square_error); }
+};
+
+/// `Real` is float in training, and double where tests compare the gradient with finite
+/// differences.
+///
+/// All pointers are to device memory. Training records the launches of a step and replays them, so
+/// `set_target` and `gradient` must not wait for the device, and may allocate only when the size of
+/// the target is new.
+template <class Real>
+class loss {
+  public:
+    virtual ~loss() = default;
+
+    /// The target of the next calls of `gradient`. Pixels that a mask excludes must have a gradient
+    /// of zero.
+    virtual void set_target(const target_image& target) = 0;
+
+    /// The gradient of the loss with respect to each value of the render: three planes, red, green
+    /// and blue, of the target's size, as is the render. The result is valid until the next call.
+    /// Also adds the loss and the square error to `sums()`, unless `room.exceeded()`: then the
+    /// render is incomplete and the step does not count.
+    virtual const Real* gradient(const Real* render, const raster::list_room& room) = 0;
+
+    /// The largest magnitude of one value of the gradient for the current target, up to a small
+    /// factor: for a mean over n pixels of a function with slope s, about s / n. Deterministic
+    /// training derives the range of its fixed-point sums from it: they hold
+    /// `raster::gradient_sums::headroom` times this value. A scale that is much too large costs
+    /// precision. If it is too small, sums do not fit; they are left out, and training reports
+    /// `fault_kind::sum`.
+    virtual float gradient_scale() const = 0;
+
+    /// The running sums from which `take` computes its means. Training stops with an error if one
+    /// of them is not finite.
+    virtual std::span<const double> sums() const = 0;
+
+    /// The means over the renders since the last call; sets the sums to zero. Waits for the device.
+    virtual loss_report take() = 0;
+};
+
+}  // namespace gs::train

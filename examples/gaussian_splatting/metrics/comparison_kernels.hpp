@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <warpagg/atomic.hpp>
+
+#include "../image/masked_pixel.hpp"
+#include "../render/geometry/list_capacity.hpp"
+#include "ssim_strip.hpp"
+
+namespace gs::train {
+
+/// Intermediate results of a comparison of a render x with a target y, as framed planes.
+///
+/// The SSIM at a pixel p depends on the values under its window w. Its derivative with respect to the
+/// render's value at q is
+///
+///     w(p - q) (constant(p) + by_sum(p) (x + y)(q) + by_difference(p) (x - y)(q)).
+template <class Real>
+struct comparison_maps {
+    framed_planes planes;
+    Real* sum;            ///< x + y
+    Real* difference;     ///< x - y
+    Real* constant;       ///< dSSIM/dx, term independent of the pixel value
+    Real* by_sum;         ///< dSSIM/dx, coefficient of x + y
+    Real* by_difference;  ///< dSSIM/dx, coefficient of x - y
+
+    static constexpr std::size_t count = 5;
+    static comparison_maps in(Real* memory, const framed_planes& planes) {
+        const std::size_t n = planes.size();
+        return {planes, memory, memory + n, memory + 2 * n, memory + 3 * n, memory + 4 * n};
+    }
+};
+
+/// Which pixels of a row, from `pixel` on, the mask of the target excludes.
+template <class W>
+WARPAGG_HD mask_t<W> is_masked(const W& w, const std::uint32_t* target, std::ptrdiff_t pixel,
+                               const mask_t<W>& inside) {
+    return w.load_row(target, pixel, inside) == value_t<W, unsigned>(left_out);
+}
+
+/// First pass: writes the sum and the difference of the render and the target in front of its
+/// background. The SSIM is simplest in terms of these. Also writes zeros to the frames of all maps
+/// and to the values after their end. The sum and the difference are zero where the mask excludes a
+/// pixel. One warp per `W::size` consecutive values of a line.
+template <class Real, bool Masked>
+struct sum_and_difference {
+    const std::uint32_t* target;  ///< premultiplied RGBA bytes
+    const Real* render;
+    glm::vec<3, Real> background;
+    comparison_maps<Real> maps;
+
+    template <class W>
+    static std::size_t count(const framed_planes& planes) {
+        return planes.size() / W::size;
+    }
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        using real = value_t<W, Real>;
+        using warpagg::math::convert;
+        const framed_planes& planes = maps.planes;
+        const auto per_line = static_cast<unsigned>(planes.pitch()) / W::size;
+        const auto line = static_cast<int>(index / per_line);
+        const auto left = static_cast<int>(index % per_line * W::size);
+        const int framed = planes.frame + planes.height;
+        const int channel = (line - 1) / framed, row = (line - 1) % framed - planes.frame;
+        const std::ptrdiff_t to = line * planes.pitch() + left;
+        Real* const derivatives[] = {maps.constant, maps.by_sum, maps.by_difference};
+        const real zero(0);
+        if (row < 0 || channel > 2 || left >= planes.width) {
+            w.store_row(maps.sum, to, zero, true);
+            w.store_row(maps.difference, to, zero, true);
+            for (Real* map : derivatives) w.store_row(map, to, zero, true);
+            return;
+        }
+        const mask_t<W> inside = w.lane() < static_cast<unsigned>(planes.width - left);
+        if (w.any(!inside)) {
+            for (Real* map : derivatives) w.store_row(map, to, zero, !inside);
+        }
+
+        const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(row) * planes.width + left;
+        const value_t<W, unsigned> rgba = w.load_row(target, pixel, inside);
+        const auto fraction = [&](const value_t<W, unsigned>& byte) {  // byte / 255, rounded once
+            constexpr Real unit = Real(1) / 255;
+            const real n = convert<Real>(convert<int>(byte)), q = n * unit;
+            return fma(fma(q, real(-255), n), real(unit), q);
+        };
+        const real transparency = fraction(255u - (rgba >> value_t<W, unsigned>(24u)));
+        const value_t<W, unsigned> shift(8 * static_cast<unsigned>(channel));
+        const real y = fraction((rgba >> shift) & 255u) + transparency * background[channel];
+        const auto plane = static_cast<std::ptrdiff_t>(planes.width) * planes.height;
+        const real x = w.load_row(render, channel * plane + pixel, inside);
+        mask_t<W> counts = inside;
+        if constexpr (Masked) counts = counts && rgba != value_t<W, unsigned>(left_out);
+        w.store_row(maps.sum, to, select(counts, x + y, zero), true);
+        w.store_row(maps.difference, to, select(counts, x - y, zero), true);
+    }
+};
+
+/// The totals of a comparison over all pixels and color channels. The last one is the number of
+/// values.
+enum comparison_total {
+    total_absolute_error,
+    total_square_error,
+    total_ssim,
+    total_values,
+    comparison_total_count
+};
+
+/// Second pass: computes the SSIM at each pixel and the coefficients of its derivative, and adds to
+/// `totals` unless the lists of the view did not fit. Pixels that the mask excludes do not count.
+/// One warp per strip.
+template <class Real, bool Masked>
+struct ssim_compare {
+    const std::uint32_t* target;
+    comparison_maps<Real> maps;
+    ssim_window<Real> window;
+    int rows;        ///< per strip
+    double* totals;  ///< by `comparison_total`
+    raster::list_room room;
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        using real = value_t<W, Real>;
+        constexpr int radius = ssim_window<Real>::radius, size = ssim_window<Real>::size;
+        const framed_planes& planes = maps.planes;
+        const ssim_strip<W> strip(w, index, planes.width, planes.height, rows);
+        moments<real> sums[size], differences[size];  // of the windows that contain the current row
+        WARPAGG_UNROLL
+        for (int k = 0; k < size; ++k) sums[k] = differences[k] = {real(0), real(0)};
+        real absolute(0), square(0), ssim(0);
+        [[maybe_unused]] real excluded(0);
+        std::ptrdiff_t at = planes.at(strip.channel, strip.first - radius) + strip.left;
+        for (int below = strip.first - radius; below < strip.last + radius; ++below, at += planes.pitch()) {
+            const Real* const values[] = {maps.sum + at, maps.difference + at};
+            moments<real> along[2];
+            window.moments_along(w, values, along);
+            window.add_row(sums, along[0]);
+            window.add_row(differences, along[1]);
+            if (below < strip.first + radius) continue;
+
+            // SSIM = (2 mx my + C1) (2 cov + C2) / ((mx^2 + my^2 + C1) (vx + vy + C2)) by Wang et
+            // al. (2004), with the means m, variances v and covariance cov of x and y under the
+            // window. In terms of the moments of u = 2 (x + y) and v = 2 (x - y), rounding keeps
+            // each of the two factors in [-1, 1].
+            constexpr auto C1 = static_cast<Real>(8 * 0.01 * 0.01), C2 = static_cast<Real>(8 * 0.03 * 0.03);
+            const real mu = sums[size - 1].mean, mv = differences[size - 1].mean;
+            const real vu = sums[size - 1].square, vv = differences[size - 1].square;
+            const real r1 = Real(1) / (fma(mu, mu, mv * mv) + C1), r2 = Real(1) / (vu + vv + C2);
+            const real t1 = (mv + mv) * r1, lost1 = mv * t1, factor1 = Real(1) - lost1;
+            const real lost2 = (vv + vv) * r2, factor2 = Real(1) - lost2;
+            const real scale = Real(8) * factor1 * r2;
+            const real by_u = scale * lost2, by_v = scale * (lost2 - Real(2));
+            const real by_mean = (t1 + t1) * factor2 * (fma(mu, t1, lost1) - Real(2));
+            const std::ptrdiff_t pixel = at - radius * planes.pitch();
+            w.store_row(maps.constant, pixel, by_mean - Real(0.5) * fma(by_u, mu, by_v * mv), strip.inside);
+            w.store_row(maps.by_sum, pixel, by_u, strip.inside);
+            w.store_row(maps.by_difference, pixel, by_v, strip.inside);
+
+            const real error = w.load_row(maps.difference, pixel, strip.inside);
+            absolute += warpagg::math::max(error, -error);
+            square = fma(error, error, square);
+            real counted2 = factor2;
+            if constexpr (Masked) counted2 = counted(w, strip, below - radius, factor2, excluded);
+            ssim = fma(factor1, counted2, ssim);
+        }
+        if (room.exceeded()) return;
+        using warpagg::math::convert;
+        value_t<W, double> values(static_cast<double>(strip.last - strip.first));
+        if constexpr (Masked) values = values - convert<double>(excluded);
+        const value_t<W, double> found[comparison_total_count] = {
+            convert<double>(absolute), convert<double>(square), convert<double>(ssim), values};
+        warpagg::warp_reduce_atomic(w, totals, found, strip.inside);
+    }
+
+  private:
+    /// The value, or zero where the mask excludes the pixel; counts such pixels in `excluded`.
+    template <class W, class real>
+    WARPAGG_HD real counted(const W& w, const ssim_strip<W>& strip, int row, const real& value,
+                            real& excluded) const {
+        const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(row) * maps.planes.width + strip.left;
+        const mask_t<W> out = is_masked(w, target, pixel, strip.inside);
+        excluded += select(out, real(1), real(0));
+        return select(out, real(0), value);
+    }
+};
+
+}  // namespace gs::train

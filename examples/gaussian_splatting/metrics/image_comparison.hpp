@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <bit>
+#include <span>
+
+#include "../device/device.hpp"
+#include "comparison_kernels.hpp"
+#include "image_quality.hpp"
+#include "target_image.hpp"
+
+namespace gs::train {
+
+/// Measures on a device how close renders are to their targets. PSNR and SSIM of held-out views
+/// come from here whatever the training loss is.
+template <device::device Device, class Real>
+class image_comparison {
+    using strip = ssim_strip<typename Device::warp>;
+
+  public:
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+
+    explicit image_comparison(Device& device) : device_(device) {
+        totals_.resize(comparison_total_count);
+        device_.zero(totals_.data(), comparison_total_count);
+    }
+
+    /// The target of the next comparisons.
+    void set_target(const target_image& target) {
+        static_assert(std::endian::native == std::endian::little);
+        target_ = target;
+        const framed_planes planes{target.width, target.height};
+        memory_.resize(comparison_maps<Real>::count * planes.size());
+        maps_ = comparison_maps<Real>::in(memory_.data(), planes);
+    }
+
+    /// Compares a render, three planes on the device, with the target, and adds the result to the
+    /// totals unless the lists of the view did not fit. Pixels that a mask excludes do not count.
+    void compare(const Real* render, const raster::list_room& room = {}) {
+        target_.masked ? compare_with<true>(render, room) : compare_with<false>(render, room);
+    }
+
+    /// The totals since the last `take`, on the device: one sum per `comparison_total`.
+    std::span<const double> totals() const { return {totals_.data(), totals_.size()}; }
+    /// The means over all renders compared since the last call. Waits for the device.
+    image_quality take() {
+        double totals[comparison_total_count];
+        device_.download(totals, totals_.data(), comparison_total_count);
+        device_.zero(totals_.data(), comparison_total_count);
+        const double n = totals[total_values];
+        return {totals[total_absolute_error] / n, totals[total_square_error] / n, totals[total_ssim] / n};
+    }
+
+    /// What the last `compare` leaves for a gradient of the SSIM.
+    /// @{
+    const comparison_maps<Real>& maps() const { return maps_; }
+    const ssim_window<Real>& window() const { return window_; }
+    const std::uint32_t* target() const { return reinterpret_cast<const std::uint32_t*>(target_.rgba); }
+    bool is_masked() const { return target_.masked; }
+    /// @}
+
+    /// Rows per `ssim_strip`, and number of strips, with which the device is busy.
+    /// @{
+    int rows() const { return strip::rows_for(target_.width, target_.height, device_.resident_warps() / 4); }
+    std::size_t strips() const { return strip::count(target_.width, target_.height, rows()); }
+    /// @}
+
+  private:
+    template <bool Masked>
+    void compare_with(const Real* render, const raster::list_room& room) {
+        using first_pass = sum_and_difference<Real, Masked>;
+        const auto& [red, green, blue] = target_.background;
+        device_.for_each_warp(first_pass::template count<typename Device::warp>(maps_.planes),
+                              first_pass{target(), render, {red, green, blue}, maps_});
+        device_.for_each_warp(
+            strips(), ssim_compare<Real, Masked>{target(), maps_, window_, rows(), totals_.data(), room});
+    }
+
+    Device& device_;
+    ssim_window<Real> window_ = ssim_window<Real>::make();
+    target_image target_;
+    comparison_maps<Real> maps_{};
+    buffer<Real> memory_;
+    buffer<double> totals_;
+};
+
+}  // namespace gs::train
