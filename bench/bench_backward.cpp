@@ -19,6 +19,7 @@
 #include "backward/contest.hpp"
 #include "driver.hpp"
 #include "core/error.hpp"
+#include "readers/load_scene.hpp"
 #include "writers/ply/ply.hpp"
 #include "scene/normalization.hpp"
 #include "scene/look_at.hpp"

@@ -18,6 +18,7 @@
 
 #include "core/error.hpp"
 #include "training/initialise.hpp"
+#include "readers/load_scene.hpp"
 #include "readers/synthetic/synthetic.hpp"
 #include "training/engine.hpp"
 
@@ -102,8 +103,9 @@ int bench(const options& o) {
     if (o.device == "cuda" && !cuda) throw gs::error("--device cuda: no GPU can be used: " + reason);
     const auto engine = cuda ? gs::train::make_cuda_engine() : gs::train::make_cpu_engine();
     gs::load_options small;
+    small.data = "synthetic:spheres";
     small.eval = true;
-    const gs::scene scene = gs::make_synthetic_scene("spheres", small, {});
+    const gs::scene scene = gs::load_scene(small, {});
     const auto points = gs::synthetic_points("spheres", scene.train, o.gaussians, 0);
     gs::gaussians model = gs::from_points(points, 3, o.gaussians, 0);
     std::ranges::fill(model.opacity, 0.0f);

@@ -14,6 +14,7 @@
 
 #include "driver.hpp"
 #include "core/error.hpp"
+#include "readers/load_scene.hpp"
 #include "writers/ply/ply.hpp"
 #include "paper/measure.hpp"
 #include "scene/normalization.hpp"

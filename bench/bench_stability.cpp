@@ -150,6 +150,7 @@ int bench(const options& o) {
     if (o.device == "cuda" && !cuda) throw gs::error("--device cuda: no GPU can be used: " + reason);
     const auto make = cuda ? gs::train::make_cuda_engine : gs::train::make_cpu_engine;
     gs::load_options spheres;
+    spheres.data = "synthetic:spheres";
     spheres.eval = true;
     spheres.resolution = o.resolution;
     spheres.seed = o.seed;
@@ -164,7 +165,7 @@ int bench(const options& o) {
     for (const hard_case& c : hard_cases()) {
         if (!o.only.empty() && std::ranges::find(o.only, c.name) == o.only.end()) continue;
         trial t;
-        t.scene = gs::make_synthetic_scene("spheres", spheres, {});
+        t.scene = gs::load_scene(spheres, {});
         t.schedule.iterations = o.iterations;
         t.cap = gs::train::default_cap(t.scene);
         t.seed = o.seed;

@@ -15,6 +15,7 @@
 
 #include "driver.hpp"
 #include "core/error.hpp"
+#include "readers/load_scene.hpp"
 #include "writers/ply/ply.hpp"
 #include "scene/normalization.hpp"
 #include "trace/gpu_trace.hpp"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scene/look_at.hpp"
+#include "readers/load_scene.hpp"
 #include "readers/synthetic/synthetic.hpp"
 #include "training/trainer.hpp"
 

@@ -7,9 +7,9 @@
 #include <set>
 #include <string>
 
-#include "../features/simulate.hpp"
-#include "../scene/scene.hpp"
 #include "../densify/adaptive/densify_config.hpp"
+#include "../features/simulate.hpp"
+#include "../readers/load_scene.hpp"
 #include "../training/schedule.hpp"
 
 namespace gs::cli {

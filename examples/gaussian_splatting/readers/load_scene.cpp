@@ -1,52 +1,70 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
+#include "load_scene.hpp"
+
 #include <algorithm>
-#include <string_view>
+#include <iterator>
+#include <utility>
 
 #include "../core/error.hpp"
-#include "transforms/blender.hpp"
-#include "colmap/colmap.hpp"
-#include "../scene/scene.hpp"
-#include "synthetic/synthetic.hpp"
+#include "load_views.hpp"
 
 namespace gs {
 namespace {
 
-constexpr std::string_view synthetic_prefix = "synthetic:";
+using reader_table = std::span<const reader* const>;
 
-/// Options that say nothing of this kind of scene are refused, not ignored.
-void refuse_colmap_options(const load_options& options, const std::string& kind) {
-    const load_options defaults;
-    if (options.test_every != defaults.test_every)
-        throw error("--test-every picks views of a COLMAP scene: a " + kind +
-                    " scene has its own test views");
-    if (options.images != defaults.images)
-        throw error("--images is for COLMAP scenes: a " + kind + " scene names its photos itself");
+const reader& reader_of(const std::string& data, reader_table readers) {
+    for (const reader* one : readers)
+        if (one->probe(data)) return *one;
+    std::string known;
+    for (const reader* one : readers)
+        known +=
+            (known.empty() ? "" : ", ") + std::string(one->accepts) + " (" + std::string(one->name) + ")";
+    throw error(data + (std::filesystem::exists(data) ? " is not a scene" : " does not exist") +
+                "; a scene is one of: " + known);
 }
 
-scene load_folder(const load_options& options, const log_function& log) {
-    const std::filesystem::path data = options.data;
-    if (!std::filesystem::exists(data)) throw error("there is no folder " + data.string());
-    if (!std::filesystem::is_directory(data)) throw error(data.string() + " is not a folder");
-    if (std::filesystem::exists(data / "transforms_train.json")) {
-        refuse_colmap_options(options, "Blender");
-        return load_blender_scene(options, log);
-    }
-    if (std::filesystem::is_directory(data / "sparse")) return load_colmap_scene(options, log);
-    throw error(
-        "the folder " + data.string() +
-        " is no scene: it has neither transforms_train.json (Blender) nor sparse/0 or sparse (COLMAP)");
+bool uses(const reader& one, const reader_option& option) {
+    return std::ranges::find(one.options, option.name, &reader_option::name) != one.options.end();
 }
 
-scene load_folder_or_explain(const load_options& options, const log_function& log) {
+/// An option without effect is a mistake of the user, so it is refused rather than ignored.
+void refuse_foreign_options(const load_options& options, const reader& chosen, reader_table readers) {
+    for (const reader* other : readers)
+        for (const reader_option& option : other->options)
+            if (option.is_set(options) && !uses(chosen, option))
+                throw error(std::string(option.name) + " does not apply to " + std::string(chosen.name) +
+                            " scenes, only to " + std::string(other->name) + " scenes");
+}
+
+scene_description describe(const load_options& options, const log_function& log, reader_table readers) {
     try {
-        return load_folder(options, log);
-    } catch (const std::filesystem::filesystem_error& problem) {  // no permission, a name too long
+        const reader& chosen = reader_of(options.data, readers);
+        refuse_foreign_options(options, chosen, readers);
+        return chosen.read(options, log);
+    } catch (const std::filesystem::filesystem_error& problem) {  // no permission, or a name too long
         throw error("cannot read " + problem.path1().string() + ": " + problem.code().message());
     }
 }
 
-/// A view of each kind that was asked for, or it makes no sense to go on.
+std::vector<view> views_of(std::vector<image_record>& images, const load_options& options,
+                           const log_function& log) {
+    std::vector<image_record> files;
+    std::ranges::copy_if(images, std::back_inserter(files),
+                         [](const image_record& one) { return !one.has_pixels(); });
+    std::vector<view> loaded = load_views(files, options.resolution, log);
+    auto next = loaded.begin();
+    std::vector<view> views;
+    views.reserve(images.size());
+    for (image_record& one : images)
+        if (one.has_pixels())
+            views.push_back({one.name, one.camera, std::move(one.pixels), std::move(one.depth_pixels)});
+        else
+            views.push_back(std::move(*next++));
+    return views;
+}
+
 void require_views(const scene& loaded, const load_options& options) {
     const std::string split = " (" + std::to_string(loaded.train.size()) + " for training, " +
                               std::to_string(loaded.test.size()) + " held out)";
@@ -60,20 +78,22 @@ bool any_has_alpha(const std::vector<view>& views) {
 
 }  // namespace
 
-scene load_scene(const load_options& options, const log_function& log) {
+scene load_scene(const load_options& options, const log_function& log, reader_table readers) {
     if (options.resolution < 1)
-        throw error("the resolution must be positive, not " + std::to_string(options.resolution));
+        throw error("the resolution must be at least 1, not " + std::to_string(options.resolution));
     const log_function say = log ? log : [](const std::string&) {};
-    if (options.data.starts_with(synthetic_prefix)) {
-        refuse_colmap_options(options, "synthetic");
-        scene made = make_synthetic_scene(options.data.substr(synthetic_prefix.size()), options, say);
-        require_views(made, options);
-        return made;
+    scene_description described = describe(options, say, readers);
+    std::vector<view> views = views_of(described.images, options, say);
+    scene result;
+    result.points = std::move(described.points);
+    result.object_centered = described.object_centered;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const bool held_out = options.eval && described.images[i].held_out;
+        (held_out ? result.test : result.train).push_back(std::move(views[i]));
     }
-    scene loaded = load_folder_or_explain(options, say);
-    require_views(loaded, options);
-    loaded.has_alpha = any_has_alpha(loaded.train) || any_has_alpha(loaded.test);
-    return loaded;
+    result.has_alpha = any_has_alpha(result.train) || any_has_alpha(result.test);
+    require_views(result, options);
+    return result;
 }
 
 }  // namespace gs

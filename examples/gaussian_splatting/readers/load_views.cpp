@@ -35,70 +35,70 @@ camera at_size(camera taken_with, int width, int height) {
     return taken_with;
 }
 
-[[noreturn]] void refuse_size(const recorded_view& recorded, int width, int height) {
-    throw error("the image " + recorded.file.string() + " is of the wrong size: it has " +
+[[noreturn]] void refuse_size(const image_record& records, int width, int height) {
+    throw error("the image " + records.file.string() + " is of the wrong size: it has " +
                 size_text(width, height) + " pixels, its camera " +
-                size_text(recorded.camera.width, recorded.camera.height));
+                size_text(records.camera.width, records.camera.height));
 }
 
 /// Photos are often replaced by smaller copies of themselves (`images_4`): then the camera follows.
-camera fitted_to_photo(const recorded_view& recorded) {
+camera fitted_to_photo(const image_record& records) {
     int width = 0, height = 0;
-    read_image_size(recorded.file, width, height);
-    const camera& was = recorded.camera;
+    read_image_size(records.file, width, height);
+    const camera& was = records.camera;
     const double x = static_cast<double>(width) / was.width, y = static_cast<double>(height) / was.height;
-    if (std::abs(x / y - 1) > 0.01) refuse_size(recorded, width, height);
+    if (std::abs(x / y - 1) > 0.01) refuse_size(records, width, height);
     return at_size(was, width, height);
 }
 
 /// But all copies are made alike: a photo that is scaled otherwise than most of its camera's size is a wrong
 /// one.
-void require_one_scale(const std::vector<recorded_view>& recorded, const std::vector<camera>& fitted) {
+void require_one_scale(const std::vector<image_record>& records, const std::vector<camera>& fitted) {
     const auto scale = [&](std::size_t i) {
-        return static_cast<double>(fitted[i].width) / recorded[i].camera.width;
+        return static_cast<double>(fitted[i].width) / records[i].camera.width;
     };
     std::map<std::pair<int, int>, std::vector<double>> scales;
     const auto size = [&](std::size_t i) {
-        return std::pair(recorded[i].camera.width, recorded[i].camera.height);
+        return std::pair(records[i].camera.width, records[i].camera.height);
     };
-    for (std::size_t i = 0; i < recorded.size(); ++i) scales[size(i)].push_back(scale(i));
+    for (std::size_t i = 0; i < records.size(); ++i) scales[size(i)].push_back(scale(i));
     for (auto& [of, values] : scales)
         std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
                          values.end());
-    for (std::size_t i = 0; i < recorded.size(); ++i) {
+    for (std::size_t i = 0; i < records.size(); ++i) {
         const auto& values = scales[size(i)];
         if (std::abs(scale(i) / values[values.size() / 2] - 1) > 0.01)
-            refuse_size(recorded[i], fitted[i].width, fitted[i].height);
+            refuse_size(records[i], fitted[i].width, fitted[i].height);
     }
 }
 
-std::vector<camera> fit_to_photos(const std::vector<recorded_view>& recorded, const log_function& log) {
+std::vector<camera> fit_to_photos(const std::vector<image_record>& records, const log_function& log) {
     std::vector<camera> fitted;
-    fitted.reserve(recorded.size());
+    fitted.reserve(records.size());
     std::size_t others = 0, first = 0;
-    for (std::size_t i = 0; i < recorded.size(); ++i) {
-        fitted.push_back(fitted_to_photo(recorded[i]));
-        const camera &was = recorded[i].camera, &is = fitted.back();
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        fitted.push_back(fitted_to_photo(records[i]));
+        const camera &was = records[i].camera, &is = fitted.back();
         if (was.width == is.width && was.height == is.height) continue;
         if (others++ == 0) first = i;
     }
-    require_one_scale(recorded, fitted);
+    require_one_scale(records, fitted);
     if (others > 0)
         log(count_text(others, "photo") +
-            " differ in size from their cameras, whose intrinsics were scaled (" + recorded[first].name +
-            ": " + size_text(recorded[first].camera.width, recorded[first].camera.height) + " to " +
+            " differ in size from their cameras, whose intrinsics were scaled (" + records[first].name +
+            ": " + size_text(records[first].camera.width, records[first].camera.height) + " to " +
             size_text(fitted[first].width, fitted[first].height) + ")");
     return fitted;
 }
 
-std::vector<camera> straighten(const std::vector<recorded_view>& recorded, const std::vector<camera>& fitted,
+std::vector<camera> straighten(const std::vector<image_record>& records, const std::vector<camera>& fitted,
                                const log_function& log) {
     using key = std::tuple<int, int, double, double, double, double, double, double, double, double>;
     std::map<key, camera> known;  // views mostly share a camera, and finding its zoom takes a while
     std::set<std::string> models;
     std::vector<camera> straight = fitted;
     for (std::size_t i = 0; i < fitted.size(); ++i) {
-        const lens& bent = recorded[i].distortion;
+        const lens& bent = records[i].distortion;
         if (bent.is_straight()) continue;
         const camera& was = fitted[i];
         const key same(was.width, was.height, was.fx, was.fy, was.cx, was.cy, bent.k1, bent.k2, bent.p1,
@@ -107,10 +107,10 @@ std::vector<camera> straighten(const std::vector<recorded_view>& recorded, const
         if (found == known.end()) {
             const auto pinhole = straightened(was, bent);
             if (!pinhole)
-                throw error("the camera of " + recorded[i].file.string() +
+                throw error("the camera of " + records[i].file.string() +
                             " distorts too strongly to be turned into a pinhole camera");
             found = known.emplace(same, *pinhole).first;
-            models.insert(recorded[i].model);
+            models.insert(records[i].camera_model);
         }
         straight[i].fx = found->second.fx;
         straight[i].fy = found->second.fy;
@@ -125,7 +125,7 @@ std::vector<camera> straighten(const std::vector<recorded_view>& recorded, const
 }
 
 /// A lens whose model ends before the photo does anywhere is a wrong one; corners may lie beyond its end.
-void require_wide_lenses(const std::vector<recorded_view>& recorded, const std::vector<camera>& fitted) {
+void require_wide_lenses(const std::vector<image_record>& records, const std::vector<camera>& fitted) {
     for (std::size_t i = 0; i < fitted.size(); ++i) {
         const camera& c = fitted[i];
         if (!c.fisheye) continue;
@@ -133,7 +133,7 @@ void require_wide_lenses(const std::vector<recorded_view>& recorded, const std::
             std::min(std::max(c.cx, c.width - c.cx) / c.fx, std::max(c.cy, c.height - c.cy) / c.fy);
         if (c.fisheye->reach(c.fisheye->end()) < to_edge)
             throw error(
-                "the fisheye lens of " + recorded[i].file.string() + " folds the photo over inside of it, " +
+                "the fisheye lens of " + records[i].file.string() + " folds the photo over inside of it, " +
                 std::to_string(static_cast<int>(57.29578 * c.fisheye->end())) + " degrees from the axis");
     }
 }
@@ -153,7 +153,7 @@ camera at_resolution(const camera& full, int resolution) {
 }
 
 std::vector<camera> scale_to_resolution(const std::vector<camera>& full,
-                                        const std::vector<recorded_view>& recorded, int resolution,
+                                        const std::vector<image_record>& records, int resolution,
                                         const log_function& log) {
     std::vector<camera> scaled;
     scaled.reserve(full.size());
@@ -165,7 +165,7 @@ std::vector<camera> scale_to_resolution(const std::vector<camera>& full,
         if (shrunk++ == 0) first = i;
     }
     if (shrunk > 0)
-        log(count_text(shrunk, "photo") + " resized (" + recorded[first].name + ": " +
+        log(count_text(shrunk, "photo") + " resized (" + records[first].name + ": " +
             size_text(full[first].width, full[first].height) + " to " +
             size_text(scaled[first].width, scaled[first].height) + ")");
     if (kept > 0)
@@ -176,21 +176,6 @@ std::vector<camera> scale_to_resolution(const std::vector<camera>& full,
 
 }  // namespace
 
-// Written so that NaN fails too.
-bool has_sound_intrinsics(const camera& taken_with, const lens& distortion) {
-    constexpr double least_focal_length = 1e-6, largest = 1e9;
-    const auto k = taken_with.fisheye ? taken_with.fisheye->k() : std::array<double, 4>{};
-    for (const double value : {taken_with.fx, taken_with.fy, taken_with.cx, taken_with.cy, distortion.k1,
-                               distortion.k2, distortion.p1, distortion.p2, k[0], k[1], k[2], k[3]})
-        if (!(std::abs(value) <= largest)) return false;
-    return taken_with.fx >= least_focal_length && taken_with.fy >= least_focal_length;
-}
-
-bool is_sound_place(const glm::dvec3& place) {
-    constexpr double farthest = 1e30;
-    return std::abs(place.x) <= farthest && std::abs(place.y) <= farthest && std::abs(place.z) <= farthest;
-}
-
 view shrunk(const view& full, int divisor) {
     const camera& c = full.camera;
     const camera small = at_size(c, divided(c.width, divisor), divided(c.height, divisor));
@@ -198,38 +183,41 @@ view shrunk(const view& full, int divisor) {
             resized(full.depths, small.width, small.height)};
 }
 
-std::vector<view> load_views(const std::vector<recorded_view>& recorded, const load_options& options,
+std::vector<view> load_views(const std::vector<image_record>& records, int resolution,
                              const log_function& log) {
-    const std::vector<camera> fitted = fit_to_photos(recorded, log);
-    require_wide_lenses(recorded, fitted);
-    const std::vector<camera> straight = straighten(recorded, fitted, log);
-    const std::vector<camera> scaled = scale_to_resolution(straight, recorded, options.resolution, log);
-    std::vector<view> views(recorded.size());
-    for_each_in_parallel(recorded.size(), [&](std::size_t i) {
-        const auto& [file, name, _, distortion, model, mask, depth_file] = recorded[i];
-        image photo = read_image(file);
-        image counts = mask.empty() ? image() : read_mask(mask, photo);
+    const std::vector<camera> fitted = fit_to_photos(records, log);
+    require_wide_lenses(records, fitted);
+    const std::vector<camera> straight = straighten(records, fitted, log);
+    const std::vector<camera> scaled = scale_to_resolution(straight, records, resolution, log);
+    std::vector<view> views(records.size());
+    for_each_in_parallel(records.size(), [&](std::size_t i) {
+        const image_record& record = records[i];
+        const lens& distortion = record.distortion;
+        image photo = read_image(record.file);
+        image counts = record.mask.empty() ? image() : read_mask(record.mask, photo);
         depth_map depths =
-            depth_file.empty() ? depth_map() : read_depth_map(depth_file, photo.width, photo.height);
+            record.depth.empty() ? depth_map() : read_depth_map(record.depth, photo.width, photo.height);
         if (!distortion.is_straight()) {
             photo = undistort(photo, fitted[i], distortion, straight[i]);
-            if (!mask.empty()) counts = undistort(counts, fitted[i], distortion, straight[i]);
+            if (!record.mask.empty()) counts = undistort(counts, fitted[i], distortion, straight[i]);
             if (depths.is_there()) depths = undistort(depths, fitted[i], distortion, straight[i]);
         }
         apply_mask(counts, photo);  // before shrinking, so that what it leaves out is in no average
         forget_left_out(photo, depths);
         photo = shrink(photo, scaled[i].width, scaled[i].height);
-        if (photo.leaves_all_out()) throw error("the mask " + mask.string() + " leaves nothing of its photo");
-        views[i] = {name, scaled[i], std::move(photo), resized(depths, scaled[i].width, scaled[i].height)};
+        if (photo.leaves_all_out())
+            throw error("the mask " + record.mask.string() + " leaves nothing of its photo");
+        views[i] = {record.name, scaled[i], std::move(photo),
+                    resized(depths, scaled[i].width, scaled[i].height)};
     });
-    const auto say = [&](std::filesystem::path recorded_view::*file, const char* one, const char* several) {
-        const auto count = std::ranges::count_if(recorded, [&](const auto& r) { return !(r.*file).empty(); });
+    const auto say = [&](std::filesystem::path image_record::*file, const char* one, const char* several) {
+        const auto count = std::ranges::count_if(records, [&](const auto& r) { return !(r.*file).empty(); });
         if (count > 0)
             log(count_text(static_cast<std::size_t>(count), "photo") + " of " +
-                std::to_string(recorded.size()) + (count == 1 ? one : several));
+                std::to_string(records.size()) + (count == 1 ? one : several));
     };
-    say(&recorded_view::mask, " has a mask", " have masks");
-    say(&recorded_view::depths, " has a depth map", " have depth maps");
+    say(&image_record::mask, " has a mask", " have masks");
+    say(&image_record::depth, " has a depth map", " have depth maps");
     return views;
 }
 

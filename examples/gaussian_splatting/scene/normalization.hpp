@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <functional>
 #include <glm/vec3.hpp>
-#include <string>
 
+#include "../core/log.hpp"
 #include "../model/gaussians.hpp"
 
 namespace gs {
@@ -38,7 +37,7 @@ frame frame_of(const gaussians& model);
 
 /// Moves cameras and points from their original frame into `frame_of` it, and notes it in `scene.frame`.
 /// Points farther off than 10^9 are left out, which is said through `log`.
-void recentre(scene& scene, const std::function<void(const std::string&)>& log);
+void recentre(scene& scene, const log_function& log);
 
 /// Means and scales in another frame, in double and rounded once; all else is the same in both.
 gaussians into(const frame& frame, gaussians original);

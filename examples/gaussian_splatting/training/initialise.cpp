@@ -82,7 +82,7 @@ std::vector<double> neighbour_distances(const std::vector<coloured_point>& point
 }
 
 std::pair<glm::dvec3, double> box_looked_at(const scene& s) {
-    const auto object = s.source == "COLMAP" ? std::nullopt : s.looked_at();
+    const auto object = s.object_centered ? s.looked_at() : std::nullopt;
     if (object) {
         std::vector<double> distances;
         for (const view& v : s.train) distances.push_back(glm::distance(*object, v.camera.centre()));

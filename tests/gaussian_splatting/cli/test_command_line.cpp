@@ -241,9 +241,9 @@ const words train_spheres{"train", "-d", "synthetic:spheres"};
 TEST_CASE("a scene that is not there is refused") {
     const temporary_folder folder;
     check_refusal_without_trace(training(folder / "nowhere"), {(folder / "nowhere").string()});
-    check_refusal_without_trace(training(folder.path()), {folder.path().string(), "is no scene"});
+    check_refusal_without_trace(training(folder.path()), {folder.path().string(), "is not a scene"});
     write_file(folder / "file", "x");
-    check_refusal_without_trace(training(folder / "file"), {(folder / "file").string(), "not a folder"});
+    check_refusal_without_trace(training(folder / "file"), {(folder / "file").string(), "is not a scene"});
     check_refusal_without_trace({"train", "-d", "synthetic:NOPE"}, {"NOPE", "spheres", "alpha"});
 }
 

@@ -16,6 +16,7 @@
 #include "../../../examples/gaussian_splatting/evaluation/held_out_exposures.hpp"
 #include "../../../examples/gaussian_splatting/evaluation/held_out_views.hpp"
 #include "../../../examples/gaussian_splatting/features/depth/depth_evidence.hpp"
+#include "../../../examples/gaussian_splatting/readers/load_scene.hpp"
 #include "../../../examples/gaussian_splatting/features/exposure/exposures.hpp"
 #include "../../../examples/gaussian_splatting/features/sh_degree/revise_sh_degree.hpp"
 #include "../../../examples/gaussian_splatting/features/simulate.hpp"

@@ -8,6 +8,7 @@
 #include <functional>
 #include <random>
 
+#include "readers/load_scene.hpp"
 #include "bounds.hpp"
 #include "budget.hpp"
 #include "cases.hpp"

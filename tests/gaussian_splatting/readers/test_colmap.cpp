@@ -16,7 +16,7 @@
 #include "../../support/bytes.hpp"
 #include "readers/colmap/colmap.hpp"
 #include "image/mask.hpp"
-#include "scene/scene.hpp"
+#include "readers/load_scene.hpp"
 #include "readers/load_views.hpp"
 #include "../../support/temporary_folder.hpp"
 
@@ -358,7 +358,7 @@ TEST_CASE("a known camera comes back from its file") {
     const temporary_folder folder;
     write_scene(folder.path());
     const gs::scene scene = gs::load_scene(options_for(folder.path()), ignore);
-    CHECK(scene.source == "COLMAP");
+    CHECK_FALSE(scene.object_centered);
     CHECK_FALSE(scene.has_alpha);
     CHECK(scene.points.size() == 2);
     CHECK(scene.test.empty());
@@ -588,7 +588,7 @@ TEST_CASE("the resolution scales photos and intrinsics by the same exact ratios"
     }
     auto options = options_for(folder.path());
     options.resolution = 0;
-    CHECK(says(error_of_loading(options), {"resolution", "positive"}));
+    CHECK(says(error_of_loading(options), {"resolution", "at least 1"}));
 }
 
 TEST_CASE("a photo never shrinks below one pixel") {
@@ -898,10 +898,10 @@ TEST_CASE("synthetic:NAME is made, not read") {
 
 TEST_CASE("folders that are no scene") {
     const temporary_folder folder;
-    CHECK(says(error_of_loading(folder / "none"), {"no folder", "none"}));
+    CHECK(says(error_of_loading(folder / "none"), {"none", "does not exist"}));
     write_file(folder / "file", "x");
-    CHECK(says(error_of_loading(folder / "file"), {"file", "not a folder"}));
-    CHECK(says(error_of_loading(folder.path()), {"no scene", "transforms_train.json", "sparse/0"}));
+    CHECK(says(error_of_loading(folder / "file"), {"file", "is not a scene"}));
+    CHECK(says(error_of_loading(folder.path()), {"is not a scene", "transforms_train.json", "sparse/0", "synthetic:"}));
     std::filesystem::create_directories(folder / "sparse/0");
     CHECK(says(error_of_loading(folder.path()), {"sparse/0", "no cameras", "cameras.bin", "cameras.txt"}));
     write_file(folder / "sparse/0/cameras.bin", cameras_bin(plain_model()));

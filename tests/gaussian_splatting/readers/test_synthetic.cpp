@@ -11,6 +11,7 @@
 #include <string>
 
 #include "../../../examples/gaussian_splatting/core/error.hpp"
+#include "../../../examples/gaussian_splatting/readers/load_scene.hpp"
 #include "../../../examples/gaussian_splatting/readers/synthetic/synthetic.hpp"
 
 namespace {
@@ -21,7 +22,7 @@ gs::scene make(const std::string& name, int resolution, bool eval = true, std::u
     options.resolution = resolution;
     options.eval = eval;
     options.seed = seed;
-    return gs::make_synthetic_scene(name, options, {});
+    return gs::load_scene(options, {});
 }
 
 std::string message_of(const std::string& name, int resolution) {
@@ -104,7 +105,7 @@ TEST_CASE("synthetic scenes: every listed name makes a scene") {
     for (const std::string& name : names) {
         CAPTURE(name);
         const gs::scene scene = make(name, 8);
-        CHECK(scene.source == "synthetic");
+        CHECK(scene.object_centered);
         CHECK(scene.train.size() == 40);
         CHECK(scene.test.size() == 8);
         CHECK(scene.points.size() == 3000);
@@ -248,9 +249,10 @@ TEST_CASE("synthetic scenes: the same bits for any number of threads, other poin
 TEST_CASE("synthetic scenes: what was made is said") {
     std::string said;
     gs::load_options options;
+    options.data = "synthetic:alpha";
     options.eval = true;
     options.resolution = 8;
-    gs::make_synthetic_scene("alpha", options, [&](const std::string& line) { said += line; });
+    gs::load_scene(options, [&](const std::string& line) { said += line; });
     CHECK(said.find("alpha") != std::string::npos);
     CHECK(said.find("40 training and 8 test views of 16x16") != std::string::npos);
 }

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "scene/scene.hpp"
+#include "readers/load_scene.hpp"
 #include "../../support/temporary_folder.hpp"
 
 namespace {
@@ -83,7 +83,7 @@ TEST_CASE("a Blender camera looks along -z with y up; ours along +z with y down"
     const temporary_folder folder;
     write_json(folder / "transforms_train.json", transforms(folder.path(), "train", 2));
     const gs::scene scene = load(folder.path());
-    CHECK(scene.source == "Blender");
+    CHECK(scene.object_centered);
     CHECK(scene.points.empty());
     CHECK_FALSE(scene.has_alpha);
     REQUIRE(scene.train.size() == 2);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 
+#include "readers/load_scene.hpp"
 #include "evaluation/held_out_views.hpp"
 #include "training/initialise.hpp"
 #include "writers/ply/ply.hpp"

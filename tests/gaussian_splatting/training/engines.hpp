@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "readers/load_scene.hpp"
 #include "training/engine.hpp"
 #include "training/schedule.hpp"
 

@@ -35,9 +35,9 @@ std::vector<gs::coloured_point> line(std::initializer_list<double> places) {
     return points;
 }
 
-gs::scene scene_seen_from(const std::string& source, std::initializer_list<glm::dvec3> centres) {
+gs::scene scene_seen_from(bool object_centered, std::initializer_list<glm::dvec3> centres) {
     gs::scene s;
-    s.source = source;
+    s.object_centered = object_centered;
     for (const glm::dvec3& centre : centres) {
         gs::view v;
         v.camera.translation = -centre;
@@ -49,7 +49,7 @@ gs::scene scene_seen_from(const std::string& source, std::initializer_list<glm::
 /// Twenty cameras about an object, none like another.
 gs::scene scene_that_looks_at(const glm::dvec3& object, double distance) {
     gs::scene s;
-    s.source = "Blender";
+    s.object_centered = true;
     for (int i = 0; i < 20; ++i) {
         const glm::dvec3 z = glm::normalize(glm::dvec3(std::cos(1.0 * i), std::sin(1.7 * i), -1 - 0.1 * i));
         const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0, 1, 0.1 * i), z));
@@ -189,10 +189,10 @@ TEST_CASE("random_points: the box follows what the cameras look at") {
 }
 
 TEST_CASE("random_points: cameras that look one way have the object where the origin is nearest") {
-    gs::scene s = scene_seen_from("Blender", {{0.5, 0.25, -4}});  // looks along z
+    gs::scene s = scene_seen_from(true, {{0.5, 0.25, -4}});  // looks along z
     SUBCASE("one") { CHECK(glm::distance(s.looked_at().value(), {0.5, 0.25, 0}) < 1e-5); }
     SUBCASE("two, parallel") {
-        s = scene_seen_from("Blender", {{0.5, 0.25, -4}, {-0.5, 0.25, -4}});
+        s = scene_seen_from(true, {{0.5, 0.25, -4}, {-0.5, 0.25, -4}});
         CHECK(glm::distance(s.looked_at().value(), {0, 0.25, 0}) < 1e-5);
     }
     SUBCASE("two, identical") {
@@ -206,7 +206,7 @@ TEST_CASE("random_points: cameras that look one way have the object where the or
         CHECK(glm::distance(s.frame.out_of(s.looked_at().value()), before) < 1e-5);
     }
     SUBCASE("an object behind the camera is none: the box is about the camera") {
-        s = scene_seen_from("Blender", {{0, 0, 4}});
+        s = scene_seen_from(true, {{0, 0, 4}});
         CHECK_FALSE(s.looked_at());
         CHECK(half_side_about({0, 0, 4}, gs::random_points(s, 1000, 3)) == doctest::Approx(1).epsilon(0.01));
     }
@@ -218,7 +218,7 @@ TEST_CASE("random_points: cameras that look one way have the object where the or
 }
 
 TEST_CASE("random_points: the box around the cameras of another scene, by seed") {
-    const gs::scene colmap = scene_seen_from("COLMAP", {{10, 0, 0}, {12, 0, 0}, {10, 2, 0}, {12, 2, 0}});
+    const gs::scene colmap = scene_seen_from(false, {{10, 0, 0}, {12, 0, 0}, {10, 2, 0}, {12, 2, 0}});
     const std::vector<gs::coloured_point> points = gs::random_points(colmap, 1000, 3);
     const double farthest = half_side_about({11, 1, 0}, points);
     CHECK(farthest <= colmap.extent());

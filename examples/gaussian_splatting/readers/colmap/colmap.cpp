@@ -6,11 +6,11 @@
 #include <string_view>
 #include <utility>
 
-#include "../../core/sanitize_for_message.hpp"
 #include "../../core/error.hpp"
-#include "colmap_files.hpp"
+#include "../../core/sanitize_for_message.hpp"
 #include "../../image/mask.hpp"
-#include "../load_views.hpp"
+#include "../validation.hpp"
+#include "colmap_files.hpp"
 
 namespace gs {
 namespace {
@@ -52,30 +52,55 @@ const colmap_camera& camera_of(const colmap_image& taken, const colmap_model& mo
     return *found;
 }
 
-std::vector<recorded_view> recorded_views(const colmap_model& model, const std::filesystem::path& photos,
-                                          const std::filesystem::path& masks,
-                                          const std::filesystem::path& depths) {
-    std::vector<recorded_view> recorded;
-    recorded.reserve(model.images.size());
+std::vector<image_record> image_records(const colmap_model& model, const std::filesystem::path& photos,
+                                        const std::filesystem::path& masks,
+                                        const std::filesystem::path& depths) {
+    std::vector<image_record> records;
+    records.reserve(model.images.size());
     for (const colmap_image& taken : model.images) {
         const colmap_camera& by = camera_of(taken, model);
         const std::string_view name = model.name(taken);
         if (name.size() > longest_path)
             throw error(model.images_file.string() + ": the name of the image " + clipped(name) +
                         " is too long");
-        recorded_view one{photos / name, std::string(name), by.camera(), by.distortion(), by.model, {}, {}};
+        image_record one;
+        one.name = name;
+        one.file = photos / name;
+        one.camera = by.camera();
+        one.distortion = by.distortion();
+        one.camera_model = by.model;
         if (!masks.empty()) one.mask = beside_photo(masks, one.name);
-        if (!depths.empty()) one.depths = beside_photo(depths, one.name);
+        if (!depths.empty()) one.depth = beside_photo(depths, one.name);
         one.camera.rotation = glm::mat3_cast(taken.rotation);
         one.camera.translation = taken.translation;
-        recorded.push_back(std::move(one));
+        records.push_back(std::move(one));
     }
-    std::ranges::sort(recorded, {}, &recorded_view::name);
-    const auto twice = std::ranges::adjacent_find(recorded, {}, &recorded_view::name);
-    if (twice != recorded.end())
+    std::ranges::sort(records, {}, &image_record::name);
+    const auto twice = std::ranges::adjacent_find(records, {}, &image_record::name);
+    if (twice != records.end())
         throw error(model.images_file.string() + " lists the image " + clipped(twice->name) + " twice");
-    return recorded;
+    return records;
 }
+
+scene_description describe(const load_options& options, const log_function& log) {
+    if (options.eval && options.test_every < 1)
+        throw error("test_every must be at least 1, not " + std::to_string(options.test_every));
+    const std::filesystem::path data = options.data, photos = data / options.images;
+    colmap_model model = read_colmap_model(model_folder(data));
+    scene_description result;
+    result.images = image_records(model, photos, options.masks ? data / "masks" : std::filesystem::path(),
+                                  options.depths ? data / "depths" : std::filesystem::path());
+    if (!std::filesystem::is_directory(photos))
+        throw error("the folder of photos " + photos.string() + " does not exist");
+    if (options.eval)
+        for (std::size_t i = 0; i < result.images.size(); i += static_cast<std::size_t>(options.test_every))
+            result.images[i].held_out = true;
+    result.points = std::move(model.points);
+    if (result.points.empty()) log("the COLMAP model has no points");
+    return result;
+}
+
+constexpr reader_option used_options[] = {images_option, test_every_option};
 
 }  // namespace
 
@@ -94,26 +119,11 @@ colmap_model read_colmap_model(const std::filesystem::path& folder) {
     return model;
 }
 
-scene load_colmap_scene(const load_options& options, const log_function& log) {
-    if (options.eval && options.test_every < 1)
-        throw error("test_every must be at least 1, not " + std::to_string(options.test_every));
-    const std::filesystem::path data = options.data, photos = data / options.images;
-    colmap_model model = read_colmap_model(model_folder(data));
-    const auto recorded =
-        recorded_views(model, photos, options.masks ? data / "masks" : std::filesystem::path(),
-                       options.depths ? data / "depths" : std::filesystem::path());
-    if (!std::filesystem::is_directory(photos))
-        throw error("the folder of photos " + photos.string() + " does not exist");
-    scene result;
-    result.source = "COLMAP";
-    result.points = std::move(model.points);
-    if (result.points.empty()) log("the COLMAP model has no points");
-    std::vector<view> views = load_views(recorded, options, log);
-    for (std::size_t i = 0; i < views.size(); ++i) {
-        const bool held_out = options.eval && i % static_cast<std::size_t>(options.test_every) == 0;
-        (held_out ? result.test : result.train).push_back(std::move(views[i]));
-    }
-    return result;
-}
+constinit const reader colmap_reader{
+    "COLMAP", "a folder with sparse/0 or sparse",
+    [](const std::string& data) {
+        return std::filesystem::is_directory(std::filesystem::path(data) / "sparse");
+    },
+    describe, used_options};
 
 }  // namespace gs

@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "../../scene/scene.hpp"
-#include "../../scene/undistort.hpp"
+#include "../reader.hpp"
 
 namespace gs {
 
@@ -57,7 +56,8 @@ struct colmap_model {
 /// allocates, at any time, is below four times the files' size and 64 KiB, whatever they hold.
 colmap_model read_colmap_model(const std::filesystem::path& folder);
 
-/// The views of a COLMAP folder, sorted by name; with `eval`, every `test_every`-th is a test view.
-scene load_colmap_scene(const load_options& options, const log_function& log);
+/// A folder with a COLMAP model in sparse/0 or sparse, images, and possibly masks and depth maps. The images
+/// are sorted by name, and every `test_every`-th is held out.
+extern const reader colmap_reader;
 
 }  // namespace gs

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "../../core/error.hpp"
-#include "colmap_files.hpp"
 #include "../../core/file_bytes.hpp"
+#include "colmap_files.hpp"
 
 namespace gs {
 namespace {
@@ -84,7 +84,7 @@ void read_binary_cameras(const std::filesystem::path& file, colmap_model& model)
     model.cameras.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
         const auto id = reader.take<std::uint32_t>();
-        const auto& kind = camera_model_numbered(reader.take<std::int32_t>(), reader.file());
+        const auto& kind = camera_model_with_id(reader.take<std::int32_t>(), reader.file());
         const auto width = reader.take<std::uint64_t>();
         const auto height = reader.take<std::uint64_t>();
         colmap_parameters parameters{};

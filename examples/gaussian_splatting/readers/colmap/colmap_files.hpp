@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "../camera_models.hpp"
 #include "colmap.hpp"
 
 namespace gs {
@@ -24,22 +25,9 @@ void read_text_points(const std::filesystem::path& file, colmap_model& model);
 
 // What the two kinds of files have in common: a record is checked and added. `where` begins the message.
 
-struct colmap_camera_model {
-    int id;
-    const char* name;
-    bool two_focal_lengths;
-    std::size_t distortion_count;  ///< of k1, k2, p1, p2 in this order, or of k1 to k4 of a fisheye
-    bool is_fisheye = false;
-
-    std::size_t parameter_count() const { return (two_focal_lengths ? 4U : 3U) + distortion_count; }
-};
-
 using colmap_parameters = std::array<double, 8>;  ///< as many of them as the camera model has
 
-const colmap_camera_model& camera_model_numbered(int id, const std::string& where);
-const colmap_camera_model& camera_model_called(std::string_view name, const std::string& where);
-
-void add_camera(colmap_model& model, std::uint32_t id, const colmap_camera_model& kind, std::uint64_t width,
+void add_camera(colmap_model& model, std::uint32_t id, const camera_model& kind, std::uint64_t width,
                 std::uint64_t height, const colmap_parameters& parameters, const std::string& where);
 void add_image(colmap_model& model, const std::array<double, 4>& quaternion,
                const std::array<double, 3>& translation, std::uint32_t camera_id, std::string_view name,

@@ -3,51 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../core/sanitize_for_message.hpp"
 #include "../../core/error.hpp"
+#include "../../core/sanitize_for_message.hpp"
+#include "../validation.hpp"
 #include "colmap_files.hpp"
-#include "../load_views.hpp"
 
 namespace gs {
 namespace {
 
 constexpr std::uint64_t largest_side = 65536;
 
-constexpr colmap_camera_model camera_models[] = {
-    {0, "SIMPLE_PINHOLE", false, 0},
-    {1, "PINHOLE", true, 0},
-    {2, "SIMPLE_RADIAL", false, 1},
-    {3, "RADIAL", false, 2},
-    {4, "OPENCV", true, 4},
-    {5, "OPENCV_FISHEYE", true, 4, true},
-    {8, "SIMPLE_RADIAL_FISHEYE", false, 1, true},
-    {9, "RADIAL_FISHEYE", false, 2, true},
-};
-
-template <class Matches>
-const colmap_camera_model& find_model(const Matches& matches, const std::string& shown,
-                                      const std::string& where) {
-    const auto found = std::ranges::find_if(camera_models, matches);
-    if (found != std::end(camera_models)) return *found;
-    std::string supported;
-    for (const colmap_camera_model& model : camera_models)
-        supported += (supported.empty() ? "" : ", ") + std::string(model.name);
-    throw error(where + ": the camera model " + shown + " is unknown; supported are " + supported);
-}
-
 }  // namespace
 
-const colmap_camera_model& camera_model_numbered(int id, const std::string& where) {
-    return find_model([&](const colmap_camera_model& model) { return model.id == id; },
-                      "number " + std::to_string(id), where);
-}
-
-const colmap_camera_model& camera_model_called(std::string_view name, const std::string& where) {
-    return find_model([&](const colmap_camera_model& model) { return model.name == name; }, clipped(name),
-                      where);
-}
-
-void add_camera(colmap_model& model, std::uint32_t id, const colmap_camera_model& kind, std::uint64_t width,
+void add_camera(colmap_model& model, std::uint32_t id, const camera_model& kind, std::uint64_t width,
                 std::uint64_t height, const colmap_parameters& parameters, const std::string& where) {
     const std::string name = where + ": camera " + std::to_string(id);
     if (width == 0 || height == 0 || width > largest_side || height > largest_side)
@@ -65,7 +33,7 @@ void add_camera(colmap_model& model, std::uint32_t id, const colmap_camera_model
     added.cy = *next++;
     added.is_fisheye = kind.is_fisheye;
     std::copy_n(next, kind.distortion_count, added.coefficients.begin());
-    if (!has_sound_intrinsics(added.camera(), added.distortion())) throw error(name + unsound_intrinsics);
+    if (!has_valid_intrinsics(added.camera(), added.distortion())) throw error(name + invalid_intrinsics);
     model.cameras.push_back(added);
 }
 
@@ -81,8 +49,8 @@ void add_image(colmap_model& model, const std::array<double, 4>& quaternion,
     added.name_begins = model.names.size();
     added.rotation = glm::dquat(w / norm, x / norm, y / norm, z / norm);
     added.translation = {translation[0], translation[1], translation[2]};
-    if (!is_sound_place(added.translation))
-        throw error(where + ": the translation of the image " + clipped(name) + unsound_place);
+    if (!is_valid_position(added.translation))
+        throw error(where + ": the translation of the image " + clipped(name) + invalid_position);
     model.names.resize(added.name_begins + name.size() + 1);
     std::ranges::copy(name, model.names.data() + added.name_begins);
     model.images.push_back(added);
@@ -91,7 +59,7 @@ void add_image(colmap_model& model, const std::array<double, 4>& quaternion,
 void add_point(colmap_model& model, const std::array<double, 3>& position, glm::u8vec3 colour,
                const std::string& where) {
     const glm::dvec3 place(position[0], position[1], position[2]);
-    if (!is_sound_place(place)) throw error(where + ": the position of a point" + unsound_place);
+    if (!is_valid_position(place)) throw error(where + ": the position of a point" + invalid_position);
     model.points.push_back({place, colour});
 }
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <utility>
 
-#include "../../core/sanitize_for_message.hpp"
 #include "../../core/error.hpp"
-#include "colmap_files.hpp"
 #include "../../core/file_bytes.hpp"
+#include "../../core/sanitize_for_message.hpp"
+#include "colmap_files.hpp"
 
 namespace gs {
 namespace {
@@ -120,7 +120,7 @@ void read_text_cameras(const std::filesystem::path& file, colmap_model& model) {
     model.cameras.reserve(reader.count_records<colmap_camera>(1, "1 PINHOLE 1 1 1 1 1 1\n"));
     while (reader.next_record()) {
         const auto id = reader.number<std::uint32_t>("the camera's id");
-        const auto kind = camera_model_called(reader.word("the camera model"), reader.where());
+        const auto kind = camera_model_named(reader.word("the camera model"), reader.where());
         const auto width = reader.number<std::uint64_t>("the width");
         const auto height = reader.number<std::uint64_t>("the height");
         colmap_parameters parameters{};

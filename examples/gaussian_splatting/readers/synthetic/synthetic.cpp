@@ -17,8 +17,8 @@
 
 #include "../../core/error.hpp"
 #include "../../core/parallel.hpp"
-#include "../../scene/look_at.hpp"
 #include "../../image/mask.hpp"
+#include "../../scene/look_at.hpp"
 #include "synthetic_parameters.hpp"
 
 namespace gs {
@@ -420,24 +420,26 @@ std::vector<coloured_point> seen_points(const world& w, const std::vector<view>&
 }
 
 int size_at(int resolution) {
-    if (resolution < 1) {
-        throw error("the resolution must be at least 1, but is " + std::to_string(resolution));
-    }
     if (resolution > largest_size)
         throw error("a synthetic scene is drawn at up to " + std::to_string(largest_size) + " pixels, not " +
                     std::to_string(resolution));
     return divides_size(resolution) ? native_size / resolution : resolution;
 }
 
-}  // namespace
-
-std::vector<std::string> synthetic_scene_names() {
-    std::vector<std::string> names;
-    for (const named_world& w : worlds) names.emplace_back(w.name);
-    return names;
+image_record record_of(view made, bool held_out) {
+    image_record record;
+    record.name = std::move(made.name);
+    record.camera = made.camera;
+    record.held_out = held_out;
+    record.pixels = std::move(made.pixels);
+    record.depth_pixels = std::move(made.depths);
+    return record;
 }
 
-scene make_synthetic_scene(const std::string& name, const load_options& options, const log_function& log) {
+constexpr std::string_view prefix = "synthetic:";
+
+scene_description describe(const load_options& options, const log_function& log) {
+    const std::string name = options.data.substr(prefix.size());
     const world w = world_of(name);
     const int size = size_at(options.resolution);
     std::vector<view> views = spiral_views(size, w.how);
@@ -448,23 +450,36 @@ scene make_synthetic_scene(const std::string& name, const load_options& options,
             forget_left_out(views[i].pixels, views[i].depths);
         });
 
-    scene result;
-    result.source = "synthetic";
-    result.has_alpha = w.transparent;
+    std::vector<view> train, test;
     for (std::size_t i = 0; i < views.size(); ++i) {
         // From the middle of each group: the first and the last camera have fewer neighbours.
         const bool held_out = options.eval && i % views_per_test_view == views_per_test_view / 2;
-        (held_out ? result.test : result.train).push_back(std::move(views[i]));
+        (held_out ? test : train).push_back(std::move(views[i]));
     }
-    const std::size_t most = std::min(result.train.size(), static_cast<std::size_t>(w.how.views));
-    result.train = spread(std::move(result.train), most);
-    result.points = seen_points(w, result.train, static_cast<std::size_t>(w.how.points), options.seed);
-    if (log) {
-        log("synthetic scene '" + name + "': " + std::to_string(result.train.size()) + " training and " +
-            std::to_string(result.test.size()) + " test views of " + std::to_string(size) + "x" +
-            std::to_string(size) + ", " + std::to_string(result.points.size()) + " points");
-    }
+    const std::size_t most = std::min(train.size(), static_cast<std::size_t>(w.how.views));
+    train = spread(std::move(train), most);
+
+    scene_description result;
+    result.object_centered = true;
+    result.points = seen_points(w, train, static_cast<std::size_t>(w.how.points), options.seed);
+    log("synthetic scene '" + name + "': " + std::to_string(train.size()) + " training and " +
+        std::to_string(test.size()) + " test views of " + std::to_string(size) + "x" + std::to_string(size) +
+        ", " + std::to_string(result.points.size()) + " points");
+    for (view& v : train) result.images.push_back(record_of(std::move(v), false));
+    for (view& v : test) result.images.push_back(record_of(std::move(v), true));
     return result;
+}
+
+}  // namespace
+
+constinit const reader synthetic_reader{"synthetic", "synthetic:NAME[,PARAMETER=VALUE...]",
+                                        [](const std::string& data) { return data.starts_with(prefix); },
+                                        describe};
+
+std::vector<std::string> synthetic_scene_names() {
+    std::vector<std::string> names;
+    for (const named_world& w : worlds) names.emplace_back(w.name);
+    return names;
 }
 
 void photograph_synthetic(const std::string& name, std::vector<view>& views) {

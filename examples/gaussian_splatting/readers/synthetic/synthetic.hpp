@@ -3,30 +3,33 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "../../scene/scene.hpp"
+#include "../reader.hpp"
 
 namespace gs {
 
-/// A ray-traced scene that needs no download, with exact cameras around its upper half (z is up), on a
-/// hemisphere unless parameters say otherwise. Everything lies within 1.3 of the origin along each axis.
-/// `name` is that of a world and, behind commas, parameters: see `synthetic_parameters`; without any, shading
-/// does not depend on the direction one looks from.
+/// Ray-traced scenes that need no download: `synthetic:NAME[,PARAMETER=VALUE...]`. The parameters are the
+/// members of `synthetic_parameters`. Without any, cameras stand on the upper half of a sphere (z is up), and
+/// shading does not depend on the viewing direction. All surfaces lie within 1.3 of the origin along each
+/// axis.
 ///
-///     spheres   patterned spheres in a pool of light on a dark ground; opaque, black where nothing is
-///     alpha     spheres that float before a transparent background
+///     spheres   patterned spheres in a pool of light on a dark ground; opaque, on a black background
+///     alpha     spheres that float in front of a transparent background
 ///
-/// 40 views train and 8 test, all 48 train without `options.eval`; 128 pixels square before
-/// `options.resolution`. `points` are about 3000 surface points, each seen by a training camera, drawn by
-/// `options.seed`. The result does not depend on the number of threads. Throws `error` for an unknown name or
-/// parameter.
-scene make_synthetic_scene(const std::string& name, const load_options& options, const log_function& log);
+/// There are 40 training and 8 test images, or 48 training images without `load_options::eval`. They have
+/// 128x128 pixels, divided by the resolution. The points, about 3000 by default, lie on surfaces that a
+/// training camera sees. The result does not depend on the number of threads.
+extern const reader synthetic_reader;
 
-/// Takes the photos that the views' cameras have of the same world: other cameras than the scene's own, in no
-/// sphere.
+/// The names that may follow "synthetic:".
+std::vector<std::string> synthetic_scene_names();
+
+/// Renders the pixels that the cameras of `views` see of the scene `name`, in place of their present ones.
+/// Precondition: no camera is inside a sphere.
 void photograph_synthetic(const std::string& name, std::vector<view>& views);
 
-/// More of its surface points. Precondition: some view sees a surface.
+/// Draws `count` further surface points of the scene `name`. Precondition: some view sees a surface.
 std::vector<coloured_point> synthetic_points(const std::string& name, const std::vector<view>& views,
                                              std::size_t count, std::uint64_t seed);
 

@@ -8,15 +8,17 @@
 #include <optional>
 #include <utility>
 
-#include "../../core/sanitize_for_message.hpp"
 #include "../../core/error.hpp"
+#include "../../core/sanitize_for_message.hpp"
+#include "../validation.hpp"
 #include "transforms.hpp"
-#include "../load_views.hpp"
 
 namespace gs {
 namespace {
 
 using enum transforms_number;
+
+constexpr const char* training_file = "transforms_train.json";
 
 /// The photo, whose ending may have been left out.
 std::filesystem::path find_photo(const std::filesystem::path& data, const transforms& all,
@@ -48,11 +50,11 @@ double focal_length(const transforms& all, std::size_t index, int width) {
     return 0.5 * width / std::tan(0.5 * *angle);
 }
 
-void set_intrinsics(recorded_view& recorded, const transforms& all, std::size_t index) {
-    camera& taken_with = recorded.camera;
+void set_intrinsics(image_record& record, const transforms& all, std::size_t index) {
+    camera& taken_with = record.camera;
     const auto number = [&](transforms_number which) { return all.number(index, which); };
     int photo_width = 0, photo_height = 0;
-    read_image_size(recorded.file, photo_width, photo_height);
+    read_image_size(record.file, photo_width, photo_height);
     taken_with.width = side(all, index, w, photo_width);
     taken_with.height = side(all, index, h, photo_height);
     const auto said = number(fl_x);
@@ -64,10 +66,10 @@ void set_intrinsics(recorded_view& recorded, const transforms& all, std::size_t 
     if (all.is_fisheye(index))
         taken_with.fisheye = fisheye({bend(k1), bend(k2), bend(k3), bend(k4)});
     else
-        recorded.distortion = {bend(k1), bend(k2), bend(p1), bend(p2)};
-    recorded.model = all.is_fisheye(index) ? "OPENCV_FISHEYE" : "OPENCV";
-    if (!has_sound_intrinsics(taken_with, recorded.distortion))
-        throw error(all.where_is(index) + unsound_intrinsics);
+        record.distortion = {bend(k1), bend(k2), bend(p1), bend(p2)};
+    record.camera_model = all.is_fisheye(index) ? "OPENCV_FISHEYE" : "OPENCV";
+    if (!has_valid_intrinsics(taken_with, record.distortion))
+        throw error(all.where_is(index) + invalid_intrinsics);
 }
 
 /// None where the frame has none.
@@ -79,44 +81,49 @@ std::filesystem::path find_mask(const std::filesystem::path& data, const transfo
     return file;
 }
 
-std::vector<recorded_view> recorded_views(const std::filesystem::path& data,
-                                          const std::filesystem::path& file, bool masks) {
+std::vector<image_record> image_records(const std::filesystem::path& data, const std::filesystem::path& file,
+                                        const load_options& options, bool held_out) {
     const transforms all = read_transforms(file);
-    std::vector<recorded_view> recorded;
-    recorded.reserve(all.frames.size());
+    std::vector<image_record> records;
+    records.reserve(all.frames.size());
     for (std::size_t i = 0; i < all.frames.size(); ++i) {
-        recorded_view view;
-        view.file = find_photo(data, all, i);
-        view.name = view.file.lexically_relative(data).lexically_normal().generic_string();
-        if (view.name.empty()) view.name = view.file.generic_string();  // absolute, where the scene's is not
-        view.camera.rotation = all.frames[i].rotation;
-        view.camera.translation = all.frames[i].translation;
-        if (masks) view.mask = find_mask(data, all, i);
-        set_intrinsics(view, all, i);
-        recorded.push_back(std::move(view));
+        image_record record;
+        record.file = find_photo(data, all, i);
+        record.name = record.file.lexically_relative(data).lexically_normal().generic_string();
+        // The path of a frame may be absolute although that of the scene is not.
+        if (record.name.empty()) record.name = record.file.generic_string();
+        record.held_out = held_out;
+        record.camera.rotation = all.frames[i].rotation;
+        record.camera.translation = all.frames[i].translation;
+        if (options.masks) record.mask = find_mask(data, all, i);
+        set_intrinsics(record, all, i);
+        records.push_back(std::move(record));
     }
-    return recorded;
+    return records;
 }
 
-std::vector<recorded_view> recorded_test_views(const std::filesystem::path& data, bool masks) {
+std::vector<image_record> test_records(const std::filesystem::path& data, const load_options& options) {
     for (const char* name : {"transforms_test.json", "transforms_val.json"})
-        if (std::filesystem::exists(data / name)) return recorded_views(data, data / name, masks);
+        if (std::filesystem::exists(data / name)) return image_records(data, data / name, options, true);
     return {};
+}
+
+scene_description describe(const load_options& options, const log_function&) {
+    const std::filesystem::path data = options.data;
+    scene_description result;
+    result.object_centered = true;
+    result.images = image_records(data, data / training_file, options, false);
+    std::ranges::move(test_records(data, options), std::back_inserter(result.images));
+    return result;
 }
 
 }  // namespace
 
-scene load_blender_scene(const load_options& options, const log_function& log) {
-    const std::filesystem::path data = options.data;
-    std::vector<recorded_view> recorded = recorded_views(data, data / "transforms_train.json", options.masks);
-    const std::size_t train_count = recorded.size();
-    std::ranges::move(recorded_test_views(data, options.masks), std::back_inserter(recorded));
-    std::vector<view> views = load_views(recorded, options, log);
-    scene result;
-    result.source = "Blender";
-    for (std::size_t i = 0; i < views.size(); ++i)
-        (options.eval && i >= train_count ? result.test : result.train).push_back(std::move(views[i]));
-    return result;
-}
+constinit const reader blender_reader{
+    "Blender", "a folder with transforms_train.json",
+    [](const std::string& data) {
+        return std::filesystem::exists(std::filesystem::path(data) / training_file);
+    },
+    describe};
 
 }  // namespace gs

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "../../scene/scene.hpp"
+#include "../reader.hpp"
 
 namespace gs {
 
-/// A scene as the NeRF-synthetic data set has them: `transforms_train.json` and, for the test views,
-/// `transforms_test.json` or else `transforms_val.json`; without `eval` the test views are trained on too.
-scene load_blender_scene(const load_options& options, const log_function& log);
+/// A folder like those of the NeRF-synthetic data set: `transforms_train.json` and, for the held-out images,
+/// `transforms_test.json` or otherwise `transforms_val.json`.
+extern const reader blender_reader;
 
 }  // namespace gs

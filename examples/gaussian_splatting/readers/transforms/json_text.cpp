@@ -7,7 +7,7 @@
 
 #include "../../core/error.hpp"
 #include "../../core/file_bytes.hpp"
-#include "../load_views.hpp"
+#include "../validation.hpp"
 
 namespace gs {
 namespace {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "../../core/sanitize_for_message.hpp"
 #include "../../core/error.hpp"
-#include "../colmap/colmap_files.hpp"
+#include "../../core/sanitize_for_message.hpp"
+#include "../camera_models.hpp"
 #include "json_text.hpp"
 #include "transforms_pose.hpp"
 
@@ -46,7 +46,7 @@ class said_numbers {
 
 transforms_lens lens_called(const std::string* name, const std::string& where) {
     if (!name) throw error(where + ": camera_model is not a string");
-    return camera_model_called(*name, where).is_fisheye ? transforms_lens::fisheye : transforms_lens::opencv;
+    return camera_model_named(*name, where).is_fisheye ? transforms_lens::fisheye : transforms_lens::opencv;
 }
 
 /// How deep the reader is in what it reads: each level is a bracket within the one before.

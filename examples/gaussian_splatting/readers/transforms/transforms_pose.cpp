@@ -8,7 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "../../core/error.hpp"
-#include "../load_views.hpp"
+#include "../validation.hpp"
 
 namespace gs {
 namespace {
@@ -41,8 +41,8 @@ void set_pose(transforms_frame& frame, const glm::dmat4& matrix, const std::stri
     const glm::dmat3 ours(to_world[0], -to_world[1], -to_world[2]);
     frame.rotation = glm::transpose(ours);
     frame.translation = -frame.rotation * glm::dvec3(matrix[3]);
-    if (!is_sound_place(matrix[3]))
-        throw error(where + ": the translation of transform_matrix" + unsound_place);
+    if (!is_valid_position(matrix[3]))
+        throw error(where + ": the translation of transform_matrix" + invalid_position);
 }
 
 }  // namespace gs

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "../core/log.hpp"
+#include "../scene/scene.hpp"
+#include "../scene/undistort.hpp"
+
+namespace gs {
+
+/// Which scene to read, and how.
+struct load_options {
+    std::string data;        ///< a path, or a name that a reader knows, such as "synthetic:spheres"
+    int resolution = 1;      ///< 1, 2, 4, 8 divide the size; any other number is the longer side in pixels
+    bool eval = false;       ///< hold out the test images; otherwise they are training images, too
+    bool masks = true;       ///< apply the scene's masks
+    bool depths = true;      ///< load the scene's depth maps
+    std::uint64_t seed = 0;  ///< for readers that draw random points
+
+    // Only some readers use the following, see `reader_option`.
+    std::string images = "images";  ///< the folder of the images, relative to `data`
+    int test_every = 8;             ///< hold out every n-th image, sorted by name, from the first
+};
+
+/// Whether a resolution divides the size of the images.
+constexpr bool divides_size(int resolution) {
+    return resolution == 1 || resolution == 2 || resolution == 4 || resolution == 8;
+}
+
+/// An option that only some readers use. `load_scene` refuses it for scenes of all other readers.
+struct reader_option {
+    std::string_view name;                ///< on the command line
+    bool (*is_set)(const load_options&);  ///< whether it differs from its default
+};
+inline constexpr reader_option images_option{
+    "--images", [](const load_options& o) { return o.images != load_options().images; }};
+inline constexpr reader_option test_every_option{
+    "--test-every", [](const load_options& o) { return o.test_every != load_options().test_every; }};
+
+/// One image of a scene as a reader describes it. It names its files, which `load_scene` loads later, or
+/// holds the pixels that a reader has made.
+struct image_record {
+    std::string name;       ///< unique within the scene; with '/' between folders
+    gs::camera camera;      ///< at the size of the image when the camera was calibrated
+    bool held_out = false;  ///< a test image, if `load_options::eval` is set
+
+    std::filesystem::path file;   ///< PNG or JPEG; its size may differ from the camera's by one factor
+    lens distortion;              ///< of the file; loading removes it
+    std::string camera_model;     ///< name of the model of `distortion`, for messages
+    std::filesystem::path mask;   ///< PNG, see `read_mask`; empty: no mask
+    std::filesystem::path depth;  ///< PNG, see `read_depth_map`; empty: no depth map
+
+    image pixels;            ///< replaces `file`: undistorted, at the camera's size and the final resolution
+    depth_map depth_pixels;  ///< may accompany `pixels`, and has their size
+
+    bool has_pixels() const { return !pixels.rgba.empty(); }
+};
+
+/// A scene before its images are loaded.
+struct scene_description {
+    std::vector<image_record> images;    ///< in the order of the views
+    std::vector<coloured_point> points;  ///< may be empty
+    bool object_centered = false;        ///< see `scene::object_centered`
+};
+
+/// A kind of scene. To add one, write its folder and add a row to the table in readers.cpp.
+struct reader {
+    std::string_view name;     ///< in messages, as in "COLMAP scenes"
+    std::string_view accepts;  ///< what `probe` looks for, as in "a folder with sparse/0 or sparse"
+
+    /// Whether `load_options::data` is such a scene. Looks only at names: the first reader that returns true
+    /// reads the scene, and reports everything that is wrong with it.
+    bool (*probe)(const std::string& data);
+
+    /// Reads cameras and points. Opens images at most for their size, unless the reader makes the images.
+    /// Throws `error` with the file, and the line or record, that is malformed.
+    scene_description (*read)(const load_options& options, const log_function& log);
+
+    std::span<const reader_option> options{};  ///< those that `read` uses
+};
+
+/// All readers, in the order in which they are asked.
+std::span<const reader* const> all_readers();
+
+}  // namespace gs
