@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "../core/error.hpp"
-#include "../writers/ply/ply.hpp"
+#include "../writers/writer.hpp"
 #include "command_context.hpp"
 
 namespace gs::cli {
@@ -13,7 +13,7 @@ void evaluate(const settings& s) {
     const session session(s);
     const auto engine = session.make_engine();
     const stopwatch loading;
-    gaussians model = read_ply(s.ply);
+    gaussians model = read_model(s.ply);
     session.require_no_background_before(model);
     scene scene = session.load();
     model = into(scene.frame, std::move(model));

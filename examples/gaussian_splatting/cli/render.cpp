@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 
 #include "../core/error.hpp"
-#include "../writers/ply/ply.hpp"
 #include "../scene/look_at.hpp"
+#include "../writers/writer.hpp"
 #include "command_context.hpp"
 
 namespace gs::cli {
@@ -66,7 +66,7 @@ int orbit_size(int resolution) { return divides_size(resolution) ? 800 / resolut
 void render(const settings& s) {
     const session session(s);
     const auto engine = session.make_engine();
-    gaussians model = read_ply(s.ply);
+    gaussians model = read_model(s.ply);
     session.require_no_background_before(model);
     if (model.count() == 0) throw error(s.ply + " holds no Gaussians: there is nothing to draw");
     const bool orbits = s.scene.data.empty();

@@ -6,13 +6,13 @@
 #include <cstdio>
 #include <numeric>
 
-#include "../features/sh_degree/revise_sh_degree.hpp"
 #include "../core/error.hpp"
 #include "../evaluation/held_out_exposures.hpp"
+#include "../features/sh_degree/revise_sh_degree.hpp"
 #include "../training/initialise.hpp"
-#include "../writers/ply/ply.hpp"
-#include "progress_bar.hpp"
+#include "../writers/writer.hpp"
 #include "command_context.hpp"
+#include "progress_bar.hpp"
 
 namespace gs::cli {
 
@@ -222,7 +222,7 @@ void train(const settings& s) {
     events.save = [&](int iteration) {
         const auto file = ply_of(output.path(), iteration);
         std::filesystem::create_directories(file.parent_path());
-        write_ply(file, out_of(scene.frame, engine->get_model()));
+        write_model(file, out_of(scene.frame, engine->get_model()));
     };
     const auto expose_tests = [&](const std::vector<train::exposure>& of_training) {
         if (!of_training.empty()) engine->set_test_exposures(evaluate::test_exposures(scene, of_training));

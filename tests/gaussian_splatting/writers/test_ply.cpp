@@ -168,6 +168,18 @@ TEST_CASE("ply: a round trip keeps every bit at each SH degree") {
     }
 }
 
+TEST_CASE("ply: coefficients above the largest SH degree are dropped, and the others kept") {
+    const temporary_folder folder;
+    const gs::gaussians model = sample_model(3, 4);
+    gs::write_ply(folder.path / "model.ply", model, {.max_sh_degree = 1});
+    gs::gaussians expected = model;
+    expected.sh_degree = 1;
+    expected.sh_rest.clear();
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t k = 0; k < 9; ++k) expected.sh_rest.push_back(model.sh_rest[45 * i + k]);
+    check_same(gs::read_ply(folder.path / "model.ply"), expected);
+}
+
 TEST_CASE("ply: the bytes are those of the reference implementation") {
     const temporary_folder folder;
     const gs::gaussians model = sample_model(1, 1);

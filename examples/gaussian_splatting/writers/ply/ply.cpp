@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include "../../core/sanitize_for_message.hpp"
+#include "../../core/atomic_file_write.hpp"
 #include "../../core/error.hpp"
 #include "../../core/file_bytes.hpp"
-#include "../../core/atomic_file_write.hpp"
+#include "../../core/sanitize_for_message.hpp"
 
 namespace gs {
 namespace {
@@ -39,16 +39,16 @@ void add_numbered(std::vector<field>& fields, const char* prefix, std::vector<fl
     for (int i = 0; i < width; ++i) fields.push_back({prefix + std::to_string(i), array, width, i});
 }
 
-/// In the order of the reference implementation, normals left out. The file's f_rest are channel-major, the
-/// model's coefficient-major.
-std::vector<field> fields_of_degree(int sh_degree) {
+/// In the order of the reference implementation, without normals. In the file f_rest is channel-major. In the
+/// model, which has room for `rest_width` floats per Gaussian, it is coefficient-major.
+std::vector<field> fields_of_degree(int sh_degree, int rest_width) {
     std::vector<field> fields = {
         {"x", &gaussians::mean, 3, 0}, {"y", &gaussians::mean, 3, 1}, {"z", &gaussians::mean, 3, 2}};
     add_numbered(fields, "f_dc_", &gaussians::sh_constant, 3);
     const int per_channel = sh_coefficients(sh_degree) - 1;
     for (int i = 0; i < 3 * per_channel; ++i) {
         const int offset = 3 * (i % per_channel) + i / per_channel;
-        fields.push_back({"f_rest_" + std::to_string(i), &gaussians::sh_rest, 3 * per_channel, offset});
+        fields.push_back({"f_rest_" + std::to_string(i), &gaussians::sh_rest, rest_width, offset});
     }
     fields.push_back({"opacity", &gaussians::opacity, 1, 0});
     add_numbered(fields, "scale_", &gaussians::log_scale, 3);
@@ -345,7 +345,7 @@ class reader {
         layout l;
         l.stride = h.stride;
         l.sh_degree = sh_degree(h);
-        for (const field& f : fields_of_degree(l.sh_degree)) {
+        for (const field& f : fields_of_degree(l.sh_degree, 3 * (sh_coefficients(l.sh_degree) - 1))) {
             const property* const source = h.find(f.name);
             if (source == nullptr) fail("its vertices have no property '" + f.name + "'");
             l.columns.push_back({f, source->type, source->offset});
@@ -421,10 +421,13 @@ class reader {
     std::vector<float> sky_;
 };
 
+constexpr std::string_view endings[] = {".ply"};
+
 }  // namespace
 
-void write_ply(const std::filesystem::path& file, const gaussians& model) {
-    const std::vector<field> fields = fields_of_degree(model.sh_degree);
+void write_ply(const std::filesystem::path& file, const gaussians& model, const write_options& options) {
+    const std::vector<field> fields =
+        fields_of_degree(std::min(model.sh_degree, options.max_sh_degree), model.rest_width());
     if (!std::ranges::all_of(model.sky, [](float x) { return std::isfinite(x); }))
         throw error("cannot write " + file.string() + ": its sky is not finite");
     write_aside(file, [&](std::ostream& out) {
@@ -448,5 +451,7 @@ void write_ply(const std::filesystem::path& file, const gaussians& model) {
 }
 
 gaussians read_ply(const std::filesystem::path& file) { return reader(file).read(); }
+
+constinit const writer ply_writer{"PLY", endings, write_ply, read_ply};
 
 }  // namespace gs

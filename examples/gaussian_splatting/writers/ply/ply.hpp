@@ -4,23 +4,28 @@
 
 #include <filesystem>
 
-#include "../../model/gaussians.hpp"
+#include "../writer.hpp"
 
 namespace gs {
 
-/// Writes the layout of the reference implementation, which viewers read: binary little endian, properties
-/// x y z nx ny nz f_dc_0..2 f_rest_* (channel-major) opacity scale_0..2 rot_0..3, all float. That Gaussians
-/// are antialiased is the comment `SplatRenderMode: mip`, as Brush writes it; a sky is the comment
-/// `SkyHarmonics:` with its numbers. Written aside and renamed.
-/// Throws `error` naming the file; also where a value is not finite: what was there before stays.
-void write_ply(const std::filesystem::path& file, const gaussians& model);
+/// Writes the layout of the reference implementation (Kerbl et al. 2023), which viewers read: binary little
+/// endian, properties x y z nx ny nz f_dc_0..2 f_rest_* (channel-major) opacity scale_0..2 rot_0..3, all
+/// float. The comment `SplatRenderMode: mip`, which Brush writes too, marks antialiased Gaussians. The
+/// comment `SkyHarmonics:` holds the coefficients of a sky. Replaces the file as a whole. Throws `error` with
+/// the file, and with the property if a value is not finite; the old file stays then.
+void write_ply(const std::filesystem::path& file, const gaussians& model, const write_options& options = {});
 
-/// Reads what `write_ply` and other trainers write: properties in any order, further scalar properties of any
-/// PLY type skipped, normals optional, SH degree 0 to 3 by the number of f_rest properties, elements other
-/// than `vertex` only where they are empty. Throws `error` naming the file and the field: no PLY, ascii or
-/// big endian, a header beyond 64 KiB, a missing field, a count that the file's size contradicts, a value
-/// that is not finite. What it allocates, at any time, is below four times the file's size and 64 KiB,
-/// whatever the header says.
+/// Reads the files of `write_ply` and of other trainers. Properties may have any order and any scalar type;
+/// unknown ones are skipped, and normals are optional. The number of f_rest properties gives the SH degree, 0
+/// to 3. Elements other than `vertex` must be empty.
+///
+/// Throws `error` with the file and the field for: a file that is not PLY, ASCII or big-endian data, a header
+/// beyond 64 KiB, a missing property, a count that contradicts the size of the file, a value that is not
+/// finite. Never allocates more than four times the size of the file plus 64 KiB, whatever the header
+/// promises.
 gaussians read_ply(const std::filesystem::path& file);
+
+/// The format with the ending .ply, made of both functions.
+extern const writer ply_writer;
 
 }  // namespace gs

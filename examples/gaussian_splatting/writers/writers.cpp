@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "ply/ply.hpp"
+#include "writer.hpp"
+
+namespace gs {
+
+std::span<const writer* const> all_writers() {
+    static constexpr const writer* table[] = {
+        &ply_writer,
+    };
+    return table;
+}
+
+}  // namespace gs
