@@ -18,7 +18,7 @@
 
 #include "accuracy/adder.hpp"
 #include "driver.hpp"
-#include "training/engine.hpp"
+#include "engine/engine.hpp"
 
 namespace {
 

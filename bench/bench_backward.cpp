@@ -23,7 +23,7 @@
 #include "writers/ply/ply.hpp"
 #include "scene/normalization.hpp"
 #include "scene/look_at.hpp"
-#include "training/engine.hpp"
+#include "engine/engine.hpp"
 
 namespace {
 

@@ -20,7 +20,7 @@
 #include "training/initialise.hpp"
 #include "readers/load_scene.hpp"
 #include "readers/synthetic/synthetic.hpp"
-#include "training/engine.hpp"
+#include "engine/engine.hpp"
 
 namespace {
 

@@ -18,7 +18,7 @@
 #include "writers/ply/ply.hpp"
 #include "paper/measure.hpp"
 #include "scene/normalization.hpp"
-#include "training/engine.hpp"
+#include "engine/engine.hpp"
 
 namespace {
 

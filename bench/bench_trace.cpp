@@ -19,7 +19,7 @@
 #include "writers/ply/ply.hpp"
 #include "scene/normalization.hpp"
 #include "trace/gpu_trace.hpp"
-#include "training/engine.hpp"
+#include "engine/engine.hpp"
 #include "training/schedule.hpp"
 
 namespace {

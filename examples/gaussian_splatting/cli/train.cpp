@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "../core/error.hpp"
-#include "../evaluation/held_out_exposures.hpp"
+#include "../features/exposure/held_out_exposures.hpp"
 #include "../features/sh_degree/revise_sh_degree.hpp"
 #include "../training/initialise.hpp"
 #include "../writers/writer.hpp"

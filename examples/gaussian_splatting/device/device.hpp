@@ -73,9 +73,9 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 /// - `for_each_index(n, f)`: runs `f(i)` for each i in [0, n).
 /// - `for_each_warp<W>(n, f)`: runs `f(W{}, i)` for each i in [0, n), on one warp each. W is `warp`
 ///   by default. A kernel that `has_scratch` gets its scratch memory as a third argument.
-/// - `iteration(shape, f)`: runs `f()`, which launches one training iteration. `f` does not wait,
-///   and allocates only in the first iteration of this shape. A device may record the launches and
-///   replay them.
+/// - `iteration(key, f)`: runs `f()`, which launches one training iteration. `f` does not wait,
+///   and allocates only in the first iteration with this key. A device may record the launches and
+///   replay them for equal keys.
 /// - `wait()`: returns when everything launched so far has run.
 ///
 /// Copies of n values
@@ -118,7 +118,7 @@ float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, s
     d.prefix_sum(numbers, sums, n);
     d.sort_pairs(numbers, numbers, n);
     d.distribute(n, archetype::item_list{}, n, std::uint64_t{}, listed, ranges, required);
-    d.iteration(iteration_shape{}, archetype::host_work{});
+    d.iteration(graph_key{}, archetype::host_work{});
     d.begin(stage::project);
     d.pause_times(true);
     d.sample_times(1);

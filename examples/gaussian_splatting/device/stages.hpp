@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace gs::device {
 
@@ -14,8 +15,9 @@ enum class stage { project, bin, blend_forward, loss, blend_backward, project_ba
 inline constexpr std::array stage_names{"project",         "bin", "blend_forward", "loss", "blend_backward",
                                         "project_backward"};
 
-/// Determines how much memory an iteration needs: iterations of equal shapes need the same.
-using iteration_shape = std::array<std::size_t, 6>;
+/// What decides about the launches of an iteration and its memory: equal keys promise equal launches, over
+/// equal ranges, and equal memory.
+using graph_key = std::vector<std::size_t>;
 
 /// Milliseconds per stage, summed over the `sampled` iterations that were timed.
 struct stage_times {

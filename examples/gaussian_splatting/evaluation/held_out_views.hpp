@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "../training/engine.hpp"
+#include "../engine/engine.hpp"
 
 namespace gs::evaluate {
 

@@ -12,7 +12,7 @@
 #include "tiles/bin.hpp"
 #include "blend/blend_backward.hpp"
 #include "blend/blend_forward.hpp"
-#include "../features/depth/depth_splats.hpp"
+#include "blend/depth_splats.hpp"
 #include "gradients/gradient_sums.hpp"
 #include "project/project.hpp"
 #include "project/project_backward.hpp"
@@ -25,6 +25,7 @@ template <device::device Device, class Real, class Cut = cut_for<typename Device
           class Accumulators = product_accumulators>
 class renderer {
   public:
+    using device_type = Device;
     template <class T>
     using buffer = typename Device::template buffer<T>;
     using warp = typename Device::warp;

@@ -10,7 +10,7 @@
 
 #include "../core/parallel.hpp"
 
-namespace gs::effects {
+namespace gs {
 namespace {
 
 constexpr std::size_t most_points = 6000;
@@ -93,7 +93,7 @@ std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vec
     return seen;
 }
 
-std::vector<std::vector<observation>> observe_points(const scene& of) {
+observed_points observe_points(const scene& of) {
     const std::size_t step = of.points.size() / most_points + 1;
     std::vector<std::vector<std::pair<std::uint32_t, observation>>> by_view(of.train.size());
     for_each_in_parallel(of.train.size(), [&](std::size_t v) {
@@ -114,4 +114,4 @@ std::vector<std::vector<observation>> observe_points(const scene& of) {
     return by_point;
 }
 
-}  // namespace gs::effects
+}  // namespace gs

@@ -8,7 +8,7 @@
 
 #include "scene.hpp"
 
-namespace gs::effects {
+namespace gs {
 
 /// A point of a scene as one of its photos has it.
 struct observation {
@@ -18,6 +18,9 @@ struct observation {
     float footprint = 0;     ///< of a pixel there, in the scene's unit
     float roughness = 0;     ///< by which share of the brightest of these pixels the darkest differs
 };
+
+/// The observations of each point.
+using observed_points = std::vector<std::vector<observation>>;
 
 /// Where a photo shows one of the points, in pixels, and how deep: see `camera::image_point`.
 struct place_in_photo {
@@ -31,6 +34,6 @@ std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vec
 /// What the training photos have of the scene's points, by point; some thousands of the points stand for all.
 /// Left out: what is not `points_in_sight`, and where the photo is transparent or a channel is saturated.
 /// Cost: that of projecting all points into all photos.
-std::vector<std::vector<observation>> observe_points(const scene& of);
+observed_points observe_points(const scene& of);
 
-}  // namespace gs::effects
+}  // namespace gs

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include "../core/error.hpp"
-#include "engine.hpp"
+#include "../engine/engine.hpp"
 
 namespace gs::train {
 

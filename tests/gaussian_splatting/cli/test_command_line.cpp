@@ -17,8 +17,8 @@
 
 #include "../../support/bytes.hpp"
 #include "../../support/temporary_folder.hpp"
+#include "engine/engine.hpp"
 #include "image/image.hpp"
-#include "training/engine.hpp"
 #include "writers/ply/ply.hpp"
 
 namespace {

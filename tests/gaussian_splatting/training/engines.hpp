@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "engine/engine.hpp"
 #include "readers/load_scene.hpp"
-#include "training/engine.hpp"
 #include "training/schedule.hpp"
 
 /// What tests of the engine begin with.

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "device/cpu/cpu.hpp"
 #include "engines.hpp"
-#include "features/depth/depth_evidence.hpp"
+#include "features/depth/depth_agreement.hpp"
 #include "features/sh_degree/revise_sh_degree.hpp"
 #include "render/gradients/gradient_sums.hpp"
 #include "training/initialise.hpp"

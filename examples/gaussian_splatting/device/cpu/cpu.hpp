@@ -22,6 +22,7 @@
 
 #include "../device.hpp"
 #include "../scratch.hpp"
+#include "key_check.hpp"
 
 namespace gs::device {
 
@@ -48,6 +49,7 @@ class basic_cpu {
     class buffer {
       public:
         void resize(std::size_t n) {
+            key_check::note<T>(n);
             if (n > capacity_) {
                 memory_.reset(static_cast<T*>(::operator new[](n * sizeof(T), line)));
                 capacity_ = n;
@@ -83,11 +85,13 @@ class basic_cpu {
 
     template <class F>
     void for_each_index(std::size_t n, const F& f) {
+        key_check::note<F>(n);
 #pragma omp parallel for schedule(static)
         for (std::size_t i = 0; i < n; ++i) f(i);
     }
     template <class W = warp, class F>
     void for_each_warp(std::size_t n, const F& f) {
+        key_check::note<F>(n);
         const std::size_t share = std::clamp<std::size_t>(n / resident_warps(), 1, 8);
 #pragma omp parallel for schedule(dynamic, share)
         for (std::size_t i = 0; i < n; ++i) {
@@ -190,8 +194,8 @@ class basic_cpu {
     }
 
     template <class F>
-    void iteration(const iteration_shape&, const F& f) {
-        f();
+    void iteration(const graph_key& key, const F& f) {
+        key_check_.iteration(key, f);
         end_iteration();
     }
 
@@ -220,6 +224,7 @@ class basic_cpu {
     void wait() {}
 
   private:
+    key_check key_check_;
     using clock = std::chrono::steady_clock;
 
     /// One pass of a stable radix sort: each slice of the pairs is counted and then moved.

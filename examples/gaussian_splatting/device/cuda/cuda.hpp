@@ -178,11 +178,11 @@ class cuda {
                    count, digit * digit_bits, sort_memory(sort_memory_.data(), tiles, digit), to[0], to[1]);
     }
 
-    /// Iterations of the same shape need the same memory. From the second one on, they are launched
+    /// Iterations of the same key need the same memory. From the second one on, they are launched
     /// as one graph, except those that are timed.
     template <class F>
-    void iteration(const iteration_shape& shape, const F& f) {
-        const bool is_new = shapes_.insert(shape).second;
+    void iteration(const graph_key& key, const F& f) {
+        const bool is_new = keys_.insert(key).second;
         if (!is_new && !times_.is_sampled())
             graph_.launch(stream_, f);
         else
@@ -250,7 +250,7 @@ class cuda {
     owned_stream stream_;
     cuda_times times_;
     cuda_graph graph_;
-    std::set<iteration_shape> shapes_;  ///< of the iterations so far
+    std::set<graph_key> keys_;  ///< of the iterations so far
     bool kernels_await_ = false;        ///< the GPU launches a kernel before its predecessor ends
     std::size_t resident_warps_ = 0;
     buffer<std::uint32_t> other_keys_, other_values_, sort_memory_;

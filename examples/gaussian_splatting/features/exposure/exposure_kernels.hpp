@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 #include <warpagg/atomic.hpp>
 
 #include "../../optimize/ordered_sums.hpp"
 
-namespace gs::train {
+namespace gs::features {
 
 /// A photo's exposure: its colours are `A c + b` of those that the scene has. Three rows of A and b, as in
 /// Kerbl et al. 2024 (hierarchical 3D Gaussians).
@@ -16,6 +18,24 @@ inline constexpr unsigned exposure_width = 12;
 
 /// Where row `channel` has its factor of channel k, and at 3 its b.
 WARPAGG_HD constexpr unsigned exposure_at(unsigned channel, unsigned k) { return 4 * channel + k; }
+
+using exposure = std::array<float, exposure_width>;
+inline constexpr exposure identity_exposure{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+/// Exposures as the values of the feature, and back.
+/// @{
+inline std::vector<float> flattened(const std::vector<exposure>& all) {
+    std::vector<float> values;
+    for (const exposure& e : all) values.insert(values.end(), e.begin(), e.end());
+    return values;
+}
+inline std::vector<exposure> exposures_from(const std::vector<float>& values) {
+    std::vector<exposure> all(values.size() / exposure_width);
+    for (std::size_t i = 0; i < all.size() * exposure_width; ++i)
+        all[i / exposure_width][i % exposure_width] = values[i];
+    return all;
+}
+/// @}
 
 /// A picture as its photo's exposure shows it: one index a pixel.
 struct expose {
@@ -44,7 +64,7 @@ struct expose_backward {
     const float* by_exposed;
     std::size_t pixels;
     float* by_picture;
-    picture_sums sums;  ///< of `warps(pixels)`
+    train::picture_sums sums;  ///< of `warps(pixels)`
 
     template <class W>
     static std::size_t warps(std::size_t pixels) {
@@ -89,7 +109,7 @@ struct expose_backward {
 
 /// Moves all exposures by the same, so that their mean changes nothing: else the scene could be darker and
 /// all of them brighter. One index a number.
-struct centre_exposures {
+struct normalize_exposures {
     float* exposures;
     std::size_t views;
 
@@ -101,4 +121,4 @@ struct centre_exposures {
     }
 };
 
-}  // namespace gs::train
+}  // namespace gs::features

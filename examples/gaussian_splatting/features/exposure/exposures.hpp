@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "../../device/device.hpp"
-#include "../../training/engine.hpp"
 #include "exposure_kernels.hpp"
 #include "../../optimize/adam_parameters.hpp"
 
-namespace gs::train {
+namespace gs::features {
 
 /// The exposures of photos, on the device. They can learn: by Adam, each by the steps that show its photo.
 template <device::device Device>
@@ -41,15 +40,15 @@ class exposures {
     const float* learn(std::size_t view, const float* picture, const float* by_exposed, std::size_t pixels,
                        float rate, const raster::list_room& room) {
         by_picture_.resize(3 * pixels);
-        const picture_sums sums = numbers_.sums(expose_backward::warps<warp>(pixels));
+        const train::picture_sums sums = numbers_.sums(expose_backward::warps<warp>(pixels));
         device_.for_each_warp(sums.warps, expose_backward{picture, numbers_.row(view), by_exposed, pixels,
                                                           by_picture_.data(), sums});
         numbers_.learn(view, sums, rate, room);
         return by_picture_.data();
     }
 
-    /// See `centre_exposures`.
-    void centre() { device_.for_each_index(exposure_width, centre_exposures{numbers_.row(0), count()}); }
+    /// See `normalize_exposures`.
+    void normalize() { device_.for_each_index(exposure_width, normalize_exposures{numbers_.row(0), count()}); }
 
     std::vector<exposure> get() const {
         std::vector<exposure> all(count());
@@ -61,8 +60,8 @@ class exposures {
 
   private:
     Device& device_;
-    learned_numbers<Device, exposure_width> numbers_;
+    train::learned_numbers<Device, exposure_width> numbers_;
     buffer<float> exposed_, by_picture_;
 };
 
-}  // namespace gs::train
+}  // namespace gs::features

@@ -9,16 +9,18 @@
 
 #include "../../core/parallel.hpp"
 #include "../../image/image.hpp"
-#include "../decide.hpp"
+#include "../../engine/engine.hpp"
+#include "../exposure/exposure_kernels.hpp"
+#include "direction.hpp"
 
-namespace gs::effects {
+namespace gs::features {
 namespace {
 
 float shown(float x) { return std::clamp(x, 0.0f, 1.0f); }
 
 /// A photo minus its picture, as a photo: four times as large, since bytes are coarse, around a grey of a
 /// half.
-void leave_residual(image& photo, const std::vector<float>& picture, const train::exposure& e,
+void leave_residual(image& photo, const std::vector<float>& picture, const exposure& e,
                     const std::array<float, 3>& background) {
     const std::vector<float> expected = over_background(photo, background.data());
     const std::size_t n = picture.size() / 3;
@@ -37,7 +39,7 @@ scene residual_of(const scene& of, train::engine& engine, const std::array<float
     residual.points = of.points;
     residual.train = of.train;
     for (view& v : residual.train) v.depths = {};
-    const std::vector<train::exposure> exposures = engine.exposures();
+    const std::vector<exposure> exposures = exposures_from(engine.feature("exposure").values());
     std::vector<std::vector<float>> pictures(static_cast<std::size_t>(omp_get_max_threads()));
     for (std::size_t first = 0; first < of.train.size(); first += pictures.size()) {
         const std::size_t count = std::min(pictures.size(), of.train.size() - first);
@@ -69,14 +71,17 @@ double change_above(int degree, train::engine& engine, const scene& of,
 
 }  // namespace
 
-band_review review_bands(train::engine& engine, const scene& scene, const std::array<float, 3>& background,
-                         int sh_degree) {
-    band_review review;
-    const evidence left =
-        scene.points.empty() ? evidence{} : gather_from_points(residual_of(scene, engine, background));
+sh_review revise_sh_degree(train::engine& engine, const scene& scene, const std::array<float, 3>& background,
+                           int sh_degree) {
+    sh_review review;
+    direction_statistics left;
+    if (!scene.points.empty()) {
+        const auto residual = residual_of(scene, engine, background);
+        left = measure_direction(scene_statistics(residual));
+    }
     review.unexplained = left.unexplained;
-    // Where too few points tell, no band is called for that is not there.
-    const int called_for = direction_is_known(left) ? effects::sh_degree(left) : 0;
+    // Where too few points tell, no band is added.
+    const int called_for = left.is_known() ? left.degree() : 0;
     review.sh_degree = std::max(sh_degree, called_for);
     if (sh_degree > 0) review.change = change_above(sh_degree - 1, engine, scene, background);
     if (called_for > 0) return review;
@@ -89,4 +94,4 @@ band_review review_bands(train::engine& engine, const scene& scene, const std::a
     return review;
 }
 
-}  // namespace gs::effects
+}  // namespace gs::features

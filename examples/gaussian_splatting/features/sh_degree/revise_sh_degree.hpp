@@ -6,31 +6,34 @@
 #include <optional>
 
 #include "../../scene/scene.hpp"
-#include "../../training/engine.hpp"
 
-namespace gs::effects {
+namespace gs::train {
+class engine;
+}
 
-/// What a model in training says of the degree of spherical harmonics that its colours need.
-struct band_review {
-    int sh_degree = 0;  ///< that they need
-    /// By degree, what is unexplained of what is left of the photos, see `evidence`; zeros where too few
-    /// points tell.
+namespace gs::features {
+
+/// What a model in training says about the SH degree that its colors need.
+struct sh_review {
+    int sh_degree = 0;
+    /// By degree, what is unexplained of the difference between photos and renders: see
+    /// `direction_statistics::unexplained`.
     std::array<double, 4> unexplained{};
-    /// By which pictures would change without the highest band, as a root mean square; none at degree 0.
+    /// Root mean square by which renders would change without the highest band; empty at degree 0.
     std::optional<double> change;
 };
 
-/// A band that changes pictures by less is not needed: a picture at 35 dB loses 0.014 dB by that.
+/// A band that changes renders by less is not needed: a render at 35 dB loses 0.014 dB by that.
 inline constexpr double band_change_limit = 0.001;
 
-/// By what training views may change at most, as a root mean square, when single Gaussians lose their bands:
-/// see `train::engine::drop_bands`. Costs held-out views less than 0.02 dB (docs/effects.md).
-inline constexpr double single_band_change_limit = 0.00025;
+/// By how much training views may change, as a root mean square, when single Gaussians lose their bands: see
+/// `train::sh_degree_state::prune`.
+inline constexpr double prune_change_limit = 0.00025;
 
-/// Bands are needed where what the model leaves of the photos depends on direction, and those of the model's
-/// that change the pictures of eight training views. Draws the training views once, and these eight again by
-/// band. Precondition: `engine` has the scene's views, and a model of this degree.
-band_review review_bands(train::engine& engine, const scene& scene, const std::array<float, 3>& background,
-                         int sh_degree);
+/// Bands are needed if the difference between photos and renders depends on direction, or if they change the
+/// renders of eight training views. Renders the training views once, and these eight again for each band.
+/// Precondition: `engine` has the scene's views, and a model of this degree.
+sh_review revise_sh_degree(train::engine& engine, const scene& scene, const std::array<float, 3>& background,
+                           int sh_degree);
 
-}  // namespace gs::effects
+}  // namespace gs::features

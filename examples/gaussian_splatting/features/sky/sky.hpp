@@ -9,7 +9,7 @@
 #include "../../optimize/adam_parameters.hpp"
 #include "sky_kernels.hpp"
 
-namespace gs::train {
+namespace gs::features {
 
 /// The sky of a model on the device, if it has one. It can learn.
 template <device::device Device>
@@ -23,11 +23,11 @@ class sky {
     /// `sky_width` coefficients, or none.
     void set(const std::vector<float>& coefficients) { numbers_.set(coefficients); }
     std::vector<float> get() const { return numbers_.get(); }
-    bool is_there() const { return numbers_.rows() > 0; }
+    bool exists() const { return numbers_.rows() > 0; }
 
     /// What a camera sees of it: three planes on the device, or null without a sky.
     const float* draw(const camera& camera) {
-        if (!is_there()) return nullptr;
+        if (!exists()) return nullptr;
         raster::require_drawable(camera);
         planes_.resize(3 * static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
         raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
@@ -40,7 +40,7 @@ class sky {
     /// From the gradient by a picture before what `draw` has drawn last.
     void learn(const camera& camera, const float* transmittance, const float* by_picture, float rate,
                const raster::list_room& room) {
-        const picture_sums sums = numbers_.sums(patches(camera));
+        const train::picture_sums sums = numbers_.sums(patches(camera));
         raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
             device_.for_each_warp(sums.warps, sky_backward<warp, Fisheye>{raster::for_device<real>(camera),
                                                                           transmittance, by_picture, sums});
@@ -54,8 +54,8 @@ class sky {
     }
 
     Device& device_;
-    learned_numbers<Device, sky_width> numbers_;
+    train::learned_numbers<Device, sky_width> numbers_;
     typename Device::template buffer<float> planes_;
 };
 
-}  // namespace gs::train
+}  // namespace gs::features

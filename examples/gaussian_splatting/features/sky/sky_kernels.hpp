@@ -7,10 +7,10 @@
 
 #include "../../model/gaussians.hpp"
 #include "../../model/spherical_harmonics.hpp"
-#include "../lens/fisheye.hpp"
+#include "../../render/geometry/fisheye.hpp"
 #include "../../optimize/ordered_sums.hpp"
 
-namespace gs::train {
+namespace gs::features {
 
 /// Of a sky. Its colour in a direction is 0.5 + the sum of coefficients times harmonics, as a Gaussian's, but
 /// not held to any range.
@@ -90,7 +90,7 @@ struct sky_backward {
     raster::device_camera<real> camera;
     const float* transmittance;
     const float* by_picture;  ///< three planes
-    picture_sums sums;        ///< of `sky_patch::count` warps
+    train::picture_sums sums;        ///< of `sky_patch::count` warps
 
     WARPAGG_EXEC_CHECK_DISABLE
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
@@ -117,4 +117,4 @@ struct sky_backward {
     }
 };
 
-}  // namespace gs::train
+}  // namespace gs::features

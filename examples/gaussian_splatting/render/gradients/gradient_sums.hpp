@@ -8,7 +8,7 @@
 
 #include "../../core/error.hpp"
 #include "../../device/device.hpp"
-#include "../../features/depth/depth_splats.hpp"
+#include "../blend/depth_splats.hpp"
 #include "accumulator_set.hpp"
 
 namespace gs::raster {

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "../../model/spherical_harmonics.hpp"
-#include "../../features/antialiasing/antialiasing.hpp"
+#include "antialiasing.hpp"
 #include "../geometry/effect_set.hpp"
 #include "gaussian_row.hpp"
 #include "geometry.hpp"

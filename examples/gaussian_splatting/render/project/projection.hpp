@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "../geometry/effect_set.hpp"
-#include "../../features/lens/fisheye.hpp"
+#include "../geometry/fisheye.hpp"
 #include "../geometry/pinhole.hpp"
 
 namespace gs::raster {

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "../densify/strategy_settings.hpp"
+#include "../densify/timetable.hpp"
+#include "../render/gradients/accumulator.hpp"
+#include "step_plan.hpp"
+
+namespace gs::train {
+
+/// What stays the same for all steps of a training run.
+struct training_setup {
+    training_facts facts;
+    strategy_settings densify;
+    std::string loss = "l1_ssim";
+    /// The features that are on, by name, with the values that they begin from.
+    std::map<std::string, std::vector<float>, std::less<>> features;
+
+    bool has(std::string_view feature) const { return features.contains(feature); }
+};
+
+}  // namespace gs::train

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "../feature.hpp"
+
+namespace gs::features {
+
+/// The 2D Mip filter with opacity compensation. Its kernels are in antialiasing.hpp; the model's flag
+/// `gaussians::antialiased` switches them on.
+class antialiasing_feature final : public feature {
+  public:
+    std::string_view name() const override { return "antialiasing"; }
+    std::string_view costs_and_gains() const override {
+        return "it improves views from distances that no photo has, and costs a little quality if all photos "
+               "are taken from alike distances";
+    }
+    finding analyze(const scene_statistics& statistics) const override;
+    void prepare(const selected_feature&, scene&, gaussians&) const override;
+};
+
+}  // namespace gs::features

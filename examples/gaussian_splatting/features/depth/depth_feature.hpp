@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "../feature.hpp"
+#include "depth_on_device.hpp"
+
+namespace gs::features {
+
+/// Depth maps of the photos as a second target. Values: scale and offset of each training photo's map, from
+/// its values to inverse depths; a scale of zero means that the photo's map is not used.
+class depth_feature final : public feature {
+  public:
+    template <class Device>
+    using on_device = depth_on_device<Device>;
+
+    std::string_view name() const override { return "depth"; }
+    std::string_view costs_and_gains() const override {
+        return "it helps where photos and points are few, and a step with a depth map takes up to twice the "
+               "time";
+    }
+    finding analyze(const scene_statistics& statistics) const override;
+    std::vector<float> neutral_values(const scene& scene) const override;
+    std::string obstacle(const scene& scene, const std::vector<float>& values) const override;
+    /// Removes depth maps that no step uses.
+    void prepare(const selected_feature& selected, scene& scene, gaussians&) const override;
+};
+
+}  // namespace gs::features

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "../../losses/inverse_depth/depth_gradient.hpp"
+#include "../device_feature.hpp"
+
+namespace gs::features {
+
+template <class Renderer>
+class depth_on_device final : public device_feature<Renderer> {
+    using step = features::step<Renderer>;
+    template <class T>
+    using buffer = typename Renderer::template buffer<T>;
+
+  public:
+    explicit depth_on_device(typename Renderer::device_type& device) : device_(device) {}
+
+    void begin(const train::training_setup& setup) override {
+        iterations_ = setup.facts.iterations;
+        if (!setup.has("depth")) fits_.clear();
+    }
+    void set_views(const std::vector<std::vector<view>>& levels) override {
+        fits_.clear();
+        std::size_t values = 0;
+        for (const auto& views : levels)
+            for (const view& v : views) values += v.depths.values.size();
+        maps_.resize(values);
+        first_.assign(levels.size(), {});
+        values = 0;
+        for (std::size_t level = 0; level < levels.size(); ++level)
+            for (const view& v : levels[level]) {
+                first_[level].push_back(v.depths.is_there() ? values : none);
+                device_.upload(maps_.data() + values, v.depths.values.data(), v.depths.values.size());
+                values += v.depths.values.size();
+            }
+    }
+
+    void set_values(const std::vector<float>& values) override {
+        fits_.clear();
+        for (std::size_t i = 0; i + 1 < values.size(); i += 2) fits_.push_back({values[i], values[i + 1]});
+    }
+    std::vector<float> values() const override {
+        std::vector<float> all;
+        for (const depth_fit& fit : fits_) all.insert(all.end(), {fit.scale, fit.offset});
+        return all;
+    }
+
+    std::size_t memory_key(const step& s) const override { return has_target(s) ? 1 : 0; }
+    float gradient_scale(const step& s) const override { return has_target(s) ? pixel_weight(s) : 0; }
+    void before_blend(const step& s) override {
+        if (!has_target(s)) return;
+        const std::size_t pixels = s.pixels();
+        gradient_.resize(3 * pixels);
+        s.renderer.blend_depths();
+        device_.for_each_index(
+            pixels, train::depth_gradient{s.renderer.picture(), maps_.data() + first_[s.level][s.plan.view],
+                                          fits_[s.plan.view],
+                                          pixel_weight(s), pixels, gradient_.data()});
+        s.renderer.backward_depths(gradient_.data(), s.gradient_scale, s.accumulate);
+    }
+
+  private:
+    static constexpr std::size_t none = ~std::size_t{0};
+
+    bool has_target(const step& s) const {
+        return !fits_.empty() && fits_[s.plan.view].scale > 0 && first_[s.level][s.plan.view] != none;
+    }
+    /// Of the mean error of inverse depths, in the internal frame. It falls from 1 to a hundredth, as in the
+    /// implementation of Kerbl et al. 2024, whose unit is that of structure from motion.
+    float weight_at(int iteration) const {
+        return static_cast<float>(std::pow(0.01, static_cast<double>(iteration) / iterations_));
+    }
+
+    float pixel_weight(const step& s) const {
+        return 3 * weight_at(s.plan.iteration) / static_cast<float>(3 * s.pixels());
+    }
+
+    typename Renderer::device_type& device_;
+    buffer<std::uint16_t> maps_;
+    buffer<float> gradient_;
+    std::vector<std::vector<std::size_t>> first_;  ///< value in `maps_`, by level and view
+    std::vector<depth_fit> fits_;                  ///< one per training view if the feature is on
+    int iterations_ = 7000;
+};
+
+}  // namespace gs::features

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "../core/error.hpp"
+#include "device_feature.hpp"
+#include "table.hpp"
+
+namespace gs::features {
+
+/// The parts of all features on a device. Calls each hook of `device_feature` for all of them.
+template <class Renderer>
+class device_features {
+  public:
+    using step = features::step<Renderer>;
+    using part = device_feature<Renderer>;
+
+    explicit device_features(typename Renderer::device_type& device) {
+        [&]<class... Features>(std::tuple<Features...>*) {
+            (add<Features>(device), ...);
+        }(static_cast<table*>(nullptr));
+    }
+    /// Adds a feature that is not in the table.
+    void add(std::string name, std::unique_ptr<part> feature) {
+        parts_.emplace_back(std::move(name), std::move(feature));
+    }
+
+    part& named(std::string_view name) {
+        const auto found = std::ranges::find(parts_, name, &named_part::first);
+        if (found == parts_.end())
+            throw error("the feature '" + std::string(name) + "' has no part on the device");
+        return *found->second;
+    }
+
+    void begin(const train::training_setup& setup) {
+        for (auto& [name, f] : parts_) {
+            f->begin(setup);
+            if (const auto values = setup.features.find(name); values != setup.features.end())
+                f->set_values(values->second);
+        }
+    }
+    void set_views(const std::vector<std::vector<view>>& levels) {
+        for (auto& [name, f] : parts_) f->set_views(levels);
+    }
+    void set_model(const gaussians& model) {
+        for (auto& [name, f] : parts_) f->set_model(model);
+    }
+    void get_model(gaussians& model) {
+        for (auto& [name, f] : parts_) f->get_model(model);
+    }
+
+    void add_memory_keys(const step& s, device::graph_key& key) const {
+        for (const auto& [name, f] : parts_) key.push_back(f->memory_key(s));
+    }
+    float gradient_scale(const step& s) const {
+        float largest = 0;
+        for (const auto& [name, f] : parts_) largest = std::max(largest, f->gradient_scale(s));
+        return largest;
+    }
+    void before_blend(const step& s) {
+        for (auto& [name, f] : parts_) f->before_blend(s);
+    }
+    /// That of the first feature that has one, or null.
+    const float* background(const camera& camera) {
+        for (auto& [name, f] : parts_)
+            if (const float* planes = f->background(camera)) return planes;
+        return nullptr;
+    }
+    const float* show(const step& s, const float* render) {
+        for (auto& [name, f] : parts_) render = f->show(s, render);
+        return render;
+    }
+    const float* backward(const step& s, const float* gradient) {
+        for (auto f = parts_.rbegin(); f != parts_.rend(); ++f) gradient = f->second->backward(s, gradient);
+        return gradient;
+    }
+    void learn(const step& s, const float* render_gradient) {
+        for (auto& [name, f] : parts_) f->learn(s, render_gradient);
+    }
+    const float* show_held_out(std::size_t view, const float* render, std::size_t pixels) {
+        for (auto& [name, f] : parts_) render = f->show_held_out(view, render, pixels);
+        return render;
+    }
+
+  private:
+    using named_part = std::pair<std::string, std::unique_ptr<part>>;
+
+    template <class Feature>
+    void add(typename Renderer::device_type& device) {
+        if constexpr (requires { typename Feature::template on_device<Renderer>; })
+            add(std::string(Feature().name()),
+                std::make_unique<typename Feature::template on_device<Renderer>>(device));
+    }
+
+    std::vector<named_part> parts_;
+};
+
+}  // namespace gs::features

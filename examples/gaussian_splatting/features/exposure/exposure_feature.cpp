@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "exposure_feature.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "../../core/atomic_file_write.hpp"
+#include "../../core/median.hpp"
+#include "../../training/training.hpp"
+#include "../text.hpp"
+#include "held_out_exposures.hpp"
+
+namespace gs::features {
+namespace {
+
+constexpr double least_spread = 0.1;  ///< log2 of a factor, root mean square over the photos
+constexpr double least_errors = 3;    ///< times the standard error of a photo's
+
+std::vector<float> values_of(const photo_brightness& brightness, std::size_t photos) {
+    std::vector<exposure> all(photos, identity_exposure);
+    for (std::size_t v = 0; v < brightness.log2.size(); ++v)
+        for (std::size_t c = 0; c < 3; ++c)
+            all[v][exposure_at(c, c)] = static_cast<float>(std::exp2(brightness.log2[v]));
+    return flattened(all);
+}
+
+nlohmann::ordered_json to_json(const std::vector<view>& views, const std::vector<exposure>& exposures) {
+    auto all = nlohmann::ordered_json::object();
+    for (std::size_t v = 0; v < exposures.size(); ++v) {
+        const exposure& e = exposures[v];
+        for (std::size_t row = 0; row < 3; ++row)
+            all[views[v].name].push_back({e[4 * row], e[4 * row + 1], e[4 * row + 2], e[4 * row + 3]});
+    }
+    return all;
+}
+
+}  // namespace
+
+finding exposure_feature::analyze(const scene_statistics& statistics) const {
+    const std::size_t photos = statistics.scene().train.size(), points = statistics.smooth_points().size();
+    const photo_brightness& brightness = statistics.brightness();
+    std::vector<float> values = values_of(brightness, photos);
+    if (points < enough_points)
+        return {{}, too_few_points(points, "in smooth parts"), "off", std::move(values)};
+    std::vector<double> errors;
+    double square = 0;
+    for (std::size_t v = 0; v < photos; ++v) {
+        if (brightness.error[v] == 0) continue;
+        errors.push_back(brightness.error[v]);
+        square += brightness.log2[v] * brightness.log2[v];
+    }
+    const double spread = errors.empty() ? 0 : std::sqrt(square / static_cast<double>(errors.size()));
+    const double error = median(errors);
+    const bool varies = spread >= least_spread && spread >= least_errors * error;
+    const auto percent = [](double log2) { return 100 * (std::exp2(log2) - 1); };
+    return {varies,
+            text("photos have the same points %.1f %% brighter or darker, measured to %.1f %%",
+                 percent(spread), percent(error)),
+            varies ? "on" : "off", std::move(values)};
+}
+
+std::vector<float> exposure_feature::neutral_values(const scene& scene) const {
+    return values_of({}, scene.train.size());
+}
+
+void exposure_feature::schedule(const selected_feature& selected, train::training& training) const {
+    if (!selected.on) return;
+    const int views = static_cast<int>(training.scene().train.size());
+    const int last = training.options().schedule.iterations;
+    training.add({train::phase::upkeep, "normalize exposures",
+                  [=](int iteration) { return iteration % views == 0 || iteration == last; },
+                  [&training](int) { training.engine().feature("exposure").normalize(); }});
+}
+
+void exposure_feature::before_evaluation(train::engine& engine, const scene& scene) const {
+    auto& state = engine.feature(name());
+    state.set_held_out_values(flattened(held_out_exposures(scene, exposures_from(state.values()))));
+}
+
+void exposure_feature::write_results(const selected_feature& selected, train::engine& engine,
+                                     const scene& scene, const std::filesystem::path& folder) const {
+    const auto file = folder / "exposures.json";
+    if (!selected.on) {
+        std::filesystem::remove(file);
+        return;
+    }
+    const auto of_training = exposures_from(engine.feature(name()).values());
+    const nlohmann::ordered_json all{{"train", to_json(scene.train, of_training)},
+                                     {"test", to_json(scene.test, held_out_exposures(scene, of_training))}};
+    write_aside(file, [&](std::ostream& out) { out << all.dump(2) << '\n'; });
+}
+
+}  // namespace gs::features

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "../device_feature.hpp"
+#include "exposures.hpp"
+
+namespace gs::features {
+
+template <class Renderer>
+class exposure_on_device final : public device_feature<Renderer> {
+    using step = features::step<Renderer>;
+
+  public:
+    explicit exposure_on_device(typename Renderer::device_type& device)
+        : of_training_(device), of_held_out_(device) {}
+
+    void begin(const train::training_setup& setup) override {
+        iterations_ = setup.facts.iterations;
+        views_ = static_cast<std::size_t>(setup.facts.views);
+        learns_ = setup.has("exposure");
+    }
+    void set_views(const std::vector<std::vector<view>>& levels) override {
+        learns_ = false;
+        of_training_.set(std::vector<exposure>(levels[0].size(), identity_exposure));
+        of_held_out_.set({});
+    }
+
+    void set_values(const std::vector<float>& values) override { of_training_.set(exposures_from(values)); }
+    std::vector<float> values() const override { return flattened(of_training_.get()); }
+    void set_held_out_values(const std::vector<float>& values) override {
+        of_held_out_.set(exposures_from(values));
+    }
+    void normalize() override { of_training_.normalize(); }
+
+    std::size_t memory_key(const step&) const override { return learns_ ? 1 : 0; }
+    const float* show(const step& s, const float* render) override {
+        return learns_ ? of_training_.show(s.plan.view, render, s.pixels()) : render;
+    }
+    const float* backward(const step& s, const float* gradient) override {
+        if (!learns_) return gradient;
+        return of_training_.learn(s.plan.view, s.renderer.picture(), gradient, s.pixels(),
+                                  rate_at(s.plan.iteration), s.renderer.room());
+    }
+    const float* show_held_out(std::size_t view, const float* render, std::size_t pixels) override {
+        return of_held_out_.count() > 0 ? of_held_out_.show(view, render, pixels) : render;
+    }
+
+  private:
+    /// Adam's learning rate, which falls to a tenth. Each exposure can come as far as 0.6, however few steps
+    /// show its photo, unless those are fewer than 30. In Kerbl et al. 2024's implementation the rate falls
+    /// from 0.01.
+    float rate_at(int iteration) const {
+        const double first =
+            std::min(0.05, 1.5 * static_cast<double>(views_) / static_cast<double>(iterations_));
+        return static_cast<float>(first * std::pow(0.1, static_cast<double>(iteration) / iterations_));
+    }
+
+    exposures<typename Renderer::device_type> of_training_, of_held_out_;
+    int iterations_ = 1;
+    std::size_t views_ = 0;
+    bool learns_ = false;
+};
+
+}  // namespace gs::features

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "../feature.hpp"
+
+namespace gs::features {
+
+/// Fisheye lenses, which the renderer draws in place. The cameras say which views have one.
+class lens_feature final : public feature {
+  public:
+    std::string_view name() const override { return "lens"; }
+    std::string_view costs_and_gains() const override {
+        return "it makes photos as wide as a hemisphere usable, and costs a little time";
+    }
+    bool is_selectable() const override { return false; }
+    finding analyze(const scene_statistics& statistics) const override;
+};
+
+}  // namespace gs::features

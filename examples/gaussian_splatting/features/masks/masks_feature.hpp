@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "../feature.hpp"
+
+namespace gs::features {
+
+/// Pixels that a mask leaves out of a photo. The readers apply masks and the losses skip such pixels.
+class masks_feature final : public feature {
+  public:
+    std::string_view name() const override { return "masks"; }
+    std::string_view costs_and_gains() const override {
+        return "they keep what moved between the photos out of the scene, and cost no time";
+    }
+    finding analyze(const scene_statistics& statistics) const override;
+    std::string obstacle(const scene& scene, const std::vector<float>&) const override;
+};
+
+}  // namespace gs::features

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "feature.hpp"
+
+namespace gs::features {
+
+/// What `--effects` specifies.
+struct selection {
+    enum class base {
+        recommended,  ///< what the scene calls for
+        all,
+        none
+    };
+    std::string text = "auto";
+    base from = base::recommended;
+    std::map<std::string, bool, std::less<>> explicit_choices;
+
+    std::optional<bool> explicit_choice(std::string_view name) const;
+    /// Whether a feature is not ruled out. Decides whether masks or depth maps are read.
+    bool allows(std::string_view name) const;
+};
+
+/// Parses "auto", "all", "none", a list of features, or any of the first three followed by features to add or
+/// remove: "auto,+exposure,-direction", or "+exposure" for short. Throws `error` for anything else.
+selection parse_selection(const std::string& text);
+
+/// The features of one training run.
+class feature_set {
+  public:
+    feature_set() = default;
+    explicit feature_set(std::vector<selected_feature> all) : all_(std::move(all)) {}
+
+    const std::vector<selected_feature>& all() const { return all_; }
+    bool is_on(std::string_view name) const;
+    /// Its values; an empty list if it is off.
+    std::vector<float> values_if_on(std::string_view name) const;
+
+    /// Calls the hooks of every feature.
+    /// @{
+    void prepare(scene& scene, gaussians& model) const;
+    void schedule(train::training& training) const;
+    void before_evaluation(train::engine& engine, const scene& scene) const;
+    void write_results(train::engine& engine, const scene& scene, const std::filesystem::path& folder) const;
+    /// @}
+
+  private:
+    std::vector<selected_feature> all_;
+};
+
+/// Decides which selectable features a training simulates. `scene` has masks and depth maps if the selection
+/// allows them. `explicit_features` replace the decision about those features, as --sh-degree does. Looks at
+/// the photos only for features that depend on them.
+feature_set resolve(const scene& scene, const selection& selection,
+                    const std::vector<selected_feature>& explicit_features = {});
+
+}  // namespace gs::features

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "direction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "../../core/median.hpp"
+#include "../../core/parallel.hpp"
+#include "../../model/spherical_harmonics.hpp"
+
+namespace gs::features {
+namespace {
+
+constexpr double ridges[] = {0.3, 1, 3, 10};  ///< on all but the constant, in units of an observation
+constexpr float one_size = 1.6f;
+constexpr double outlier = 4.0;  ///< in standard deviations: something else was in front
+
+constexpr std::size_t enough_points = 50, some_points = 10;
+constexpr double least_share = 0.03;       ///< of the unexplained mean square, for each further degree
+constexpr double least_amplitude = 0.002;  ///< and this root mean square, of full brightness
+
+/// Of a point's observations the most that have it about as large: from another distance its surroundings
+/// blur into it.
+void keep_one_size(std::vector<observation>& seen) {
+    std::ranges::sort(seen, {}, [](const observation& o) { return std::pair(o.footprint, o.view); });
+    std::size_t first = 0, most = 0;
+    for (std::size_t i = 0, end = 0; i < seen.size(); ++i) {
+        while (end < seen.size() && seen[end].footprint <= one_size * seen[i].footprint) ++end;
+        if (end - i > most) {
+            most = end - i;
+            first = i;
+        }
+    }
+    seen = {seen.begin() + static_cast<std::ptrdiff_t>(first),
+            seen.begin() + static_cast<std::ptrdiff_t>(first + most)};
+}
+
+/// Squares of what is left of each observation by degree 0 to 3, summed over its channels; observations of
+/// one point.
+void add_residuals(const std::vector<observation>& seen, double ridge,
+                   std::vector<std::array<double, 4>>& residuals) {
+    const std::size_t n = seen.size();
+    glm::dvec3 mean(0);
+    for (const observation& o : seen) mean += glm::dvec3(o.colour) / double(n);
+    std::vector<std::array<double, 16>> rows(n);
+    std::array<double, 16> centre{};
+    for (std::size_t i = 0; i < n; ++i) {
+        sh_basis<double>(3, glm::dvec3(seen[i].direction), rows[i].data());
+        for (std::size_t k = 0; k < 16; ++k) centre[k] += rows[i][k] / double(n);
+    }
+    // About their means, so that the constant is not held back.
+    for (auto& row : rows)
+        for (std::size_t k = 0; k < 16; ++k) row[k] -= centre[k];
+    std::vector<std::array<double, 4>> left(n);
+    for (int degree = 0; degree <= 3; ++degree) {
+        const auto size = static_cast<std::size_t>((degree + 1) * (degree + 1) - 1);
+        // The normal equations' Cholesky factor, bands 1 to `degree`.
+        double factor[15][15] = {};
+        for (std::size_t a = 0; a < size; ++a)
+            for (std::size_t b = 0; b <= a; ++b) {
+                double sum = a == b ? ridge : 0;
+                for (const auto& row : rows) sum += row[a + 1] * row[b + 1];
+                for (std::size_t k = 0; k < b; ++k) sum -= factor[a][k] * factor[b][k];
+                factor[a][b] = a == b ? std::sqrt(sum) : sum / factor[b][b];
+            }
+        // Each row by the inverse factor: the hat matrix is W W^T, besides 1/n of the constant.
+        std::vector<std::array<double, 15>> whitened(n);
+        std::array<glm::dvec3, 15> projected{};
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t a = 0; a < size; ++a) {
+                double sum = rows[i][a + 1];
+                for (std::size_t k = 0; k < a; ++k) sum -= factor[a][k] * whitened[i][k];
+                whitened[i][a] = sum / factor[a][a];
+                projected[a] += whitened[i][a] * (glm::dvec3(seen[i].colour) - mean);
+            }
+        for (std::size_t i = 0; i < n; ++i) {
+            double own = 1 / double(n);  // what an observation adds to its own prediction
+            glm::dvec3 rest = glm::dvec3(seen[i].colour) - mean;
+            for (std::size_t a = 0; a < size; ++a) {
+                own += whitened[i][a] * whitened[i][a];
+                rest -= whitened[i][a] * projected[a];
+            }
+            rest /= 1 - own;
+            left[i][static_cast<std::size_t>(degree)] = glm::dot(rest, rest) / 3;
+        }
+    }
+    residuals.insert(residuals.end(), left.begin(), left.end());
+}
+
+std::array<double, 4> unexplained_with(const observed_points& points, double ridge) {
+    std::vector<std::vector<std::array<double, 4>>> residuals(points.size());
+    for_each_in_parallel(points.size(), [&](std::size_t p) {
+        if (points[p].size() >= scene_statistics::least_photos_of_point) add_residuals(points[p], ridge, residuals[p]);
+    });
+    std::vector<double> sizes;
+    for (const auto& of_point : residuals)
+        for (const auto& r : of_point) sizes.push_back(r[0]);
+    const double limit = outlier * outlier * 1.4826 * 1.4826 * median(sizes);
+    std::array<double, 4> sum{};
+    for (const auto& of_point : residuals)
+        for (const auto& r : of_point)
+            for (std::size_t d = 0; d < 4; ++d) sum[d] += std::min(r[d], limit) / double(sizes.size());
+    return sum;
+}
+
+}  // namespace
+
+bool direction_statistics::is_known() const { return points >= enough_points; }
+
+int direction_statistics::degree() const {
+    if (!is_known()) return has_points && points < some_points ? 0 : 3;
+    std::size_t degree = 0;
+    for (std::size_t d = 1; d < unexplained.size(); ++d) {
+        const double gone = unexplained[degree] - unexplained[d];
+        if (gone >= least_share * unexplained[0] && gone >= least_amplitude * least_amplitude) degree = d;
+    }
+    return static_cast<int>(degree);
+}
+
+std::array<double, 4> unexplained_by_direction(const observed_points& points) {
+    std::array<double, 4> least;
+    least.fill(std::numeric_limits<double>::infinity());
+    for (const double ridge : ridges) {
+        const std::array<double, 4> by_ridge = unexplained_with(points, ridge);
+        for (std::size_t d = 0; d < 4; ++d) least[d] = std::min(least[d], by_ridge[d]);
+    }
+    return least;
+}
+
+direction_statistics measure_direction(const scene_statistics& statistics) {
+    direction_statistics found;
+    found.has_points = !statistics.scene().points.empty();
+    observed_points points = statistics.smooth_points();
+    if (points.empty()) return found;
+    const photo_brightness& brightness = statistics.brightness();
+    for (auto& seen : points) {
+        std::erase_if(seen, [&](const observation& o) { return brightness.error[o.view] == 0; });
+        keep_one_size(seen);
+        for (observation& o : seen) o.colour *= static_cast<float>(std::exp2(-brightness.log2[o.view]));
+    }
+    std::erase_if(points,
+                  [](const auto& seen) { return seen.size() < scene_statistics::least_photos_of_point; });
+    found.points = points.size();
+    if (!points.empty()) found.unexplained = unexplained_by_direction(points);
+    return found;
+}
+
+}  // namespace gs::features

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "sh_degree_feature.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "../../engine/sh_degree_state.hpp"
+#include "../../training/training.hpp"
+#include "../text.hpp"
+#include "direction.hpp"
+#include "revise_sh_degree.hpp"
+
+namespace gs::features {
+namespace {
+
+train::sh_degree_state& state_of(train::engine& engine) {
+    return dynamic_cast<train::sh_degree_state&>(engine.feature("direction"));
+}
+
+/// Revises the degree by what the model leaves of the photos, and reports the review.
+int revise(train::training& training, int sh_degree) {
+    const sh_review review = revise_sh_degree(training.engine(), training.scene(),
+                                              training.options().background.colour, sh_degree);
+    auto& report = training.result().feature_reports["direction"];
+    report["unexplained_half_way"] = review.unexplained;
+    if (review.change) report["change_without_highest_band"] = *review.change;
+    return review.sh_degree;
+}
+
+}  // namespace
+
+finding sh_degree_feature::analyze(const scene_statistics& statistics) const {
+    const direction_statistics found = measure_direction(statistics);
+    const int degree = found.degree();
+    const std::string choice = "--sh-degree " + std::to_string(degree);
+    std::vector<float> values{static_cast<float>(degree), 1};
+    if (!found.is_known())
+        return {{}, too_few_points(found.points, "about as large in smooth parts"), choice, std::move(values),
+                degree > 0};
+    const auto up_to = static_cast<std::size_t>(degree == 0 ? 3 : degree);
+    return {degree > 0,
+            text("degree %zu brings what photos of a point differ by from %.2f %% down to %.2f %%", up_to,
+                 100 * std::sqrt(found.unexplained[0]), 100 * std::sqrt(found.unexplained[up_to])),
+            choice, std::move(values)};
+}
+
+void sh_degree_feature::prepare(const selected_feature& selected, scene&, gaussians& model) const {
+    model.sh_degree = first_sh_degree(selected);
+    model.sh_rest.assign(model.count() * static_cast<std::size_t>(model.rest_width()), 0.0f);
+}
+
+void sh_degree_feature::schedule(const selected_feature& selected, train::training& training) const {
+    const int degree = first_sh_degree(selected);
+    training.schedule().sh_degree = degree;
+    if (selected.values.size() < 2 || selected.values[1] == 0) return;
+    training.result().feature_reports["direction"]["sh_degree_at_first"] = degree;
+    schedule_revision(training, [&training](int so_far) { return revise(training, so_far); },
+                      prune_change_limit);
+}
+
+selected_feature explicit_sh_degree(int degree) {
+    return {"direction", degree > 0, "--sh-degree " + std::to_string(degree), {static_cast<float>(degree), 0}};
+}
+
+int first_sh_degree(const selected_feature& selected) {
+    return selected.values.empty() ? 0 : static_cast<int>(selected.values[0]);
+}
+
+void schedule_revision(train::training& training, std::function<int(int sh_degree)> revise,
+                       std::optional<double> prune_change) {
+    train::schedule& schedule = training.schedule();
+    const int revise_after = schedule.bands_are_known_after();
+    const auto prune_after =
+        std::make_shared<int>(std::max(revise_after, training.timetable().count_is_final_after()));
+    training.add({train::phase::restructure, "revise the SH degree",
+                  [=](int iteration) { return iteration == revise_after; },
+                  [=, &training, &schedule](int iteration) {
+                      const int before = schedule.sh_degree;
+                      schedule.sh_degree = revise(before);
+                      state_of(training.engine()).set_degree(schedule.sh_degree);
+                      training.result().feature_reports["direction"]["on"] = schedule.sh_degree > 0;
+                      if (schedule.sh_degree > before)  // new bands need time to learn
+                          *prune_after = std::max(*prune_after, iteration + schedule.sh_degree_interval);
+                  }});
+    if (!prune_change) return;
+    training.add({train::phase::restructure, "prune SH bands",
+                  [=, &schedule](int iteration) {
+                      return iteration == *prune_after && iteration < schedule.iterations;
+                  },
+                  [=, &training, &schedule](int) {
+                      if (schedule.sh_degree == 0) return;
+                      const std::size_t with_sh = state_of(training.engine()).prune(*prune_change);
+                      if (with_sh < training.engine().count())
+                          training.result().feature_reports["direction"]["gaussians_with_bands"] = with_sh;
+                  }});
+}
+
+}  // namespace gs::features

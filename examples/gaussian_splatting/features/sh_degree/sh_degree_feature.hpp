@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "../feature.hpp"
+
+namespace gs::features {
+
+/// View-dependent color by spherical harmonics. Values: the degree to begin with, and 1 if training revises it
+/// half-way.
+class sh_degree_feature final : public feature {
+  public:
+    std::string_view name() const override { return "direction"; }
+    std::string_view costs_and_gains() const override {
+        return "it helps on glossy scenes, can overfit on noisy matte ones, and a Gaussian of degree 3 takes "
+               "four times the memory of one without";
+    }
+    finding analyze(const scene_statistics& statistics) const override;
+    std::vector<float> neutral_values(const scene&) const override { return {3, 0}; }
+    void prepare(const selected_feature& selected, scene&, gaussians& model) const override;
+    void schedule(const selected_feature& selected, train::training& training) const override;
+};
+
+/// What `--sh-degree` specifies.
+selected_feature explicit_sh_degree(int degree);
+
+/// The degree that training begins with.
+int first_sh_degree(const selected_feature& selected);
+
+/// Calls `revise` once, half-way, with the degree so far; colors have the degree that it returns from then
+/// on. If `prune_change` is set, frees the bands of Gaussians that hardly need them once the number of
+/// Gaussians is final: see `sh_degree_state::prune`.
+void schedule_revision(train::training& training, std::function<int(int sh_degree)> revise,
+                       std::optional<double> prune_change);
+
+}  // namespace gs::features

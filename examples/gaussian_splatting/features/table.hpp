@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <tuple>
+
+#include "antialiasing/antialiasing_feature.hpp"
+#include "background/background_feature.hpp"
+#include "depth/depth_feature.hpp"
+#include "exposure/exposure_feature.hpp"
+#include "lens/lens_feature.hpp"
+#include "masks/masks_feature.hpp"
+#include "sh_degree/sh_degree_feature.hpp"
+#include "sky/sky_feature.hpp"
+
+namespace gs::features {
+
+/// All features: the order is that of `inspect`, and of the steps' hooks. A feature with a part on the device
+/// names it `on_device`.
+using table = std::tuple<sh_degree_feature, exposure_feature, antialiasing_feature, sky_feature,
+                         masks_feature, depth_feature, lens_feature, background_feature>;
+
+}  // namespace gs::features

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <string>
+
+namespace gs::features {
+
+/// A line of evidence, as printf formats it.
+template <class... Values>
+std::string text(const char* format, Values... values) {
+    char line[240];
+    std::snprintf(line, sizeof line, format, values...);
+    return line;
+}
+
+/// Fewer points than this say nothing about a scene.
+inline constexpr std::size_t enough_points = 50;
+
+inline std::string too_few_points(std::size_t points, const char* where) {
+    return text("no telling: %zu points lie %s of 5 photos or more", points, where);
+}
+
+}  // namespace gs::features

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "../../model/aosoa.hpp"
+#include "../project/geometry.hpp"
+#include "../project/project_backward.hpp"
+#include "../project/splat.hpp"
+
+namespace gs::raster {
+
+/// Splats that show how near they are: red is the inverse of the depth, and the rest black. One index a
+/// Gaussian.
+template <class Real, effect_set Effects>
+struct depth_splats {
+    const Real* mean;  ///< of all Gaussians, see `parameter_arrays`
+    device_camera<Real> camera;
+    const splat<Real>* splats;
+    splat<Real>* shown;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        vec3<Real> at;
+        for (unsigned k = 0; k < 3; ++k) at[static_cast<int>(k)] = mean[place(i, k, 3)];
+        splat<Real> s = splats[i];
+        s.red = 1 / projection_of<Real, Effects>::depth(in_camera(at, camera));
+        s.green = s.blue = 0;
+        shown[i] = s;
+    }
+};
+
+/// The sum of red becomes that of inverse depths, and is zero again for the picture's own. One index a
+/// Gaussian.
+template <class Sum>
+struct set_red_aside {
+    Sum* sums;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        Sum* record = sums + i * record_stride;
+        record[sum_inverse_depth] = record[sum_red];
+        record[sum_red] = Sum{};
+    }
+};
+
+}  // namespace gs::raster

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "photo_brightness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "../core/median.hpp"
+
+namespace gs {
+namespace {
+
+constexpr std::size_t least_points_of_photo = 20;
+
+/// Least squares of log2(brightness) = point + photo, the points eliminated, with a weight each. It is not
+/// written out: photos may be thousands.
+class photo_equations {
+  public:
+    explicit photo_equations(std::size_t views)
+        : right_(views, 0.0), information_(views, 0.0), diagonal_(views, held) {}
+
+    /// The observations of one point.
+    void add(const std::vector<observation>& seen, const std::vector<double>& logs,
+             const std::vector<double>& weights) {
+        double sum = 0, mean = 0;
+        for (std::size_t i = 0; i < seen.size(); ++i) {
+            sum += weights[i];
+            mean += weights[i] * logs[i];
+        }
+        std::vector<term> terms;
+        for (std::size_t i = 0; i < seen.size(); ++i) {
+            const std::size_t v = seen[i].view;
+            terms.push_back({v, weights[i]});
+            right_[v] += weights[i] * (logs[i] - mean / sum);
+            information_[v] += weights[i] * (1 - weights[i] / sum);
+            diagonal_[v] += weights[i] * (1 - weights[i] / sum);
+        }
+        points_.push_back({std::move(terms), sum});
+    }
+
+    /// By conjugate gradients with Jacobi's preconditioner, to twelve digits, from x on.
+    std::vector<double> solve(std::vector<double> x) const {
+        const std::size_t n = x.size();
+        const auto dot = [&](const std::vector<double>& a, const std::vector<double>& b) {
+            return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+        };
+        std::vector<double> left = right_, along(n, 0.0), scaled(n);
+        const std::vector<double> first = times(x);
+        for (std::size_t v = 0; v < n; ++v) left[v] -= first[v];
+        const double enough = 1e-24 * dot(right_, right_);
+        double before = 0;
+        for (std::size_t step = 0; step < 10 * n && dot(left, left) > enough; ++step) {
+            for (std::size_t v = 0; v < n; ++v) scaled[v] = left[v] / diagonal_[v];
+            const double now = dot(left, scaled), keep = step > 0 ? now / before : 0;
+            for (std::size_t v = 0; v < n; ++v) along[v] = scaled[v] + keep * along[v];
+            const std::vector<double> image = times(along);
+            const double far = now / dot(along, image);
+            for (std::size_t v = 0; v < n; ++v) {
+                x[v] += far * along[v];
+                left[v] -= far * image[v];
+            }
+            before = now;
+        }
+        return x;
+    }
+    const std::vector<double>& information() const { return information_; }
+
+  private:
+    /// To zero, in observations: all photos together are of no exposure. So little that it does not hold back
+    /// what drifts along a walk of thousands.
+    static constexpr double held = 1e-9;
+    struct term {
+        std::size_t view;
+        double weight;
+    };
+    struct point {
+        std::vector<term> terms;
+        double weight;
+    };
+
+    std::vector<double> times(const std::vector<double>& x) const {
+        std::vector<double> product(x.size());
+        for (std::size_t v = 0; v < x.size(); ++v) product[v] = held * x[v];
+        for (const point& p : points_) {
+            double mean = 0;
+            for (const term& t : p.terms) mean += t.weight * x[t.view] / p.weight;
+            for (const term& t : p.terms) product[t.view] += t.weight * (x[t.view] - mean);
+        }
+        return product;
+    }
+
+    std::vector<point> points_;
+    std::vector<double> right_, information_, diagonal_;
+};
+
+double brightness(const observation& o) { return (o.colour.r + o.colour.g + o.colour.b) / 3.0; }
+
+}  // namespace
+
+photo_brightness estimate_brightness(const observed_points& points, std::size_t photos) {
+    constexpr int rounds = 10;
+    constexpr double huber = 2;  // standard deviations, from which a residual counts less
+    std::vector<double> found_log2(photos, 0.0), information(photos, 0.0), off;
+    double deviation = 0;
+    for (int round = 0; round < rounds; ++round) {
+        photo_equations equations(photos);
+        off.clear();
+        for (const auto& seen : points) {
+            std::vector<double> logs, own, weights(seen.size(), 1.0);
+            for (const observation& o : seen) {
+                logs.push_back(std::log2(brightness(o)));
+                own.push_back(logs.back() - found_log2[o.view]);
+            }
+            const std::vector<double> all = own;
+            const double of_point = median(own);
+            for (std::size_t i = 0; i < seen.size(); ++i) {
+                const double apart = std::abs(all[i] - of_point);
+                off.push_back(apart);
+                if (deviation > 0 && apart > huber * deviation) weights[i] = huber * deviation / apart;
+            }
+            equations.add(seen, logs, weights);
+        }
+        deviation = 1.4826 * median(off);
+        found_log2 = equations.solve(std::move(found_log2));
+        information = equations.information();
+    }
+    std::vector<std::size_t> seen_by(photos);
+    for (const auto& seen : points)
+        for (const observation& o : seen) ++seen_by[o.view];
+    photo_brightness found{found_log2, std::vector<double>(photos, 0.0)};
+    for (std::size_t v = 0; v < photos; ++v) {
+        if (seen_by[v] < least_points_of_photo)
+            found.log2[v] = 0;
+        else
+            found.error[v] = std::max(deviation, 1e-6) / std::sqrt(std::max(information[v], 1.0));
+    }
+    return found;
+}
+
+}  // namespace gs

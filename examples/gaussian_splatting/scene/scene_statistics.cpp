@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "scene_statistics.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "../core/median.hpp"
+
+namespace gs {
+namespace {
+
+observed_points smooth_part(observed_points points) {
+    std::vector<double> roughness;
+    for (const auto& seen : points)
+        for (const observation& o : seen) roughness.push_back(o.roughness);
+    constexpr double texture = 0.04, times_noise = 1.5;
+    const double noise = quantile(roughness, 0.1);
+    const double limit = std::min(quantile(roughness, 0.5), texture + times_noise * noise);
+    for (auto& seen : points) {
+        std::erase_if(seen, [&](const observation& o) { return o.roughness > limit; });
+        if (seen.size() < scene_statistics::least_photos_of_point) seen.clear();
+    }
+    std::erase_if(points, [](const auto& seen) { return seen.empty(); });
+    return points;
+}
+
+}  // namespace
+
+const observed_points& scene_statistics::points() const {
+    if (!points_) points_ = observe_points(scene_);
+    return *points_;
+}
+
+const observed_points& scene_statistics::smooth_points() const {
+    if (!smooth_) smooth_ = smooth_part(points());
+    return *smooth_;
+}
+
+const photo_brightness& scene_statistics::brightness() const {
+    if (!brightness_)
+        brightness_ = smooth_points().empty() ? photo_brightness{}
+                                              : estimate_brightness(smooth_points(), scene_.train.size());
+    return *brightness_;
+}
+
+}  // namespace gs

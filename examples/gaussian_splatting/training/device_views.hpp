@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "../core/error.hpp"
+#include "../core/parallel.hpp"
+#include "../device/device.hpp"
+#include "../metrics/target_image.hpp"
+#include "../readers/load_views.hpp"
+
+namespace gs::train {
+
+/// Training and held-out photos with their cameras, on a device.
+template <device::device Device>
+class device_views {
+  public:
+    struct photo {
+        gs::camera camera;
+        std::size_t first;  ///< byte in the memory of all photos
+        bool masked;
+
+        std::size_t pixels() const {
+            return static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+        }
+    };
+
+    explicit device_views(Device& device) : device_(device) {}
+
+    /// Uploads the photos. `levels` holds the training views at each size, the full size first.
+    void set(const std::vector<std::vector<view>>& levels, const std::vector<view>& held_out) {
+        std::size_t bytes = 0;
+        for (const auto& views : levels) bytes += bytes_of(views);
+        bytes_.resize(bytes + bytes_of(held_out));
+        bytes = 0;
+        train_.clear();
+        for (const auto& views : levels) train_.push_back(upload(views, bytes));
+        held_out_ = upload(held_out, bytes);
+        std::vector<glm::vec3> centers;
+        for (const view& v : levels[0]) centers.emplace_back(v.camera.centre());
+        centers_.resize(centers.size());
+        device_.upload(centers_.data(), centers.data(), centers.size());
+        device_.wait();
+    }
+
+    /// The training views, downsampled by two that many times. Throws `error` if `set` got fewer levels.
+    const std::vector<photo>& train(std::size_t level) const {
+        if (level >= train_.size())
+            throw error("the training views have " + std::to_string(train_.size()) +
+                        " sizes, so they cannot be halved " + std::to_string(level) + " times");
+        return train_[level];
+    }
+    const std::vector<photo>& smallest() const { return train_.back(); }
+    const photo& held_out(std::size_t view) const { return held_out_[view]; }
+    /// Centers of the training cameras, in memory of the device.
+    const glm::vec3* centers() const { return centers_.data(); }
+    std::size_t count() const { return train_[0].size(); }
+
+    const std::uint8_t* pixels(const photo& p) const { return bytes_.data() + p.first; }
+    target_image target(const photo& p, const std::array<float, 3>& background) const {
+        return {pixels(p), p.camera.width, p.camera.height, background, p.masked};
+    }
+
+  private:
+    static std::size_t bytes_of(const std::vector<view>& views) {
+        std::size_t bytes = 0;
+        for (const view& v : views) bytes += v.pixels.rgba.size();
+        return bytes;
+    }
+    std::vector<photo> upload(const std::vector<view>& views, std::size_t& first) {
+        std::vector<photo> all;
+        for (const view& v : views) {
+            device_.upload(bytes_.data() + first, v.pixels.rgba.data(), v.pixels.rgba.size());
+            all.push_back({v.camera, first, v.pixels.has_mask});
+            first += v.pixels.rgba.size();
+        }
+        return all;
+    }
+
+    Device& device_;
+    typename Device::template buffer<std::uint8_t> bytes_;
+    typename Device::template buffer<glm::vec3> centers_;
+    std::vector<std::vector<photo>> train_{1};
+    std::vector<photo> held_out_;
+};
+
+/// The training views at full size and at `downscales` smaller ones, each half of the one before.
+inline std::vector<std::vector<view>> downsampled_levels(const std::vector<view>& train, int downscales) {
+    std::vector<std::vector<view>> levels(1 + static_cast<std::size_t>(downscales),
+                                          std::vector<view>(train.size()));
+    levels[0] = train;
+    for_each_in_parallel((levels.size() - 1) * train.size(), [&](std::size_t i) {
+        const std::size_t level = i / train.size(), which = i % train.size();
+        levels[1 + level][which] = shrunk(train[which], 2 << level);
+    });
+    return levels;
+}
+
+}  // namespace gs::train

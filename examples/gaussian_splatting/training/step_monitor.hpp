@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "../device/device.hpp"
+#include "../optimize/finite_check.hpp"
+#include "../render/geometry/list_capacity.hpp"
+
+namespace gs::train {
+
+/// Ends a step: counts it if it was skipped, notes how long its lists were, and checks the loss and whether
+/// all sums fitted. One index.
+struct close_step {
+    raster::list_room room;
+    std::uint64_t* skipped;
+    std::uint64_t* length;  ///< of the view's lists
+    const double* sums;     ///< see `loss::sums`
+    std::size_t sum_count;
+    std::uint32_t* unfit;  ///< see `gradient_sums::fault`
+    train::watch watch;
+
+    WARPAGG_HD void operator()(std::size_t) const {
+        if (room.exceeded()) ++*skipped;
+        *length = *room.needed;
+        double sum = 0;
+        for (std::size_t k = 0; k < sum_count; ++k) sum += sums[k];
+        if (!raster::is_finite(sum)) watch.note(fault::loss, 0, 0);
+        if (*unfit != 0) watch.note(fault::sum, 0, 0);
+        *unfit = 0;
+    }
+};
+
+/// What goes wrong in steps, noted on the device and reported on request.
+template <device::device Device>
+class step_monitor {
+  public:
+    explicit step_monitor(Device& device) : device_(device) {
+        skipped_.resize(1);
+        faults_.resize(1);
+        reset();
+    }
+
+    train::watch watch(int iteration) { return {faults_.data(), static_cast<std::uint32_t>(iteration)}; }
+    template <class Renderer>
+    void close(const Renderer& renderer, std::span<const double> loss_sums, std::uint64_t* length,
+               int iteration) {
+        device_.for_each_index(1, close_step{renderer.room(), skipped_.data(), length, loss_sums.data(),
+                                             loss_sums.size(), renderer.fault(), watch(iteration)});
+    }
+
+    /// Steps that were skipped since the last call of `take_faults`. Waits for the device.
+    std::uint64_t skipped() {
+        std::uint64_t n = 0;
+        device_.download(&n, skipped_.data(), 1);
+        return n;
+    }
+    /// Faults since the last call; resets all. Waits for the device.
+    findings take_faults() {
+        watch::memory found;
+        device_.download(&found, faults_.data(), 1);
+        reset();
+        return watch::decode(found);
+    }
+
+  private:
+    void reset() {
+        device_.zero(skipped_.data(), 1);
+        const watch::memory clean = watch::clean();
+        device_.upload(faults_.data(), &clean, 1);
+        device_.wait();
+    }
+
+    Device& device_;
+    typename Device::template buffer<std::uint64_t> skipped_;
+    typename Device::template buffer<watch::memory> faults_;
+};
+
+}  // namespace gs::train

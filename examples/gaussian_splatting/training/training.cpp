@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "training.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <utility>
+
+#include "../core/error.hpp"
+#include "fault_log.hpp"
+#include "view_order.hpp"
+
+namespace gs::train {
+
+namespace {
+
+using clock = std::chrono::steady_clock;
+
+double seconds_since(clock::time_point from) {
+    return std::chrono::duration<double>(clock::now() - from).count();
+}
+
+std::array<float, 3> random_color(std::mt19937_64& random) {
+    const auto channel = [&] { return static_cast<float>(random() >> 40) * 0x1p-24f; };
+    const float r = channel(), g = channel(), b = channel();
+    return {r, g, b};
+}
+
+training_setup setup_of(const scene& scene, const train_options& options, const schedule& schedule) {
+    training_setup setup;
+    setup.facts.iterations = schedule.iterations;
+    setup.facts.views = static_cast<int>(scene.train.size());
+    setup.facts.extent = schedule.extent;
+    setup.facts.white = scene.has_alpha && options.background.colour == std::array<float, 3>{1, 1, 1};
+    setup.facts.max_gaussians = options.max_cap;
+    setup.facts.seed = options.seed;
+    setup.facts.gradient = options.gradient;
+    setup.densify = options.densify;
+    setup.loss = options.loss;
+    for (const auto& feature : options.features.all())
+        if (feature.on) setup.features[feature.name] = feature.values;
+    return setup;
+}
+
+}  // namespace
+
+training::training(train::engine& engine, const gs::scene& scene, const train_options& options,
+                   const train_events& events)
+    : engine_(engine), scene_(scene), options_(options), schedule_(options.schedule) {
+    schedule_.extent = scene.extent();
+    engine_.begin(setup_of(scene, options, schedule_));
+    add_step();
+    add_memory();
+    add({phase::restructure, "densify", [this](int iteration) { return timetable().due(iteration); },
+         [this](int iteration) {
+             result_.without_gradient = std::max(result_.without_gradient, engine_.densify(iteration));
+         }});
+    add({phase::upkeep, "adjust parameters", [](int) { return true; },
+         [this](int iteration) { engine_.adjust(iteration); }});
+    add_reports(events);
+}
+
+void training::add(action action) { actions_.push_back(std::move(action)); }
+
+void training::add_step() {
+    const auto order = std::make_shared<view_order>(scene_.train.size(), options_.seed);
+    const auto colors = std::make_shared<std::mt19937_64>(options_.seed + 1);
+    add({phase::step, "step", [](int) { return true; }, [=, this](int iteration) {
+             step_plan plan;
+             plan.iteration = iteration;
+             plan.view = order->next();
+             plan.sh_degree = schedule_.sh_degree_at(iteration);
+             plan.updates_sh = schedule_.updates_sh(iteration);
+             plan.background =
+                 options_.background.random ? random_color(*colors) : options_.background.colour;
+             plan.rates = schedule_.rates_at(iteration);
+             engine_.step(plan);
+             faults_.steps(plan.view);
+         }});
+}
+
+void training::add_memory() {
+    constexpr int reserve_every = 500;  // the lists grow slowly between densifications
+    add({phase::prepare, "change the photos' size",
+         [this](int iteration) { return schedule_.downscales_at(iteration) != level_; },
+         [this](int iteration) {
+             level_ = schedule_.downscales_at(iteration);
+             engine_.reserve(level_);
+         }});
+    add({phase::size_lists, "size the tile lists",
+         [this](int iteration) { return restructured_ || iteration % reserve_every == 0; },
+         [this](int) { engine_.reserve(level_); }});
+}
+
+void training::add_reports(const train_events& events) {
+    constexpr int report_every = 100;
+    const int last = schedule_.iterations;
+    const auto tests = [this](int iteration) { return options_.test_iterations.contains(iteration); };
+    const auto saves = [this](int iteration) { return options_.save_iterations.contains(iteration); };
+    add({phase::observe, "check and report",
+         [=](int iteration) {
+             return iteration % report_every == 0 || iteration == last || tests(iteration) ||
+                    saves(iteration);
+         },
+         [=, this](int iteration) {
+             const step_report report = engine_.take_report();
+             result_.skipped_steps += report.skipped;
+             faults_.check(report.faults, scene_, iteration, events.warn);
+             events.report({iteration, last, report.loss.loss, report.loss.psnr(), engine_.count(),
+                            seconds_since(start_) - outside_});
+         }});
+    const auto call = [this](const std::function<void(int)>& callback) {
+        return [=, this](int iteration) {
+            engine_.profile().wait();
+            const auto from = clock::now();
+            callback(iteration);
+            outside_ += seconds_since(from);
+        };
+    };
+    add({phase::observe, "test", tests, call(events.test)});
+    add({phase::observe, "save", saves, call(events.save)});
+}
+
+void training::run_phase(train::phase phase, int iteration) {
+    const bool timed = phase == phase::restructure || phase == phase::size_lists;
+    for (const action& a : actions_) {
+        if (a.phase != phase || !a.due(iteration)) continue;
+        if (timed) engine_.profile().wait();
+        const auto from = clock::now();
+        a.run(iteration);
+        if (phase == phase::restructure) restructured_ = true;
+        if (timed) result_.densify_seconds += seconds_since(from);
+    }
+}
+
+train_result training::run() {
+    level_ = schedule_.downscales_at(1);
+    engine_.reserve(level_);
+    engine_.profile().wait();
+    start_ = clock::now();
+    for (int iteration = 1; iteration <= schedule_.iterations; ++iteration) {
+        restructured_ = false;
+        for (const auto phase : {phase::prepare, phase::step, phase::restructure, phase::size_lists,
+                                 phase::upkeep, phase::observe})
+            run_phase(phase, iteration);
+    }
+    engine_.profile().wait();
+    result_.seconds = seconds_since(start_) - outside_;
+    result_.sh_degree = schedule_.sh_degree;
+    result_.left_out_gradients = faults_.left_out_gradients();
+    result_.left_out_sums = faults_.left_out_sums();
+    return result_;
+}
+
+train_result train(engine& engine, const scene& scene, const train_options& options,
+                   const train_events& events) {
+    training training(engine, scene, options, events);
+    options.features.schedule(training);
+    return training.run();
+}
+
+std::size_t default_cap(const scene& scene) {
+    std::size_t pixels = 0;
+    for (const view& v : scene.train)
+        pixels += static_cast<std::size_t>(v.camera.width) * static_cast<std::size_t>(v.camera.height);
+    return std::max<std::size_t>(pixels / 32, 10000);
+}
+
+}  // namespace gs::train

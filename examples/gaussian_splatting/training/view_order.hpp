@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace gs::train {
+
+/// Every view once before any comes again, each time in another random order.
+class view_order {
+  public:
+    view_order(std::size_t views, std::uint64_t seed) : order_(views), next_(views), random_(seed) {
+        std::iota(order_.begin(), order_.end(), std::size_t{0});
+    }
+    std::size_t next() {
+        if (next_ == order_.size()) {
+            // Not std::shuffle, whose order differs between standard libraries.
+            for (std::size_t i = order_.size(); i > 1; --i) std::swap(order_[i - 1], order_[random_() % i]);
+            next_ = 0;
+        }
+        return order_[next_++];
+    }
+
+  private:
+    std::vector<std::size_t> order_;
+    std::size_t next_;
+    std::mt19937_64 random_;
+};
+
+}  // namespace gs::train
