@@ -111,6 +111,7 @@ int bench(const options& o) {
     std::ranges::fill(model.opacity, 0.0f);
     engine->set_views(photos(scene, o.side), {});
     engine->set_model(model);
+    engine->set_strategy({}, {.iterations = 0});  // which collects no statistics
     engine->reserve();
 
     nlohmann::ordered_json answer{{"gaussians", engine->count()},

@@ -114,6 +114,7 @@ void run(trial& t, gs::train::engine& engine, ordered_json& row) {
 
     gs::train::train_options o;
     o.schedule = t.schedule;
+    o.densification.adaptive = t.adaptive;
     o.max_cap = t.cap;
     o.seed = t.seed;
     const gs::train::train_events events{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
@@ -123,7 +124,7 @@ void run(trial& t, gs::train::engine& engine, ordered_json& row) {
     row["gaussians"] = model.count();
     row["skipped_steps"] = result.skipped_steps;
     row["left_out_gradients"] = result.left_out_gradients;
-    row["silent_gaussians"] = result.silent_gaussians;
+    row["silent_gaussians"] = result.without_gradient;
     row["seconds"] = result.seconds;
     row["training_psnr"] = mean_psnr(engine, 0, trained);
     row["held_out_psnr"] = mean_psnr(engine, trained, all);

@@ -57,11 +57,11 @@ class training {
         const gs::gaussians model = gs::into(scene.frame, gs::read_ply(o.ply));
         plan_.sh_degree = model.sh_degree;
         plan_.rates = gs::train::schedule{}.rates_at(7000);
-        plan_.watch = true;
         if (scene.has_alpha) plan_.background = {1, 1, 1};
         views_ = scene.train.size();
         engine_->set_views(scene.train, {});
         engine_->set_model(model);
+        engine_->set_strategy({}, {.iterations = 1 << 20});  // which collects statistics
         engine_->reserve();
         run(static_cast<int>(2 * views_));  // until nothing grows any more
         engine_->sample_times(1 << 30);     // which takes the next one's times, and no more

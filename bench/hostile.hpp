@@ -19,6 +19,7 @@
 struct trial {
     gs::scene scene;  ///< in coordinates of scale * (x + offset)
     gs::train::schedule schedule;
+    gs::train::adaptive_config adaptive;
     std::size_t cap = 0;
     std::uint64_t seed = 0;
     std::size_t large_count = 0;  ///< of Gaussians, where many is what is hard
@@ -87,12 +88,12 @@ inline const std::vector<hard_case>& hard_cases() {
         {"baseline", "nothing, to compare with", [](trial&) {}},
         {"rates", "all learning rates times 10", [](trial& t) { speed_up(t.schedule); }},
         {"resets", "opacity reset every 100 iterations",
-         [](trial& t) { t.schedule.opacity_reset_interval = 100; }},
+         [](trial& t) { t.adaptive.opacity_reset_interval = 100; }},
         {"rates_and_resets", "both of these, to the last iteration",
          [](trial& t) {
              speed_up(t.schedule);
-             t.schedule.opacity_reset_interval = 100;
-             t.schedule.densify_until_iter = t.schedule.iterations;
+             t.adaptive.opacity_reset_interval = 100;
+             t.adaptive.densify_until_iter = t.schedule.iterations;
          }},
         {"one_view", "one view, and the points that it sees",
          [](trial& t) {
@@ -116,7 +117,7 @@ inline const std::vector<hard_case>& hard_cases() {
              draw_points(t, t.large_count);
              t.cap = t.large_count;
              t.schedule.iterations = t.large_iterations;
-             t.schedule.densify_until_iter = 0;
+             t.adaptive.densify_until_iter = 0;
          }},
         {"inside", "all cameras inside the cloud", go_inside},
         {"focal_10", "a focal length of 10 pixels", [](trial& t) { zoom(t, 10, 10); }},

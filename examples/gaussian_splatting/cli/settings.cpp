@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../core/error.hpp"
+#include "../densify/adaptive/adaptive_schedule.hpp"
 #include "apply_quality_preset.hpp"
 
 namespace gs::cli {
@@ -140,7 +141,7 @@ void add_common(CLI::App& app, settings& s) {
 }
 
 /// The rates and intervals, by the names that the field gives them.
-void add_schedule(CLI::App& app, train::schedule& s) {
+void add_schedule(CLI::App& app, train::schedule& s, train::adaptive_config& adaptive) {
     const auto rate = [&](const char* name, double& value, const char* what) {
         app.add_option(name, value, what)->check(positive_number())->capture_default_str();
     };
@@ -157,11 +158,12 @@ void add_schedule(CLI::App& app, train::schedule& s) {
     rate("--opacity-lr", s.opacity_lr, "Of opacities");
     rate("--scaling-lr", s.scaling_lr, "Of log scales");
     rate("--rotation-lr", s.rotation_lr, "Of quaternions");
-    count("--opacity-reset-interval", s.opacity_reset_interval, 1,
+    count("--opacity-reset-interval", adaptive.opacity_reset_interval, 1,
           "Iterations between two resets; none in densification's last interval, but for the first on white");
-    count("--densification-interval", s.densification_interval, 1, "Iterations between two densifications");
-    count("--densify-from-iter", s.densify_from_iter, 0, "Densify after this iteration");
-    app.add_option("--densify-until-iter", s.densify_until_iter,
+    count("--densification-interval", adaptive.densification_interval, 1,
+          "Iterations between two densifications");
+    count("--densify-from-iter", adaptive.densify_from_iter, 0, "Densify after this iteration");
+    app.add_option("--densify-until-iter", adaptive.densify_until_iter,
                    "And before this one; by default half of the iterations, at most 15000")
         ->check(whole_number(0, 10000000));
     app.add_option("--num-downscales", s.num_downscales, "How often photos are halved at first")
@@ -174,7 +176,7 @@ void add_schedule(CLI::App& app, train::schedule& s) {
         ->check(whole_number(1, 10000000));
     count("--sh-update-interval", s.sh_update_interval, 1,
           "Iterations between two steps of colours that depend on direction");
-    app.add_option("--prune-share", s.prune_share,
+    app.add_option("--prune-share", adaptive.prune_share,
                    "Of the Gaussians, those that matter least are dropped when densification has ended; by "
                    "default 0.2 if it grew any, but 0 with --budget")
         ->check(share());
@@ -219,19 +221,19 @@ CLI::App* add_train(CLI::App& app, settings& s) {
         ->capture_default_str();
     train
         ->add_option(
-            "--densify-grad-threshold", s.schedule.densify_grad_threshold,
+            "--densify-grad-threshold", s.densification.adaptive.densify_grad_threshold,
             "Mean gradient of a centre, in halves of the picture, from which a Gaussian grows; by default "
             "8e-5 for 30000 iterations, and more for fewer")
         ->check(positive_number());
-    add_schedule(*train, s.schedule);
+    add_schedule(*train, s.schedule, s.densification.adaptive);
     train->add_option("--max-cap", s.max_cap, "Most Gaussians; by default one for 32 pixels of the photos")
         ->check(whole_number(1, 100000000));
     train
-        ->add_option("--budget", s.budget,
+        ->add_option("--budget", s.densification.adaptive.budget,
                      "Gaussians to grow to, evenly and the most urgent first, whatever their gradients")
         ->check(whole_number(1, 100000000))
         ->excludes(train->get_option("--densify-grad-threshold"));
-    train->add_flag("--revised-opacity,!--no-revised-opacity", s.revised_opacity,
+    train->add_flag("--revised-opacity,!--no-revised-opacity", s.densification.adaptive.revised_opacity,
                     "A copied Gaussian and its copy are together as opaque as it was alone");
     train->add_flag(
         "--deterministic", s.deterministic,
@@ -293,16 +295,19 @@ void refuse_endless_shrinking(const train::schedule& s) {
                     std::to_string(until) + ", but there are only " + std::to_string(s.iterations));
 }
 
-void refuse_pruning_at_no_time(const train::schedule& s) {
-    if (s.share_to_prune() > 0 && s.densify_until() >= s.iterations)
+void refuse_pruning_at_no_time(const settings& s) {
+    const int iterations = s.schedule.iterations;
+    const train::adaptive_schedule plan(s.densification.adaptive, {.iterations = iterations});
+    if (plan.share_to_prune() > 0 && plan.densify_until() >= iterations)
         throw error("--prune-share is dropped after densification, which --densify-until-iter ends at " +
-                    std::to_string(s.densify_until()) + ", but there are only " +
-                    std::to_string(s.iterations) + " iterations");
+                    std::to_string(plan.densify_until()) + ", but there are only " +
+                    std::to_string(iterations) + " iterations");
 }
 
 void refuse_large_budget(const settings& s) {
-    if (s.max_cap > 0 && s.budget > s.max_cap)
-        throw error("--budget " + std::to_string(s.budget) + " is more than --max-cap " +
+    const std::size_t budget = s.densification.adaptive.budget;
+    if (s.max_cap > 0 && budget > s.max_cap)
+        throw error("--budget " + std::to_string(budget) + " is more than --max-cap " +
                     std::to_string(s.max_cap));
 }
 
@@ -335,13 +340,14 @@ settings parse(int argc, char** argv) {
     s.command = app.get_subcommands().front()->get_name();
     s.scene.seed = s.seed;
     choose_quality(*app.get_subcommand("train"), s.quality);
-    if (s.budget > 0 && !s.schedule.prune_share) s.schedule.prune_share = 0;
+    train::adaptive_config& adaptive = s.densification.adaptive;
+    if (adaptive.budget > 0 && !adaptive.prune_share) adaptive.prune_share = 0;
     if (s.command != "train" && s.background == "random")
         throw error("--background random is for training: " + s.command + " needs one colour");
     refuse_late(s.save_iterations, s.schedule.iterations, "--save-iterations");
     refuse_late(s.test_iterations, s.schedule.iterations, "--test-iterations");
     refuse_endless_shrinking(s.schedule);
-    refuse_pruning_at_no_time(s.schedule);
+    refuse_pruning_at_no_time(s);
     refuse_large_budget(s);
     if (s.command == "render") s.scene.masks = false;  // its photos are not looked at
     if (s.command == "render" || s.command == "evaluate") s.scene.depths = false;

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "../densify/adaptive/densify_config.hpp"
+#include "../densify/strategy_settings.hpp"
 #include "../features/simulate.hpp"
 #include "../readers/load_scene.hpp"
 #include "../training/schedule.hpp"
@@ -30,9 +30,8 @@ struct settings {
     bool fit_exposure = false;
     std::string quality = "balanced";
     train::schedule schedule;
+    train::strategy_settings densification;
     std::size_t max_cap = 0;  ///< 0: by the photos
-    std::size_t budget = 0;   ///< 0: none
-    bool revised_opacity = true;
     bool deterministic = false;
     std::set<int> save_iterations;
     std::set<int> test_iterations;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "../core/error.hpp"
+#include "../densify/adaptive/adaptive_schedule.hpp"
 #include "../features/exposure/held_out_exposures.hpp"
 #include "../features/sh_degree/revise_sh_degree.hpp"
 #include "../training/initialise.hpp"
@@ -29,9 +30,9 @@ train::train_options options_of(const settings& s, const scene& scene,
     for (const float gain : simulated.exposures)
         o.exposures.push_back({gain, 0, 0, 0, 0, gain, 0, 0, 0, 0, gain, 0});
     o.depth_fits = simulated.depth_fits;
-    o.max_cap = s.max_cap > 0 ? s.max_cap : std::max(train::default_cap(scene), s.budget);
-    o.budget = s.budget;
-    o.revised_opacity = s.revised_opacity;
+    o.densification = s.densification;
+    o.max_cap =
+        s.max_cap > 0 ? s.max_cap : std::max(train::default_cap(scene), s.densification.adaptive.budget);
     o.seed = s.seed;
     o.gradient = s.deterministic ? accumulator::fixed : accumulator::native;
     o.background = background;
@@ -45,7 +46,7 @@ train::train_options options_of(const settings& s, const scene& scene,
 /// matters.
 gaussians first_model(const scene& scene, const train::train_options& o) {
     constexpr std::size_t most_random = 100000;
-    const std::size_t most = o.budget > 0 ? o.budget : o.max_cap;
+    const std::size_t budget = o.densification.adaptive.budget, most = budget > 0 ? budget : o.max_cap;
     const auto points = scene.points.empty()
                             ? random_points(scene, std::min(most_random, most / 2 + 1), o.seed)
                             : scene.points;
@@ -71,6 +72,8 @@ ordered_json effects_on(const effects::simulation& simulated) {
 ordered_json settings_json(const settings& s, const train::train_options& o,
                            const effects::simulation& simulated) {
     const train::schedule& plan = o.schedule;
+    const train::adaptive_config& adaptive = o.densification.adaptive;
+    const train::adaptive_schedule densification(adaptive, {.iterations = plan.iterations});
     return {{"data", s.scene.data},
             {"images", s.scene.images},
             {"resolution", s.scene.resolution},
@@ -90,18 +93,18 @@ ordered_json settings_json(const settings& s, const train::train_options& o,
             {"opacity_lr", plan.opacity_lr},
             {"scaling_lr", plan.scaling_lr},
             {"rotation_lr", plan.rotation_lr},
-            {"opacity_reset_interval", plan.opacity_reset_interval},
-            {"densification_interval", plan.densification_interval},
-            {"densify_from_iter", plan.densify_from_iter},
-            {"densify_until_iter", plan.densify_until()},
+            {"opacity_reset_interval", adaptive.opacity_reset_interval},
+            {"densification_interval", adaptive.densification_interval},
+            {"densify_from_iter", adaptive.densify_from_iter},
+            {"densify_until_iter", densification.densify_until()},
             {"num_downscales", plan.num_downscales},
             {"resolution_schedule", plan.resolution_interval()},
             {"sh_update_interval", plan.sh_update_interval},
-            {"prune_share", plan.share_to_prune()},
-            {"densify_grad_threshold", plan.growth_threshold()},
+            {"prune_share", densification.share_to_prune()},
+            {"densify_grad_threshold", densification.growth_threshold()},
             {"max_cap", o.max_cap},
-            {"budget", o.budget},
-            {"revised_opacity", o.revised_opacity},
+            {"budget", adaptive.budget},
+            {"revised_opacity", adaptive.revised_opacity},
             {"deterministic", s.deterministic},
             {"save_iterations", o.save_iterations},
             {"test_iterations", o.test_iterations},
@@ -266,7 +269,7 @@ void train(const settings& s) {
     metrics["skipped_steps"] = result.skipped_steps;
     metrics["left_out_gradients"] = result.left_out_gradients;
     metrics["left_out_sums"] = result.left_out_sums;
-    metrics["silent_gaussians"] = result.silent_gaussians;
+    metrics["silent_gaussians"] = result.without_gradient;
     metrics["pairs_per_iteration"] = pairs;
     metrics["stages"] = stages_json(times, pairs);
     metrics["peak_host_bytes"] = peak_host_bytes();

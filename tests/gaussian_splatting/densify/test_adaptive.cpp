@@ -8,15 +8,18 @@
 #include <set>
 
 #include "../training/engines.hpp"
-#include "training/initialise.hpp"
 #include "model/opacity.hpp"
 #include "render/project/geometry.hpp"
+#include "training/initialise.hpp"
 
 namespace {
 
 using gs::gaussians;
-using gs::train::densify_rule;
+using gs::train::adaptive_config;
 using gs::train::engine;
+
+/// Extents of a scene in which all Gaussians count as small, or as large.
+constexpr double copies_all = 1e11, splits_all = 1e-7;
 
 /// A step in each training view by rates of zero: gradients are noted and momentum is gained, nothing moves.
 void look_at_all(engine& e, const gs::scene& scene, const gaussians& model, int sh_degree = 0) {
@@ -41,13 +44,11 @@ TEST_CASE("the most urgent grow first, and none past the cap") {
         e->reserve();
         for (std::size_t v = 0; v < 4; ++v) e->step(plan_for(v));
         const gaussians stepped = e->get_model();
-        densify_rule rule;
-        rule.gradient = 1e-12f;  // everything that was seen to move
-        rule.least_opacity = 0;
-        rule.dense_scale = 1e9f;  // copied, not split
-        rule.cap = 1100;
-        rule.revised_opacity = false;
-        e->densify(rule);
+        adaptive_config config;
+        config.densify_grad_threshold = 1e-12;  // everything that was seen to move
+        config.least_opacity = 0;
+        config.revised_opacity = false;
+        densify_once(*e, config, 1100, copies_all);
         CHECK(e->count() == 1100);
 
         // Copies are exact: every Gaussian of before is there once or twice, in its order.
@@ -69,12 +70,12 @@ TEST_CASE("the most urgent grow first, and none past the cap") {
         CHECK(twice == 100);
 
         // Nobody has been seen since: nothing grows.
-        e->densify(rule);
+        densify_once(*e, config, 1100, copies_all);
         CHECK(e->count() == 1100);
     }
 }
 
-TEST_CASE("births are limited, whatever room there is, to the most urgent") {
+TEST_CASE("a budget limits the growth of a densification to the Gaussians with the largest gradients") {
     const gs::scene scene = small_scene();
     const gaussians model = gs::from_points(scene.points, 0, 1000, 1);
     for (const auto make : engines()) {
@@ -82,21 +83,20 @@ TEST_CASE("births are limited, whatever room there is, to the most urgent") {
         e->set_views(scene.train, scene.test);
         auto still = plan_for(0);
         still.rates = {};
-        densify_rule rule;
-        rule.gradient = 0;  // whatever moved at all
-        rule.least_opacity = 0;
-        rule.dense_scale = 1e9f;
-        rule.cap = 1100;
-        const auto grown = [&](std::size_t most_births) {
+        adaptive_config config;
+        config.densify_grad_threshold = 0;  // whatever moved at all
+        config.densify_until_iter = 3;      // densifies twice
+        config.least_opacity = 0;
+        const auto grown = [&](std::size_t budget) {
             e->set_model(model);
             e->reserve();
             e->step(still);
-            rule.most_births = most_births;
-            e->densify(rule);
+            config.budget = budget;
+            densify_once(*e, config, 1100, copies_all);
             return e->get_model();
         };
-        CHECK(grown(0).count() == 1000);
-        const gaussians few = grown(40), many = grown(1000);
+        CHECK(grown(1000).count() == 1000);
+        const gaussians few = grown(1080), many = grown(0);
         CHECK(few.count() == 1040);
         CHECK(many.count() == 1100);
         // The 40 are among the 100: all that is there twice in one is in the other.
@@ -122,13 +122,10 @@ TEST_CASE("a copy and its original together are as opaque as it was alone") {
     for (const auto make : engines()) {
         const auto e = make();
         look_at_all(*e, scene, model);
-        densify_rule rule;
-        rule.gradient = 1e-12f;
-        rule.least_opacity = 0;
-        rule.dense_scale = 1e9f;
-        rule.cap = 1000;
-        rule.revised_opacity = true;
-        e->densify(rule);
+        adaptive_config config;
+        config.densify_grad_threshold = 1e-12;
+        config.least_opacity = 0;
+        densify_once(*e, config, 1000, copies_all);
         const gaussians grown = e->get_model();
         REQUIRE(grown.count() > 300);
         for (std::size_t i = 0, parent = 0; i < grown.count(); ++parent) {
@@ -164,12 +161,10 @@ TEST_CASE("a split leaves two that are 1.6 times smaller, near their parent") {
         auto still = plan_for(0);
         still.rates = {};
         e->step(still);
-        densify_rule rule;
-        rule.gradient = 1e-12f;
-        rule.least_opacity = 0;
-        rule.dense_scale = 1e-9f;  // split, not copied
-        rule.cap = 1000;
-        e->densify(rule);
+        adaptive_config config;
+        config.densify_grad_threshold = 1e-12;
+        config.least_opacity = 0;
+        densify_once(*e, config, 1000, splits_all);
         const gaussians grown = e->get_model();
         REQUIRE(grown.count() > 300);
         std::size_t halves = 0;
@@ -204,10 +199,7 @@ TEST_CASE("the transparent are dropped, and none for its size") {
     for (const auto make : engines()) {
         const auto e = make();
         e->set_model(model);
-        densify_rule rule;
-        rule.gradient = 1e9f;
-        rule.cap = 1000;
-        e->densify(rule);
+        densify_once(*e, {.densify_grad_threshold = 1e9}, 1000);
         CHECK(e->count() == 200);
     }
 }
@@ -219,9 +211,10 @@ TEST_CASE("pruning drops the share that the views made least of, and keeps the o
     for (const auto make : engines()) {
         const auto e = make();
         look_at_all(*e, scene, model);
-        e->prune(0.001);  // less than one
+        prune_once(*e, 0.001);  // less than one
         CHECK(e->count() == 300);
-        e->prune(0.2);
+        look_at_all(*e, scene, model);
+        prune_once(*e, 0.2);
         const gaussians rest = e->get_model();
         REQUIRE(rest.count() == 240);
         CHECK(std::ranges::count(rest.opacity, -20.0f) == 15);
@@ -248,7 +241,7 @@ TEST_CASE("pruning takes those that are pulled less before those that are pulled
     for (const auto make : engines()) {
         const auto e = make();
         look_at_all(*e, scene, model);
-        e->prune(0.4);
+        prune_once(*e, 0.4);
         const gaussians rest = e->get_model();
         REQUIRE(rest.count() == 180);
         CHECK(count(rest, -20.0f) == 0);
@@ -264,7 +257,7 @@ TEST_CASE("momentum goes along with those that pruning keeps") {
         const auto e = make();
         const auto trained = [&](bool prunes) {
             look_at_all(*e, scene, model, 1);
-            if (prunes) e->prune(0.2);
+            if (prunes) prune_once(*e, 0.2);
             auto plan = plan_for(0);
             plan.sh_degree = 1;
             plan.rates.fill(0.01f);
@@ -334,9 +327,7 @@ TEST_CASE("what a Gaussian missed is made up for, also by those that move up whe
         e->set_model(model);
         e->step(plan(0, 0));  // gives momentum to what it sees
         for (int i = 0; i < missed; ++i) e->step(plan(1, 0));
-        densify_rule rule;
-        rule.gradient = 1e30f;
-        e->densify(rule);
+        densify_once(*e, {.densify_grad_threshold = 1e30}, 0);
         REQUIRE(e->count() == model.count() - dropped);
         e->reserve();
         e->step(plan(0, rate));
@@ -361,7 +352,10 @@ TEST_CASE("opacities are brought down, never up") {
     for (const auto make : engines()) {
         const auto e = make();
         e->set_model(model);
-        e->reset_opacity(0.01f);
+        e->set_strategy({.adaptive = {.densify_from_iter = 7}}, {.white = true});
+        e->adjust(6);
+        CHECK(e->get_model().opacity == model.opacity);
+        e->adjust(7);
         const float most = std::log(0.01f / 0.99f);
         CHECK(e->get_model().opacity == std::vector<float>{-9, -4.6f, most, most});
     }
@@ -394,7 +388,9 @@ TEST_CASE("what is nearer to a training camera than the near plane is hidden, an
         const auto e = make();
         e->set_views(scene.train, scene.test);
         e->set_model(model);
-        e->clear_cameras();
+        e->adjust(99);
+        CHECK(e->get_model().opacity == model.opacity);
+        e->adjust(100);
         CHECK(e->get_model().opacity == expected);
         CHECK(e->get_model().mean == model.mean);
     }

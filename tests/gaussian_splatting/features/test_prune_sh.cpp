@@ -8,8 +8,8 @@
 #include <random>
 
 #include "../training/engines.hpp"
-#include "densify/adaptive/densifier.hpp"
 #include "device/cpu/cpu.hpp"
+#include "features/sh_degree/prune_sh.hpp"
 #include "training/initialise.hpp"
 
 namespace {
@@ -111,7 +111,7 @@ TEST_CASE("Gaussians lose their bands as long as views change by no more than wa
         for (const double change : {1e-4, 3e-3, 1e-2, 1.0}) {
             CAPTURE(change);
             const auto e = engine_with(make, scene, model);
-            const std::size_t banded = e->drop_bands(change, how);
+            const std::size_t banded = e->prune_sh(change, how);
             CHECK(banded < last);
             CHECK((banded == 1000 || banded % gs::block_length == 0));
             const double differs = difference(*e, *whole, scene);
@@ -127,11 +127,11 @@ TEST_CASE("Gaussians lose their bands as long as views change by no more than wa
         // Where one Gaussian is all that pixels show, what is said is what comes.
         const gaussians one = one_before_all(scene);
         const auto e = engine_with(make, scene, one), before = engine_with(make, scene, one);
-        CHECK(e->drop_bands(1, how) == 0);
+        CHECK(e->prune_sh(1, how) == 0);
         const double differs = difference(*e, *before, scene);
         CHECK(differs > 0.01);
-        CHECK(engine_with(make, scene, one)->drop_bands(0.98 * differs, how) == 1);
-        CHECK(engine_with(make, scene, one)->drop_bands(1.05 * differs, how) == 0);
+        CHECK(engine_with(make, scene, one)->prune_sh(0.98 * differs, how) == 1);
+        CHECK(engine_with(make, scene, one)->prune_sh(1.05 * differs, how) == 0);
     }
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("a Gaussian without bands has the colour that pixels of the training v
     for (const auto make : engines()) {
         const gaussians one = one_before_all(scene);
         const auto e = engine_with(make, scene, one), before = engine_with(make, scene, one);
-        CHECK(e->drop_bands(1, how) == 0);
+        CHECK(e->prune_sh(1, how) == 0);
         for (std::size_t c = 0; c < 3; ++c) {
             double sum[2] = {};
             for (const gs::view& v : scene.train) {
@@ -160,7 +160,7 @@ TEST_CASE("all else of Gaussians that lose bands stays, they come last, and the 
     for (const auto make : engines()) {
         const gaussians model = banded_model(scene, 1000);
         const auto e = engine_with(make, scene, model);
-        const std::size_t banded = e->drop_bands(0.01, how);
+        const std::size_t banded = e->prune_sh(0.01, how);
         REQUIRE(banded > 0);
         REQUIRE(banded < 900);
         const gaussians now = e->get_model();
@@ -185,7 +185,7 @@ TEST_CASE("all else of Gaussians that lose bands stays, they come last, and the 
         auto still = plan_for(0);
         still.rates = {};
         e->step(still);
-        e->prune(0.2);
+        prune_once(*e, 0.2);
         const gaussians fewer = e->get_model();
         REQUIRE(fewer.count() == 800);
         const auto first = origins(fewer, now);
@@ -221,7 +221,7 @@ TEST_CASE("training goes on as if the bands that are not there were zero and did
                 e->step(plan);
             }
             const gaussians before = whole->get_model();
-            const std::size_t banded = e->drop_bands(0, how);
+            const std::size_t banded = e->prune_sh(0, how);
             CHECK(banded >= 500 - gs::block_length);
             REQUIRE(banded < 500 + gs::block_length);
             const auto from = origins(e->get_model(), before);
@@ -255,16 +255,17 @@ TEST_CASE("bands that are not there have no memory, in values and moments, and t
         all->zero(d);
     }
     of.last_step.resize(count);
-    std::vector<gs::train::colour_spread> spreads(count);
+    std::vector<gs::train::sh_error> errors(count);
     for (std::size_t i = 0; i < count; ++i) {
         of.values[3].data()[i] = static_cast<float>(i);  // the opacity: who it is
         of.last_step.data()[i] = static_cast<std::uint32_t>(i);
-        spreads[i] = {1, {0.5f, 0.5f, 0.5f}, static_cast<float>((7 * i) % count)};
+        errors[i] = {1, {0.5f, 0.5f, 0.5f}, static_cast<float>((7 * i) % count)};
     }
-    gs::train::densification<device> densification(d);
-    densification.drop_bands(of, count, 3, spreads.data(), 97 * 96 / 2);  // of 97, by the sum of 0 to 96
+    gs::train::parameter_gather<device> gather(d);
+    gs::train::sh_pruner<device> pruner(d, gather);
+    pruner.prune(of, count, 3, errors.data(), 97 * 96 / 2);  // of 97, by the sum of 0 to 96
     CHECK(of.values.banded() == count);
-    densification.drop_bands(of, count, 3, spreads.data(), 500 * 499 / 2);
+    pruner.prune(of, count, 3, errors.data(), 500 * 499 / 2);
     CHECK(of.values.banded() == 512);
     for (auto* all : {&of.values, &of.first, &of.second}) {
         std::size_t floats = 0;
@@ -275,7 +276,7 @@ TEST_CASE("bands that are not there have no memory, in values and moments, and t
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t who = of.last_step.data()[i];
         wrong += of.values[3].data()[i] != static_cast<float>(who);
-        wrong += (spreads[who].squares < static_cast<float>(count - 512)) != (i >= 512);
+        wrong += (errors[who].squares < static_cast<float>(count - 512)) != (i >= 512);
     }
     CHECK(wrong == 0);
 }

@@ -104,7 +104,7 @@ struct compare_answer {
 /// Who stays and how urgently each wants to grow: the smaller the key the more.
 struct judgement {
     std::vector<std::uint32_t> stays, urgency;
-    std::uint64_t silent;  ///< were drawn and took no gradient
+    std::uint64_t without_gradient;  ///< were drawn and took no gradient
 };
 
 /// What goes to each bucket, in the order of the items, as far as there is room for it; and how much that is
@@ -132,7 +132,7 @@ struct backend {
                                                 const std::vector<std::vector<std::uint32_t>>& takes_part,
                                                 std::uint32_t steps_before);
     judgement (*judge)(const std::vector<sighting>&, const std::vector<double>& opacities,
-                       const gs::train::densify_rule&);
+                       const gs::train::densify_config&);
     std::vector<std::uint64_t> (*prefix_sum)(const std::vector<std::uint32_t>&);
     /// The numbers from 0, sorted by their keys.
     std::vector<std::uint32_t> (*sort)(const std::vector<std::uint32_t>& keys);

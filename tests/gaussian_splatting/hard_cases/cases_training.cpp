@@ -87,12 +87,12 @@ TEST_CASE("case 21: the logit of an opacity of 0 and of 1") {
 }
 
 TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e30") {
-    gs::train::densify_rule rule;
+    gs::train::densify_config config;
     constexpr std::uint32_t none = 0xffffffffu;
     on_each_backend([&](const backend& b) {
         // Never seen; seen and still; seen a little, much, and by 1e30; what a broken sum would leave.
         const std::vector<sighting> seen{{0, 0}, {0, 7}, {1e-3, 1e3}, {1, 1e3}, {1e30, 1}, {1e38, 100}};
-        const judgement j = b.judge(seen, std::vector<double>(seen.size(), 2.0), rule);
+        const judgement j = b.judge(seen, std::vector<double>(seen.size(), 2.0), config);
         CHECK(j.stays == std::vector<std::uint32_t>(seen.size(), 1));
         CHECK(j.urgency[0] == none);
         CHECK(j.urgency[1] == none);
@@ -101,9 +101,9 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
         CHECK(j.urgency[4] < j.urgency[3]);
         CHECK(j.urgency[5] < j.urgency[4]);
         // Nobody grows who was never seen, however low the bar.
-        rule.gradient = 0;
-        CHECK(b.judge({{0, 0}}, {2.0}, rule).urgency[0] == none);
-        rule.gradient = gs::train::densify_rule{}.gradient;
+        config.gradient = 0;
+        CHECK(b.judge({{0, 0}}, {2.0}, config).urgency[0] == none);
+        config.gradient = gs::train::densify_config{}.gradient;
     });
     // A gradient of 1e30 by the picture, on its way through the backward pass into the statistics.
     on_each_variant([&](const backend& b, accumulator how) {
@@ -243,9 +243,9 @@ TEST_CASE("case 24: an opacity of 0.01 at 1.4 standard deviations has no gradien
         for (const auto& gradients : a.gradients) CHECK(largest(gradients) == 0);
         // Their tile is theirs to draw in all the same, and that they took no gradient is reported.
         for (const projected_splat& s : b.project(q)) CHECK(s.drawn);
-        CHECK(b.judge(a.sightings, q.parameters[3], {}).silent == 2);
+        CHECK(b.judge(a.sightings, q.parameters[3], {}).without_gradient == 2);
         const answer seen = b.ask(visible);
         for (const double by_opacity : seen.gradients[3]) CHECK(by_opacity != 0);
-        CHECK(b.judge(seen.sightings, visible.parameters[3], {}).silent == 0);
+        CHECK(b.judge(seen.sightings, visible.parameters[3], {}).without_gradient == 0);
     });
 }

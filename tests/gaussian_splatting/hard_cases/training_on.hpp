@@ -101,7 +101,7 @@ class training_on {
     }
 
     static judgement judge(const std::vector<sighting>& sightings, const std::vector<double>& opacities,
-                           const gs::train::densify_rule& rule) {
+                           const gs::train::densify_config& config) {
         Device device;
         memory_on<Device, float> on(device);
         const std::size_t n = sightings.size();
@@ -111,21 +111,21 @@ class training_on {
         buffer<gs::raster::visibility> seen;
         buffer<float> log_scale, opacity;
         buffer<std::uint32_t> stays, large, urgency, identities;
-        buffer<unsigned long long> silent;
+        buffer<unsigned long long> without_gradient;
         on.put_as_they_are(seen, host);
         on.put(log_scale, std::vector<double>(3 * gs::in_whole_blocks(n), -3.0));
         on.put(opacity, opacities);
         for (auto* b : {&stays, &large, &urgency, &identities}) b->resize(n);
-        silent.resize(1);
-        device.zero(silent.data(), 1);
+        without_gradient.resize(1);
+        device.zero(without_gradient.data(), 1);
         gs::parameter_arrays<const float> model;
         model.log_scale = log_scale.data();
         model.opacity = opacity.data();
         device.for_each_index(n,
-                              gs::train::judge_gaussians{model, seen.data(), rule, stays.data(), large.data(),
-                                                         urgency.data(), identities.data(), silent.data()});
+                              gs::train::classify{model, seen.data(), config, stays.data(), large.data(),
+                                                         urgency.data(), identities.data(), without_gradient.data()});
         return {on.get_as_they_are(stays.data(), n), on.get_as_they_are(urgency.data(), n),
-                on.get_as_they_are(silent.data(), 1)[0]};
+                on.get_as_they_are(without_gradient.data(), 1)[0]};
     }
 };
 

@@ -37,6 +37,24 @@ inline gs::train::step_plan plan_for(std::size_t view) {
     gs::train::step_plan p;
     p.view = view;
     p.rates = s.rates_at(1);
-    p.watch = true;
     return p;
+}
+
+/// Densifies once, by what steps have collected, up to `cap` Gaussians. The strategy is `adaptive`: Gaussians
+/// larger than a hundredth of `extent` are split.
+inline gs::train::densify_report densify_once(gs::train::engine& e, gs::train::adaptive_config config,
+                                              std::size_t cap, double extent = 1) {
+    config.densify_from_iter = 0;
+    config.densification_interval = 1;
+    e.set_strategy({.adaptive = config}, {.extent = extent, .max_gaussians = cap});
+    return e.densify(1);
+}
+
+/// Removes this share of the Gaussians, by what steps have collected.
+inline void prune_once(gs::train::engine& e, double share) {
+    gs::train::adaptive_config config;
+    config.densify_until_iter = 0;
+    config.prune_share = share;
+    e.set_strategy({.adaptive = config}, {});
+    e.densify(1);
 }

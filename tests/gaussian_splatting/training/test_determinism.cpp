@@ -22,11 +22,12 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene) {
     gs::train::train_options o;
     o.schedule.iterations = 200;
     o.schedule.sh_degree_interval = 40;
-    o.schedule.densify_from_iter = 60;
-    o.schedule.densification_interval = 40;
-    o.schedule.densify_until_iter = 170;
-    o.schedule.opacity_reset_interval = 80;
-    o.schedule.densify_grad_threshold = 1e-5;
+    auto& adaptive = o.densification.adaptive;
+    adaptive.densify_from_iter = 60;
+    adaptive.densification_interval = 40;
+    adaptive.densify_until_iter = 170;
+    adaptive.opacity_reset_interval = 80;
+    adaptive.densify_grad_threshold = 1e-5;
     o.max_cap = 4000;
     o.gradient = gs::accumulator::fixed;
     e.set_views(scene.train, {}, o.schedule.num_downscales);

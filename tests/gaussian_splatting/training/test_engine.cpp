@@ -15,7 +15,6 @@
 namespace {
 
 using gs::gaussians;
-using gs::train::densify_rule;
 
 bool same(const gaussians& a, const gaussians& b) {
     return a.mean == b.mean && a.log_scale == b.log_scale && a.quaternion == b.quaternion &&
@@ -138,10 +137,7 @@ TEST_CASE("gradients of centres, in halves of the picture, are alike on photos o
             auto plan = plan_for(0);
             plan.rates = {};
             for (plan.view = 0; plan.view < scene.train.size(); ++plan.view) e->step(plan);
-            gs::train::densify_rule rule;
-            rule.cap = 1000;
-            rule.gradient = 1e-3f;
-            e->densify(rule);
+            densify_once(*e, {.densify_grad_threshold = 1e-3}, 1000);
             grown[static_cast<std::size_t>(downscales)] = static_cast<double>(e->count()) - 300;
         }
         CAPTURE(grown[0]);

@@ -223,13 +223,13 @@ TEST_CASE("Gaussians that take no gradient are counted") {
     for (const auto make : engines()) {
         const auto e = ready(make, scene, model);
         e->step(plan_for(0));
-        gs::train::densify_rule rule;
-        rule.gradient = 1e9f;
-        rule.least_opacity = 0;
-        rule.cap = 100;
-        const std::uint64_t silent = e->densify(rule);
-        CHECK(silent > 0);
-        CHECK(silent <= 30);
-        CHECK(e->densify(rule) == 0);  // nobody was drawn since
+        gs::train::adaptive_config config;
+        config.densify_grad_threshold = 1e9;
+        config.least_opacity = 0;
+        const auto counted = [&] { return densify_once(*e, config, 100).without_gradient; };
+        const std::uint64_t first = counted();
+        CHECK(first > 0);
+        CHECK(first <= 30);
+        CHECK(counted() == 0);  // no step since
     }
 }

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+
+#include "../../model/opacity.hpp"
+#include "../strategy.hpp"
+#include "adaptive_schedule.hpp"
+#include "densifier.hpp"
+
+namespace gs::train {
+
+/// Adaptive density control (Kerbl et al. 2023, section 5.2): at intervals Gaussians with large gradients are
+/// copied or split and transparent ones removed, opacities are reset, and after the last densification a
+/// share of the Gaussians is removed. `adaptive_schedule` has the timetable.
+template <class Device>
+class adaptive final : public strategy<Device> {
+  public:
+    adaptive(Device& device, const adaptive_config& config, const training_facts& facts)
+        : schedule_(config, facts), densifier_(device) {}
+
+    bool wants(int iteration) const override { return schedule_.wants(iteration); }
+    bool due(int iteration) const override { return schedule_.due(iteration); }
+    int count_is_final_after() const override { return schedule_.count_is_final_after(); }
+
+    densify_report run(int iteration, const run_context<Device>& c) override {
+        if (c.count == 0) return {};
+        if (schedule_.densifies(iteration)) {
+            const auto tally = densifier_.densify(c, schedule_.densify_config_at(iteration, c.count));
+            return {tally.count, tally.without_gradient};
+        }
+        const auto removed =
+            static_cast<std::size_t>(schedule_.share_to_prune() * static_cast<double>(c.count));
+        if (removed > 0) densifier_.prune(c, removed);
+        return {c.count - removed};
+    }
+
+    void adjust(int iteration, const trained_gaussians<Device>& g) override {
+        const auto values = g.parameters.values.write();
+        constexpr float reset_opacity = 0.01f;
+        if (schedule_.resets_opacity(iteration))
+            g.device.for_each_index(g.count,
+                                    lower_opacity{values.opacity, g.parameters.first.write().opacity,
+                                                  g.parameters.second.write().opacity, logit(reset_opacity)});
+        if (schedule_.hides_near_cameras(iteration))
+            g.device.for_each_index(
+                g.count, hide_near_camera{g.cameras, g.camera_count, values.mean, values.opacity, logit(0)});
+    }
+
+  private:
+    adaptive_schedule schedule_;
+    densifier<Device> densifier_;
+};
+
+}  // namespace gs::train

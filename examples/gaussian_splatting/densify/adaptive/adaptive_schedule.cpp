@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "adaptive_schedule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace gs::train {
+
+int adaptive_schedule::count_is_final_after() const { return std::max(densify_until(), prune_after()); }
+
+bool adaptive_schedule::densifies(int iteration) const {
+    return iteration > config_.densify_from_iter && iteration < densify_until() &&
+           iteration % config_.densification_interval == 0;
+}
+
+int adaptive_schedule::densify_until() const {
+    return std::min(config_.densify_until_iter.value_or(std::min(15000, facts_.iterations / 2)),
+                    facts_.iterations);
+}
+
+densify_config adaptive_schedule::densify_config_at(int iteration, std::size_t gaussians) const {
+    densify_config config;
+    config.dense_scale = static_cast<float>(0.01 * facts_.extent);
+    config.gradient = static_cast<float>(growth_threshold());
+    config.least_opacity = config_.least_opacity;
+    config.cap = facts_.max_gaussians;
+    if (const std::size_t budget = config_.budget; budget > 0) {
+        const auto left = static_cast<std::size_t>(densifications_from(iteration));
+        config.gradient = 0;
+        config.cap = std::min(config.cap, budget);
+        config.most_births = budget > gaussians ? (budget - gaussians + left - 1) / left : 0;
+    }
+    config.revised_opacity = config_.revised_opacity;
+    config.seed = facts_.seed;
+    config.step = static_cast<std::uint64_t>(iteration);
+    return config;
+}
+
+double adaptive_schedule::growth_threshold() const {
+    const double shorter = 15000.0 / std::clamp(densify_until(), 1, 15000);
+    return config_.densify_grad_threshold.value_or(8e-5 * std::pow(shorter, 0.25));
+}
+
+int adaptive_schedule::densifications_from(int iteration) const {
+    const int first = std::max(iteration, config_.densify_from_iter + 1);
+    return (densify_until() - 1) / config_.densification_interval -
+           (first - 1) / config_.densification_interval;
+}
+
+double adaptive_schedule::share_to_prune() const {
+    const int interval = config_.densification_interval;
+    const int first = (config_.densify_from_iter / interval + 1) * interval;
+    const bool grows = first < densify_until() && densify_until() < facts_.iterations;
+    return config_.prune_share.value_or(grows ? 0.2 : 0.0);
+}
+
+int adaptive_schedule::prune_after() const {
+    const int until = densify_until();
+    return share_to_prune() > 0 ? std::min(until + facts_.views, (until + facts_.iterations + 1) / 2) : 0;
+}
+
+bool adaptive_schedule::resets_opacity(int iteration) const {
+    const int interval = config_.opacity_reset_interval;
+    if (facts_.white && iteration == config_.densify_from_iter) return iteration < densify_until();
+    return iteration % interval == 0 && iteration + interval <= densify_until();
+}
+
+}  // namespace gs::train

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <warpagg/compiler.hpp>
+
+#include "../model/aosoa.hpp"
+#include "../model/parameters.hpp"
+#include "../optimize/trained_parameters.hpp"
+
+namespace gs::train {
+
+/// How a Gaussian of the new generation came to be. Copies and halves begin with moments of zero, the others
+/// keep the moments of their origin.
+enum class birth : std::uint32_t {
+    kept,      ///< the only successor of its origin
+    original,  ///< its origin, of which there is a copy
+    copy,
+    half  ///< one half of a split
+};
+
+/// Clears the flags of the Gaussians with the first ranks. One index for each rank.
+struct clear_ranked {
+    const std::uint32_t* gaussian_of;  ///< by rank
+    std::uint32_t* flags;
+
+    WARPAGG_HD void operator()(std::size_t rank) const { flags[gaussian_of[rank]] = 0; }
+};
+
+/// Gathers values and moments of one parameter for the new generation, in whole blocks. One index for each
+/// new value.
+struct gather_parameters {
+    std::size_t count;   ///< the first new Gaussians, which have the parameter
+    std::size_t before;  ///< the first old Gaussians, which have it; for all others it is zero
+    const std::uint32_t* origin;
+    const birth* births;
+    std::size_t width;
+    const float* from[3];
+    float* to[3];
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        const std::size_t gaussian = i / (block_length * width) * block_length + i % block_length;
+        const bool exists = gaussian < count && origin[gaussian] < before,
+                   keeps = exists && (births[gaussian] == birth::kept || births[gaussian] == birth::original);
+        const std::size_t source =
+            exists ? place(origin[gaussian], i / block_length % width, width) : std::size_t{0};
+        to[0][i] = exists ? from[0][source] : 0;
+        to[1][i] = keeps ? from[1][source] : 0;
+        to[2][i] = keeps ? from[2][source] : 0;
+    }
+};
+
+/// Gives each new Gaussian the last step of its origin. One index for each new Gaussian.
+struct gather_last_steps {
+    const std::uint32_t* origin;
+    const std::uint32_t* from;
+    std::uint32_t* to;
+
+    WARPAGG_HD void operator()(std::size_t i) const { to[i] = from[origin[i]]; }
+};
+
+/// Moves all parameters of the Gaussians, with the state of Adam, to a new generation: a reordering, with
+/// Gaussians removed or repeated. Owns the memory that this takes.
+template <class Device>
+class parameter_gather {
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+
+  public:
+    explicit parameter_gather(Device& device) : device_(device) {}
+
+    /// Makes room to describe up to `most` new Gaussians by `origins` and `births`, which lose their
+    /// contents.
+    void reserve(std::size_t most) {
+        origin_.resize(most);
+        births_.resize(most);
+    }
+    /// For each new Gaussian, the index of the old one that it comes from. To be filled before `run`.
+    std::uint32_t* origins() const { return origin_.data(); }
+    /// For each new Gaussian, how it comes from its origin. To be filled before `run`.
+    birth* births() const { return births_.data(); }
+
+    /// Replaces the Gaussians by `count` new ones, of which the first `with_sh` have the coefficients of SH
+    /// bands 1 to `sh_degree`: whole blocks, or all. These are zero where the origin has none. Does not wait.
+    void run(trained_parameters<Device>& all, std::size_t count, std::size_t with_sh, int sh_degree) {
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            if (has_parameter(p, sh_degree)) gather(all, p, is_band(p) ? with_sh : count);
+        for (auto* arrays : {&all.values, &all.first, &all.second}) arrays->set_banded(with_sh);
+        spare_steps_.resize(count);
+        device_.for_each_index(count,
+                               gather_last_steps{origin_.data(), all.last_step.data(), spare_steps_.data()});
+        all.last_step.resize(count);
+        device_.copy(all.last_step.data(), spare_steps_.data(), count);
+    }
+
+    /// Gives back the memory of copies, for a caller that is unlikely to be followed by another one.
+    void release() {
+        for (auto& s : spare_) s = buffer<float>();
+    }
+
+  private:
+    void gather(trained_parameters<Device>& all, std::size_t p, std::size_t count) {
+        const std::size_t width = width_of(static_cast<parameter>(p)), n = in_whole_blocks(count) * width;
+        constexpr std::size_t every = std::numeric_limits<std::size_t>::max();
+        const std::array arrays{&all.values[p], &all.first[p], &all.second[p]};
+        for (auto& s : spare_) s.resize(n);
+        device_.for_each_index(n, gather_parameters{count,
+                                                    is_band(p) ? all.values.banded() : every,
+                                                    origin_.data(),
+                                                    births_.data(),
+                                                    width,
+                                                    {arrays[0]->data(), arrays[1]->data(), arrays[2]->data()},
+                                                    {spare_[0].data(), spare_[1].data(), spare_[2].data()}});
+        for (std::size_t k = 0; k < arrays.size(); ++k) {
+            if (n < arrays[k]->size()) *arrays[k] = buffer<float>();  // gives memory back
+            arrays[k]->resize(n);
+            device_.copy(arrays[k]->data(), spare_[k].data(), n);
+        }
+    }
+
+    Device& device_;
+    buffer<std::uint32_t> origin_;
+    buffer<birth> births_;
+    std::array<buffer<float>, 3> spare_;  ///< values and moments of one parameter
+    buffer<std::uint32_t> spare_steps_;
+};
+
+}  // namespace gs::train

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "../model/parameters.hpp"
+#include "../optimize/trained_parameters.hpp"
+#include "../render/geometry/list_capacity.hpp"
+#include "../render/project/project_backward.hpp"
+#include "parameter_gather.hpp"
+#include "score_views.hpp"
+#include "timetable.hpp"
+
+namespace gs::train {
+
+/// The Gaussians in training. A strategy may change their parameters in place.
+template <class Device>
+struct trained_gaussians {
+    Device& device;
+    trained_parameters<Device>& parameters;
+    std::size_t count;
+    int sh_degree;
+    const glm::vec3* cameras;  ///< centers of the training cameras, in memory of the device
+    std::size_t camera_count;
+};
+
+/// What `strategy::after_step` works on.
+template <class Device>
+struct step_context : trained_gaussians<Device> {
+    std::array<float, parameter_count> rates;  ///< learning rates of this step
+    /// A step is void if its tile lists did not fit. Kernels must change nothing if `room.exceeded()`.
+    raster::list_room room;
+};
+
+/// What `strategy::run` works on.
+template <class Device>
+struct run_context : trained_gaussians<Device> {
+    /// For each Gaussian, what the steps since the last `run` collected.
+    const raster::visibility* statistics;
+    parameter_gather<Device>& gather;  ///< moves Gaussians to their new places
+    score_views& views;                ///< draws training views, to score pixels
+};
+
+/// A densification strategy decides which Gaussians to add, move and remove. The engine creates one for each
+/// training from the table in strategies.hpp and calls it in this order in each iteration:
+///
+///     (the training step, which collects statistics if `wants`)
+///     after_step  at the end of the step
+///     run         if `due`
+///     adjust      after everything else that changes the model between two steps
+///
+/// The same calls with the same statistics must have the same result: random numbers come from
+/// `counter_random` with `training_facts::seed`.
+template <class Device>
+class strategy : public timetable {
+  public:
+    /// Names of the gradient columns that the strategy needs in addition to `raster::visibility`. Creating
+    /// the strategy fails if the backward pass does not sum one of them.
+    virtual std::vector<std::string> gradient_columns() const { return {}; }
+
+    /// Work of each step, such as noise or penalties on parameters. It is part of the iteration that a GPU
+    /// records and replays: it may launch kernels, but neither wait nor read a result.
+    virtual void after_step(int /*iteration*/, const step_context<Device>& /*context*/) {}
+    /// Share of the key under which iterations are recorded. `after_step` may allocate memory only in the
+    /// first iteration with a new key. The number of Gaussians is part of the key already.
+    virtual std::size_t memory_key(int /*iteration*/) const { return 0; }
+
+    /// Adds, moves and removes Gaussians, and may wait for the device. Afterwards the statistics are zero.
+    virtual densify_report run(int iteration, const run_context<Device>& context) = 0;
+
+    /// Changes parameters between two steps, such as opacity resets. Keeps number and order of the Gaussians,
+    /// and does not wait.
+    virtual void adjust(int /*iteration*/, const trained_gaussians<Device>& /*gaussians*/) {}
+};
+
+}  // namespace gs::train

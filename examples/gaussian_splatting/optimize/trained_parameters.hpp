@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "../model/parameter_memory.hpp"
+
+namespace gs::train {
+
+/// The parameters of the Gaussians in training, with the state of Adam.
+template <class Device>
+struct trained_parameters {
+    parameter_memory<Device> values, first, second;  ///< `first` and `second`: Adam's moments
+    /// For each Gaussian, the step in which it was last updated.
+    typename Device::template buffer<std::uint32_t> last_step;
+};
+
+}  // namespace gs::train
