@@ -80,11 +80,11 @@ nlohmann::ordered_json measure(gs::train::engine& engine, const options& o) {
                count;
     };
     steps(static_cast<int>(view_count));
-    const std::uint64_t before = engine.pairs();
-    engine.sample_times(static_cast<int>(view_count) + 1);
+    const std::uint64_t before = engine.profile().pairs();
+    engine.profile().sample_times(static_cast<int>(view_count) + 1);
     std::vector<double> milliseconds;
     for (std::size_t b = 0; b < blocks; ++b) milliseconds.push_back(steps(o.steps));
-    const auto times = engine.times();
+    const auto times = engine.profile().times();
     nlohmann::ordered_json stages;
     for (std::size_t i = 0; i < gs::device::stage_names.size(); ++i)
         stages[gs::device::stage_names[i]] = times.milliseconds[i] / std::max(times.sampled, 1);
@@ -93,8 +93,8 @@ nlohmann::ordered_json measure(gs::train::engine& engine, const options& o) {
             {"least_milliseconds", milliseconds.front()},
             {"most_milliseconds", milliseconds.back()},
             {"stages", stages},
-            {"pairs", static_cast<double>(engine.pairs() - before) / (blocks * static_cast<double>(o.steps))},
-            {"skipped_steps", engine.skipped_steps()}};
+            {"pairs", static_cast<double>(engine.profile().pairs() - before) / (blocks * static_cast<double>(o.steps))},
+            {"skipped_steps", engine.take_report().skipped}};
 }
 
 int bench(const options& o) {
@@ -117,12 +117,12 @@ int bench(const options& o) {
     nlohmann::ordered_json answer{{"gaussians", engine->count()},
                                   {"pixels", o.side * o.side},
                                   {"steps", o.steps},
-                                  {"device", engine->device_name()}};
+                                  {"device", engine->profile().device_name()}};
     answer.update(measure(*engine, o));
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     answer["peak_host_bytes"] = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-    answer["peak_device_bytes"] = engine->peak_device_bytes();
+    answer["peak_device_bytes"] = engine->profile().peak_device_bytes();
     std::cout << answer.dump() << '\n';
     return 0;
 }

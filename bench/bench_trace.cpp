@@ -64,12 +64,12 @@ class training {
         engine_->set_strategy({}, {.iterations = 1 << 20});  // which collects statistics
         engine_->reserve();
         run(static_cast<int>(2 * views_));  // until nothing grows any more
-        engine_->sample_times(1 << 30);     // which takes the next one's times, and no more
+        engine_->profile().sample_times(1 << 30);     // which takes the next one's times, and no more
         run(1);
     }
 
     std::size_t gaussians() const { return engine_->count(); }
-    std::string device() const { return engine_->device_name(); }
+    std::string device() const { return engine_->profile().device_name(); }
 
     /// Returns milliseconds an iteration, from the first launch to the last one's end.
     double run(int iterations) {
@@ -79,7 +79,7 @@ class training {
             ++plan_.iteration;
             engine_->step(plan_);
         }
-        engine_->wait();
+        engine_->profile().wait();
         return std::chrono::duration<double, std::milli>(clock::now() - start).count() / iterations;
     }
 

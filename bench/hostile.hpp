@@ -13,7 +13,7 @@
 #include "scene/look_at.hpp"
 #include "readers/load_scene.hpp"
 #include "readers/synthetic/synthetic.hpp"
-#include "training/trainer.hpp"
+#include "training/training.hpp"
 
 /// Something to train: at first as it should be, then made hard.
 struct trial {

@@ -53,7 +53,7 @@ class contest_on {
         });
         pairs_.push_back([this, renderer] {
             unsigned long long n = 0;
-            device_.download(&n, renderer->pairs(), 1);
+            device_.download(&n, renderer->profile().pairs(), 1);
             return static_cast<double>(n);
         });
     }

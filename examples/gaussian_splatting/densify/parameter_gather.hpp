@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <warpagg/compiler.hpp>
+#include <warpagg/core/compiler.hpp>
 
 #include "../model/aosoa.hpp"
 #include "../model/parameters.hpp"

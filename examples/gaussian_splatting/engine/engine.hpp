@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../device/stages.hpp"
+#include "../device/profiler.hpp"
 #include "../model/gaussians.hpp"
 #include "../scene/scene.hpp"
 #include "feature_state.hpp"
@@ -56,7 +56,7 @@ class engine {
                                       int sh_degree = 3) = 0;
     /// Compares a held-out view with its photo, both clamped to [0, 1]. If `picture` is not null, it receives
     /// the render, not clamped.
-    virtual quality measure(std::size_t test_view, const std::array<float, 3>& background,
+    virtual image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
                             std::vector<float>* picture = nullptr) = 0;
 
     std::size_t count() const { return count_; }

@@ -18,7 +18,7 @@ namespace gs::train {
 /// What stays the same for all steps of a training run.
 struct training_setup {
     training_facts facts;
-    strategy_settings densify;
+    strategy_settings densification;
     std::string loss = "l1_ssim";
     /// The features that are on, by name, with the values that they begin from.
     std::map<std::string, std::vector<float>, std::less<>> features;

@@ -216,9 +216,9 @@ class device_engine final : public engine, device::profiler {
     /// @}
 
     void start(const training_setup& setup) {
-        auto strategy = parts_.make_strategy(device_, setup.densify, setup.facts);
+        auto strategy = parts_.make_strategy(device_, setup.densification, setup.facts);
         if (const auto columns = strategy->gradient_columns(); !columns.empty())
-            throw error("the densification strategy '" + setup.densify.name +
+            throw error("the densification strategy '" + setup.densification.name +
                         "' needs the gradient column '" + columns.front() +
                         "', which the backward pass does not sum: choose another strategy");
         loss_ = parts_.make_loss(device_, setup.loss);

@@ -37,7 +37,7 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     setup.facts.max_gaussians = options.max_cap;
     setup.facts.seed = options.seed;
     setup.facts.gradient = options.gradient;
-    setup.densify = options.densify;
+    setup.densification = options.densification;
     setup.loss = options.loss;
     for (const auto& feature : options.features.all())
         if (feature.on) setup.features[feature.name] = feature.values;

@@ -26,7 +26,7 @@ struct background_choice {
 
 struct train_options {
     train::schedule schedule;
-    strategy_settings densify;
+    strategy_settings densification;
     std::size_t max_cap = 0;  ///< most Gaussians
     std::string loss = "l1_ssim";
     std::uint64_t seed = 0;
@@ -85,7 +85,8 @@ struct action {
 class training {
   public:
     /// Precondition: `engine` has the scene's views and a model.
-    training(engine& engine, const scene& scene, const train_options& options, const train_events& events);
+    training(train::engine& engine, const gs::scene& scene, const train_options& options,
+             const train_events& events);
 
     void add(action action);
     /// Runs all iterations. A gradient that is not finite is left out of its step, and a warning names the

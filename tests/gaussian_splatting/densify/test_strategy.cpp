@@ -12,7 +12,7 @@
 #include "device/cpu/cpu.hpp"
 #include "training/device_engine.hpp"
 #include "training/initialise.hpp"
-#include "training/trainer.hpp"
+#include "training/training.hpp"
 
 namespace {
 
@@ -143,7 +143,7 @@ TEST_CASE("a second strategy trains through the same interface, with its own int
     o.schedule.sh_degree = 1;
     o.schedule.num_downscales = 0;
     o.max_cap = 1000;
-    o.gradient = gs::gradient_policy::fixed;
+    o.gradient = gs::accumulator::fixed;
     const gs::gaussians model = gs::from_points(scene.points, 1, 500, 1);
     calls.clear();
     engine.set_views(scene.train, {});

@@ -24,7 +24,7 @@
 #include "../../../examples/gaussian_splatting/losses/inverse_depth/depth_gradient.hpp"
 #include "../../../examples/gaussian_splatting/render/geometry/effect_set.hpp"
 #include "../../../examples/gaussian_splatting/training/initialise.hpp"
-#include "../../../examples/gaussian_splatting/training/trainer.hpp"
+#include "../../../examples/gaussian_splatting/training/training.hpp"
 #include "../training/engines.hpp"
 
 using namespace gs::effects;
@@ -154,8 +154,8 @@ TEST_CASE("gradients by the picture and by the exposure are those of central dif
         CAPTURE(pixels);
         const auto picture = random_picture(random, 3 * pixels), weights = random_picture(random, 3 * pixels);
         // Of the sum of weights and exposed values, by an exposure that was learnt.
-        gs::train::exposures<device_type> exposures(device);
-        exposures.set({gs::train::unexposed, gs::train::unexposed});
+        gs::features::exposures<device_type> exposures(device);
+        exposures.set({gs::features::identity_exposure, gs::features::identity_exposure});
         const auto show = [&](const std::vector<float>& of) {
             const float* shown = exposures.show(1, of.data(), pixels);
             return std::vector<float>(shown, shown + 3 * pixels);
@@ -163,7 +163,7 @@ TEST_CASE("gradients by the picture and by the exposure are those of central dif
         CHECK(show(picture) == picture);
         for (int i = 0; i < 30; ++i) exposures.learn(1, picture.data(), weights.data(), pixels, 0.02f, {});
         const auto values = exposures.get();
-        CHECK(values[0] == gs::train::unexposed);
+        CHECK(values[0] == gs::features::identity_exposure);
         for (const float x : {values[1][0], values[1][5], values[1][10]})
             CHECK(x == doctest::Approx(0.4).epsilon(
                            1e-3));  // each step is of the rate: all gradients are positive
@@ -192,8 +192,8 @@ TEST_CASE("gradients by the picture and by the exposure are those of central dif
 
 TEST_CASE("a step without room, or whose gradient is not finite, leaves the exposure") {
     gs::device::cpu device;
-    gs::train::exposures<gs::device::cpu> exposures(device);
-    exposures.set({gs::train::unexposed});
+    gs::features::exposures<gs::device::cpu> exposures(device);
+    exposures.set({gs::features::identity_exposure});
     const auto before = exposures.get();
     const std::vector<float> picture(3, 0.5f), nothing(3, std::nanf(""));
     const std::uint64_t needed = 2;
@@ -222,7 +222,7 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
         camera.cx = 0.4 * width;
         std::vector<float> coefficients = random_picture(random, gs::sky_width);
         const auto weights = random_picture(random, 3 * pixels), through = random_picture(random, pixels);
-        gs::train::sky<gs::device::cpu> sky(device);
+        gs::features::sky<gs::device::cpu> sky(device);
         CHECK(sky.draw(camera) == nullptr);
         // Of the sum of weights and what comes through of the sky.
         const auto loss = [&] {
@@ -349,7 +349,7 @@ TEST_CASE("photos of different exposures are fitted, and their mean stays") {
             o.schedule.iterations = 400;
             o.schedule.sh_degree = 0;
             o.max_cap = 4000;
-            if (exposes) o.exposures.assign(scene.train.size(), gs::train::unexposed);
+            if (exposes) o.exposures.assign(scene.train.size(), gs::features::identity_exposure);
             e->set_views(scene.train, {}, o.schedule.num_downscales);
             e->set_model(gs::from_points(scene.points, 0, 3000, 1));
             gs::train::train_events events{[&](const gs::train::progress& p) { psnr[exposes] = p.psnr; },
@@ -453,7 +453,7 @@ TEST_CASE("a review adds bands that what is left of photos calls for, and drops 
             CHECK_FALSE(left.change);
             CHECK(left.unexplained[0] > 0);
             if (glossy) continue;
-            e->set_sh_degree(2);
+            sh_of(*e).set_degree(2);
             CHECK(review_bands(*e, scene, {}, 2).sh_degree == 0);
             gs::gaussians model = e->get_model();
             for (std::size_t i = 0; i < model.sh_rest.size(); ++i)
@@ -470,12 +470,12 @@ TEST_CASE("test photos are exposed as their neighbours, if training photos are")
     gs::scene scene;
     for (const char* name : {"e", "a", "c", "g"}) scene.train.emplace_back().name = name;
     for (const char* name : {"0", "b", "d", "z"}) scene.test.emplace_back().name = name;
-    const auto gain = [](float x) { return gs::train::exposure{x, 0, 0, 0, 0, x, 0, 0, 0, 0, x, 0}; };
+    const auto gain = [](float x) { return gs::features::exposure{x, 0, 0, 0, 0, x, 0, 0, 0, 0, x, 0}; };
     const std::vector walk{gain(1.2f), gain(0.8f), gain(1), gain(1.4f)};
     CHECK(gs::evaluate::test_exposures(scene, walk) ==
           std::vector{gain(0.8f), gain(0.5f * (0.8f + 1)), gain(0.5f * (1 + 1.2f)), gain(1.4f)});
     const std::vector jumps{gain(0.6f), gain(0.8f), gain(1.4f), gain(1.2f)};
-    CHECK(gs::evaluate::test_exposures(scene, jumps) == std::vector(4, gs::train::unexposed));
+    CHECK(gs::evaluate::test_exposures(scene, jumps) == std::vector(4, gs::features::identity_exposure));
 }
 
 TEST_CASE("what test views are shown with is what they are measured with") {
@@ -486,7 +486,7 @@ TEST_CASE("what test views are shown with is what they are measured with") {
         e->set_model(gs::from_points(scene.points, 0, 1000, 1));
         std::vector<float> plain, darker;
         const double before = e->measure(1, {}, &plain).psnr();
-        auto half = std::vector(scene.test.size(), gs::train::unexposed);
+        auto half = std::vector(scene.test.size(), gs::features::identity_exposure);
         half[1] = {0.5f, 0, 0, 0.1f, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0};
         e->set_test_exposures(half);
         CHECK(e->measure(1, {}, &darker).psnr() < before);

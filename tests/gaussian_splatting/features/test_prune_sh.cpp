@@ -111,7 +111,7 @@ TEST_CASE("Gaussians lose their bands as long as views change by no more than wa
         for (const double change : {1e-4, 3e-3, 1e-2, 1.0}) {
             CAPTURE(change);
             const auto e = engine_with(make, scene, model);
-            const std::size_t banded = e->prune_sh(change, how);
+            const std::size_t banded = sh_of(*e).prune(change);
             CHECK(banded < last);
             CHECK((banded == 1000 || banded % gs::block_length == 0));
             const double differs = difference(*e, *whole, scene);
@@ -127,7 +127,7 @@ TEST_CASE("Gaussians lose their bands as long as views change by no more than wa
         // Where one Gaussian is all that pixels show, what is said is what comes.
         const gaussians one = one_before_all(scene);
         const auto e = engine_with(make, scene, one), before = engine_with(make, scene, one);
-        CHECK(e->prune_sh(1, how) == 0);
+        CHECK(sh_of(*e).prune(1) == 0);
         const double differs = difference(*e, *before, scene);
         CHECK(differs > 0.01);
         CHECK(engine_with(make, scene, one)->prune_sh(0.98 * differs, how) == 1);
@@ -140,7 +140,7 @@ TEST_CASE("a Gaussian without bands has the colour that pixels of the training v
     for (const auto make : engines()) {
         const gaussians one = one_before_all(scene);
         const auto e = engine_with(make, scene, one), before = engine_with(make, scene, one);
-        CHECK(e->prune_sh(1, how) == 0);
+        CHECK(sh_of(*e).prune(1) == 0);
         for (std::size_t c = 0; c < 3; ++c) {
             double sum[2] = {};
             for (const gs::view& v : scene.train) {
@@ -160,7 +160,7 @@ TEST_CASE("all else of Gaussians that lose bands stays, they come last, and the 
     for (const auto make : engines()) {
         const gaussians model = banded_model(scene, 1000);
         const auto e = engine_with(make, scene, model);
-        const std::size_t banded = e->prune_sh(0.01, how);
+        const std::size_t banded = sh_of(*e).prune(0.01);
         REQUIRE(banded > 0);
         REQUIRE(banded < 900);
         const gaussians now = e->get_model();
@@ -179,9 +179,9 @@ TEST_CASE("all else of Gaussians that lose bands stays, they come last, and the 
         // As a model they are drawn alike, and what comes after gives bands back, as zeros.
         const auto other = engine_with(make, scene, now);
         CHECK(difference(*e, *other, scene) == 0);
-        e->set_sh_degree(1);
+        sh_of(*e).set_degree(1);
         CHECK(difference(*e, *other, scene) > 0);
-        e->set_sh_degree(3);
+        sh_of(*e).set_degree(3);
         auto still = plan_for(0);
         still.rates = {};
         e->step(still);
@@ -221,7 +221,7 @@ TEST_CASE("training goes on as if the bands that are not there were zero and did
                 e->step(plan);
             }
             const gaussians before = whole->get_model();
-            const std::size_t banded = e->prune_sh(0, how);
+            const std::size_t banded = sh_of(*e).prune(0);
             CHECK(banded >= 500 - gs::block_length);
             REQUIRE(banded < 500 + gs::block_length);
             const auto from = origins(e->get_model(), before);

@@ -15,7 +15,7 @@
 #include "lab/accumulator_set.hpp"
 #include "table.hpp"
 #include "training/initialise.hpp"
-#include "training/trainer.hpp"
+#include "training/training.hpp"
 
 using namespace hard_cases;
 

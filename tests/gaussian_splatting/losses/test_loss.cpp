@@ -102,8 +102,8 @@ outcome steps_with(gs::train::loss_factory<cpu> make) {
     auto plan = plan_for(0);
     plan.gradient = gs::accumulator::fixed;
     for (plan.iteration = 1; plan.iteration <= 3; ++plan.iteration) engine.step(plan);
-    return {engine.get_model(), engine.take_findings()[static_cast<std::size_t>(fault::sum)].count,
-            engine.take_training_loss().loss};
+    return {engine.get_model(), engine.take_report().faults[static_cast<std::size_t>(fault::sum)].count,
+            engine.take_report().loss.loss};
 }
 
 double largest_difference(const std::vector<float>& a, const std::vector<float>& b) {

@@ -14,7 +14,7 @@
 #include "training/initialise.hpp"
 #include "writers/ply/ply.hpp"
 #include "../../support/temporary_folder.hpp"
-#include "training/trainer.hpp"
+#include "training/training.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include "features/sh_degree/revise_sh_degree.hpp"
 #include "render/gradients/gradient_sums.hpp"
 #include "training/initialise.hpp"
-#include "training/trainer.hpp"
+#include "training/training.hpp"
 
 namespace {
 
@@ -34,7 +34,7 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene) {
     gs::gaussians model = gs::from_points(scene.points, o.schedule.sh_degree, 500, 1);
     model.antialiased = true;
     model.sky.assign(gs::sky_width, 0.0f);
-    o.exposures.assign(scene.train.size(), gs::train::unexposed);
+    o.exposures.assign(scene.train.size(), gs::features::identity_exposure);
     o.depth_fits = gs::effects::compare_depths(scene).fits;
     o.review_bands = [&](int degree) { return gs::effects::review_bands(e, scene, {}, degree).sh_degree; };
     o.band_change = 0.005;

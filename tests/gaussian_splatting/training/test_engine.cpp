@@ -10,7 +10,7 @@
 #include "engines.hpp"
 #include "readers/load_views.hpp"
 #include "training/initialise.hpp"
-#include "training/trainer.hpp"
+#include "training/training.hpp"
 
 namespace {
 
@@ -101,22 +101,21 @@ TEST_CASE("a step learns from photos as small as it is told to") {
         plan.background = {1, 1, 1};
         for (const int downscales : {2, 0, 1}) {
             CAPTURE(downscales);
-            e->set_downscales(downscales);
-            e->reserve();
-            e->take_training_loss();
+            e->reserve(downscales);
+            e->take_report().loss;
             e->step(plan);
             const gs::view small = gs::shrunk(scene.train[3], 1 << downscales);
             REQUIRE(small.camera.width == 48 >> downscales);
-            CHECK(e->take_training_loss().psnr() ==
+            CHECK(e->take_report().loss.psnr() ==
                   doctest::Approx(psnr_between(e->render(small.camera, plan.background),
                                                gs::over_background(small.pixels, plan.background.data())))
                       .epsilon(1e-4));
         }
         e->set_views(scene.train, scene.test);
-        e->take_training_loss();
+        e->take_report().loss;
         e->step(plan);
         CHECK(
-            e->take_training_loss().psnr() ==
+            e->take_report().loss.psnr() ==
             doctest::Approx(psnr_between(e->render(scene.train[3].camera, plan.background),
                                          gs::over_background(scene.train[3].pixels, plan.background.data())))
                 .epsilon(1e-4));
@@ -132,8 +131,7 @@ TEST_CASE("gradients of centres, in halves of the picture, are alike on photos o
             const auto e = make();
             e->set_views(scene.train, {}, 1);
             e->set_model(gs::from_points(scene.points, 0, 300, 1));
-            e->set_downscales(downscales);
-            e->reserve();
+            e->reserve(downscales);
             auto plan = plan_for(0);
             plan.rates = {};
             for (plan.view = 0; plan.view < scene.train.size(); ++plan.view) e->step(plan);
@@ -152,7 +150,7 @@ TEST_CASE("views that were not shrunk are not to be had") {
     for (const auto make : engines()) {
         const auto e = make();
         e->set_views(scene.train, {}, 1);
-        e->set_downscales(1);
+        e->reserve(1);
         CHECK_THROWS_WITH_AS(e->set_downscales(2), "views were set for 1 shrinkings, not 2", gs::error);
     }
 }
@@ -174,12 +172,12 @@ TEST_CASE("colours that depend on direction stay as they are when they are not t
         CHECK(without.sh_rest == model.sh_rest);
         CHECK(without.sh_constant != model.sh_constant);
         CHECK(without.mean != model.mean);
-        const double psnr = e->take_training_loss().psnr();
+        const double psnr = e->take_report().loss.psnr();
         e->set_model(model);
         plan.updates_sh = true;
         e->step(plan);
         CHECK(e->get_model().sh_rest != model.sh_rest);
-        CHECK(e->take_training_loss().psnr() == doctest::Approx(psnr).epsilon(1e-6));  // both drew them
+        CHECK(e->take_report().loss.psnr() == doctest::Approx(psnr).epsilon(1e-6));  // both drew them
     }
 }
 
@@ -261,8 +259,7 @@ TEST_CASE("what a photo has no depth map for, or one that does not agree, is lea
                                int downscales) {
             e->set_depth_fits(all);
             e->set_model(gs::from_points(scene.points, 0, 3000, 1));
-            e->set_downscales(downscales);
-            e->reserve();
+            e->reserve(downscales);
             gs::train::step_plan plan = plan_for(view);
             plan.gradient = gs::accumulator::fixed;
             plan.depth_weight = weight;
@@ -294,11 +291,11 @@ TEST_CASE("a step whose lists do not fit changes nothing, and is counted") {
         gs::train::step_plan plan = plan_for(0);
         plan.depth_weight = 1;
         e->step(plan);
-        CHECK(e->skipped_steps() == 1);
+        CHECK(e->take_report().skipped == 1);
         CHECK(same(e->get_model(), large));
         e->reserve();
         e->step(plan);
-        CHECK(e->skipped_steps() == 1);
+        CHECK(e->take_report().skipped == 1);
         CHECK_FALSE(same(e->get_model(), large));
     }
 }
@@ -318,7 +315,7 @@ TEST_CASE("what the CPU computes does not depend on its instruction set") {
         pictures.push_back(e->render(scene.test[0].camera, {1, 1, 1}));
         for (std::size_t v = 0; v < 3; ++v) e->step(plan_for(v));
         stepped.push_back(e->get_model());
-        INFO(e->device_name());
+        INFO(e->profile().device_name());
         CHECK(pictures.back() == pictures.front());
         CHECK(same(stepped.back(), stepped.front()));
     }

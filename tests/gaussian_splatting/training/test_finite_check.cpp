@@ -9,7 +9,7 @@
 #include "engines.hpp"
 #include "model/opacity.hpp"
 #include "training/initialise.hpp"
-#include "training/trainer.hpp"
+#include "training/training.hpp"
 
 namespace {
 
@@ -65,7 +65,7 @@ TEST_CASE("a sound step leaves nothing to find") {
     for (const auto make : engines()) {
         const auto e = ready(make, scene, few(scene));
         e->step(plan_for(0));
-        for (const finding& f : e->take_findings()) CHECK(f.count == 0);
+        for (const finding& f : e->take_report().faults) CHECK(f.count == 0);
     }
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("a gradient that is not finite is left out, and found where it appears
             plan.iteration = iteration;
             e->step(plan);
         }
-        const auto found = e->take_findings();
+        const auto found = e->take_report().faults;
         const finding& f = of(found, fault::gradient);
         CHECK(f.count >= 3);   // an element or more, each time
         CHECK(f.count <= 12);  // of one Gaussian's four
@@ -88,7 +88,7 @@ TEST_CASE("a gradient that is not finite is left out, and found where it appears
         CHECK(f.gaussian == 17);
         CHECK(of(found, fault::loss).count == 0);
         CHECK(of(found, fault::parameter).count == 0);
-        CHECK(of(e->take_findings(), fault::gradient).count == 0);  // taken
+        CHECK(of(e->take_report().faults, fault::gradient).count == 0);  // taken
 
         const gs::gaussians after = e->get_model();
         CHECK(is_finite(after));
@@ -107,7 +107,7 @@ TEST_CASE("a loss that is not finite is found where it appears, and moves nothin
         e->step(plan);
         plan.iteration = 7;
         e->step(plan);
-        const auto found = e->take_findings();
+        const auto found = e->take_report().faults;
         CHECK(of(found, fault::loss).count == 2);
         CHECK(of(found, fault::loss).iteration == 6);
         CHECK(is_finite(e->get_model()));
@@ -128,7 +128,7 @@ TEST_CASE("a sum that fixed point cannot hold is left out, and found where it ap
             e->step(plan);
             plan.iteration = 6;
             e->step(plan);
-            const auto found = e->take_findings();
+            const auto found = e->take_report().faults;
             CHECK(of(found, fault::sum).count == (is_bright ? 2 : 0));
             if (is_bright) CHECK(of(found, fault::sum).iteration == 5);
             CHECK(of(found, fault::loss).count == 0);
@@ -146,7 +146,7 @@ TEST_CASE("a rate that would drive a parameter out of range moves nothing") {
         plan.rates = {};
         plan.rates[static_cast<std::size_t>(gs::parameter::opacity)] = infinity;
         e->step(plan);
-        const auto found = e->take_findings();
+        const auto found = e->take_report().faults;
         const finding& f = of(found, fault::parameter);
         CHECK(f.count > 0);
         CHECK(f.iteration == 9);

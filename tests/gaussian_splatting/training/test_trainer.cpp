@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "densify/adaptive/adaptive_schedule.hpp"
-#include "training/trainer.hpp"
+#include "training/training.hpp"
 
 namespace {
 
@@ -71,9 +71,9 @@ class recorder final : public gs::train::engine {
     void centre_exposures() override {}
     void set_depth_fits(const std::vector<gs::depth_fit>&) override {}
     void reserve() override { sizes_reserved.push_back(downscales_); }
-    gs::train::loss_report take_training_loss() override { return {}; }
-    std::uint64_t skipped_steps() override { return 0; }
-    gs::train::findings take_findings() override { return {}; }
+    gs::train::loss_report take_report().loss override { return {}; }
+    std::uint64_t take_report().skipped override { return 0; }
+    gs::train::findings take_report().faults override { return {}; }
     std::vector<float> render(const gs::camera&, const std::array<float, 3>&, int) override { return {}; }
     std::vector<int> degrees;
     void set_sh_degree(int degree) override { degrees.push_back(degree); }

@@ -21,7 +21,7 @@ constexpr double least_errors = 3;    ///< times the standard error of a photo's
 std::vector<float> values_of(const photo_brightness& brightness, std::size_t photos) {
     std::vector<exposure> all(photos, identity_exposure);
     for (std::size_t v = 0; v < brightness.log2.size(); ++v)
-        for (std::size_t c = 0; c < 3; ++c)
+        for (unsigned c = 0; c < 3; ++c)
             all[v][exposure_at(c, c)] = static_cast<float>(std::exp2(brightness.log2[v]));
     return flattened(all);
 }
