@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <new>
 
-#include "cli/settings.hpp"
+#include "cli/commands.hpp"
+#include "cli/parse.hpp"
 #include "core/error.hpp"
 
 int main(int argc, char** argv) {
@@ -15,11 +16,21 @@ int main(int argc, char** argv) {
             throw gs::error(
                 "this program was built for CPUs with AVX2: build it with -DWARPAGG_CPU_ARCH=native here");
 #endif
-        const gs::cli::settings settings = gs::cli::parse(argc, argv);
-        if (settings.command == "train") gs::cli::train(settings);
-        if (settings.command == "evaluate") gs::cli::evaluate(settings);
-        if (settings.command == "render") gs::cli::render(settings);
-        if (settings.command == "inspect") gs::cli::inspect(settings);
+        const gs::cli::settings settings = gs::cli::parse({argv + 1, argv + argc});
+        switch (settings.command) {
+            case gs::cli::command::train:
+                gs::cli::train(settings);
+                break;
+            case gs::cli::command::evaluate:
+                gs::cli::evaluate(settings);
+                break;
+            case gs::cli::command::render:
+                gs::cli::render(settings);
+                break;
+            case gs::cli::command::inspect:
+                gs::cli::inspect(settings);
+                break;
+        }
         return 0;
     } catch (const gs::error& e) {
         std::fprintf(stderr, "error: %s\n", e.what());

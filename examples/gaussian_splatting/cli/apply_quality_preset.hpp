@@ -2,29 +2,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
+#include <vector>
+
+#include "option.hpp"
 
 namespace gs::cli {
 
-/// Says for `--quality` what the command line does not: `fast` takes less time, `best` as much as it
-/// takes, by docs/gaussian_splatting.md. Precondition: `train` has been parsed.
-inline void choose_quality(CLI::App& train, const std::string& quality) {
-    const auto is_said = [&](const char* name) { return train.get_option(name)->count() > 0; };
-    const auto choose = [&](const char* name, const std::string& value) {
-        if (is_said(name)) return;
-        CLI::Option* option = train.get_option(name);
-        option->add_result(value);
-        option->run_callback();
-    };
-    if (quality == "fast") {
-        choose("--iterations", "5000");
-        choose("--sh-lr", "5e-4");
-    }
-    if (quality == "best") {
-        choose("--iterations", "30000");
-        if (!is_said("--budget")) choose("--densify-grad-threshold", "5e-5");
-    }
-}
+/// Sets the options of `preset` in `table`, but no option that `is_explicit` (given its name), nor one that
+/// such an option excludes.
+void apply_quality_preset(quality_preset preset, const std::vector<option>& table,
+                          const std::function<bool(const std::string& name)>& is_explicit);
+
+/// The options of a preset as one would type them; empty for the defaults.
+std::string options_of(quality_preset preset);
 
 }  // namespace gs::cli

@@ -5,35 +5,35 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <string>
 
-#include "../evaluation/held_out_views.hpp"
-#include "../training/trainer.hpp"
+#include "../training/training.hpp"
 #include "settings.hpp"
 
 namespace gs::cli {
 
-/// What every command does before its own work, and how it speaks.
-class session {
+/// The steps that several commands share.
+class command_context {
   public:
-    explicit session(const settings& settings) : settings_(settings) {}
+    explicit command_context(const settings& settings) : settings_(settings) {}
 
+    /// Prints a line unless --quiet is given.
     void say(const std::string& line) const;
-    /// The scene, in its internal frame.
+    /// Reads the scene and moves it to its internal frame.
     scene load() const;
-    /// The device that was asked for. Throws `error` where it is not there.
+    /// The engine of the device of --device. Throws `error` if no GPU can be used for --device cuda.
     std::unique_ptr<train::engine> make_engine() const;
-    /// `alpha`: the photos (or the model's) have transparent parts.
+    /// The background of --background. `alpha`: whether the photos have transparent parts.
     train::background_choice background(bool alpha) const;
-    /// Throws `error` where the command line names a background that the model's sky would be before.
+    /// Throws `error` if --background is given for a model whose sky replaces it.
     void require_no_background_before(const gaussians& model) const;
 
   private:
     const settings& settings_;
 };
 
-/// The folder for the results. Made if it is not there, and taken away again if it stays empty, so that a run
-/// that failed leaves nothing behind. Throws `error` where nothing can be written to it.
+/// The folder for the results. Creates it if needed. Removes it again in the end if it has stayed empty, so
+/// that a run that fails leaves nothing behind. Throws `error` if nothing can be written to it.
 class output_folder {
   public:
     explicit output_folder(const std::filesystem::path& path);
@@ -45,15 +45,8 @@ class output_folder {
 
   private:
     std::filesystem::path path_;
-    std::filesystem::path made_;  ///< the topmost folder that was not there before; empty if none
+    std::filesystem::path made_;  ///< the topmost folder that was created; empty if there is none
 };
-
-/// The measures of a report, as metrics.json holds them: mean and per view, null where there is no test
-/// view, or the value is not finite.
-nlohmann::ordered_json to_json(const evaluate::test_report& report);
-/// ", 23.40 dB after fitting exposures" if they were.
-std::string fitted_part(const evaluate::test_report& report);
-void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
 
 class stopwatch {
   public:

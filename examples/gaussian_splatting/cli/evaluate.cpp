@@ -6,20 +6,22 @@
 #include "../core/error.hpp"
 #include "../writers/writer.hpp"
 #include "command_context.hpp"
+#include "commands.hpp"
+#include "report.hpp"
 
 namespace gs::cli {
 
 void evaluate(const settings& s) {
-    const session session(s);
-    const auto engine = session.make_engine();
+    const command_context context(s);
+    const auto engine = context.make_engine();
     const stopwatch loading;
     gaussians model = read_model(s.ply);
-    session.require_no_background_before(model);
-    scene scene = session.load();
+    context.require_no_background_before(model);
+    scene scene = context.load();
     model = into(scene.frame, std::move(model));
     if (scene.test.empty()) scene.test = std::move(scene.train);  // without --eval, all views are measured
     scene.train.clear();
-    const auto background = session.background(scene.has_alpha);
+    const auto background = context.background(scene.has_alpha);
     std::optional<output_folder> output;
     if (!s.output.empty()) output.emplace(s.output);
     engine->set_views(scene.train, scene.test);
@@ -33,12 +35,12 @@ void evaluate(const settings& s) {
     nlohmann::ordered_json metrics = to_json(report);
     metrics["gaussians"] = model.count();
     metrics["seconds"] = {{"load", load_seconds}, {"evaluate", evaluating.seconds()}};
-    metrics["device"] = engine->device_name();
+    metrics["device"] = engine->profile().device_name();
     if (output) write_json(output->path() / "metrics.json", metrics);
     char text[100];
     std::snprintf(text, sizeof text, "PSNR %.2f dB, SSIM %.4f over %zu views", report.psnr(), report.ssim(),
                   report.views.size());
-    session.say(text + fitted_part(report));
+    context.say(text + fitted_part(report));
 }
 
 }  // namespace gs::cli

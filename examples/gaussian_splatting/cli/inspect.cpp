@@ -2,29 +2,33 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
-#include "../features/decide.hpp"
+#include "../features/feature.hpp"
 #include "command_context.hpp"
+#include "commands.hpp"
+#include "report.hpp"
 
 namespace gs::cli {
 
 void inspect(const settings& s) {
-    const session session(s);
-    const scene scene = session.load();
-    const effects::evidence evidence = effects::gather(scene);
-    nlohmann::ordered_json found = nlohmann::ordered_json::array();
-    for (const effects::decision& d : effects::decide(evidence)) {
-        std::printf("%-14s %-4s %s\n%19s -> %s; costs and gains: %s\n", d.name.c_str(),
-                    !d.called_for   ? "?"
-                    : *d.called_for ? "yes"
-                                    : "no",
-                    d.evidence.c_str(), "", d.choice.c_str(), d.expected.c_str());
-        found.push_back({{"name", d.name},
-                         {"called_for", d.called_for ? nlohmann::ordered_json(*d.called_for) : nullptr},
-                         {"evidence", d.evidence},
-                         {"choice", d.choice},
-                         {"expected", d.expected}});
+    const command_context context(s);
+    const scene scene = context.load();
+    const scene_statistics statistics(scene);
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const auto& feature : features::all_features()) {
+        const features::finding found = feature->analyze(statistics);
+        const std::string name(feature->name()), costs_and_gains(feature->costs_and_gains());
+        std::printf("%-14s %-4s %s\n%19s -> %s; %s\n", name.c_str(),
+                    !found.recommended   ? "?"
+                    : *found.recommended ? "yes"
+                                         : "no",
+                    found.evidence.c_str(), "", found.choice.c_str(), costs_and_gains.c_str());
+        all.push_back({{"name", name},
+                       {"called_for", found.recommended ? nlohmann::ordered_json(*found.recommended) : nullptr},
+                       {"evidence", found.evidence},
+                       {"choice", found.choice},
+                       {"expected", costs_and_gains}});
     }
-    if (!s.output.empty()) write_json(s.output, {{"data", s.scene.data}, {"effects", found}});
+    if (!s.output.empty()) write_json(s.output, {{"data", s.scene.data}, {"effects", all}});
 }
 
 }  // namespace gs::cli

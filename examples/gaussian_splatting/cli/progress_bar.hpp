@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "../training/trainer.hpp"
+#include "../training/training.hpp"
 
 namespace gs::cli {
 

@@ -6,9 +6,11 @@
 #include <glm/geometric.hpp>
 
 #include "../core/error.hpp"
+#include "../evaluation/held_out_views.hpp"
 #include "../scene/look_at.hpp"
 #include "../writers/writer.hpp"
 #include "command_context.hpp"
+#include "commands.hpp"
 
 namespace gs::cli {
 
@@ -64,10 +66,10 @@ int orbit_size(int resolution) { return divides_size(resolution) ? 800 / resolut
 }  // namespace
 
 void render(const settings& s) {
-    const session session(s);
-    const auto engine = session.make_engine();
+    const command_context context(s);
+    const auto engine = context.make_engine();
     gaussians model = read_model(s.ply);
-    session.require_no_background_before(model);
+    context.require_no_background_before(model);
     if (model.count() == 0) throw error(s.ply + " holds no Gaussians: there is nothing to draw");
     const bool orbits = s.scene.data.empty();
     bool alpha = false;
@@ -77,18 +79,18 @@ void render(const settings& s) {
         model = into(own, std::move(model));
         cameras = orbit(model, s.orbit_views, orbit_size(s.scene.resolution));
     } else {
-        const scene scene = session.load();
+        const scene scene = context.load();
         model = into(scene.frame, std::move(model));
         alpha = scene.has_alpha;
         cameras = cameras_of(scene);
     }
-    const auto background = session.background(alpha);
+    const auto background = context.background(alpha);
     const output_folder output(s.output);
     engine->set_model(model);
     for (const named_camera& c : cameras)
         write_png(output.path() / c.name, c.camera.width, c.camera.height,
                   engine->render(c.camera, background.colour));
-    session.say(std::to_string(cameras.size()) + " pictures in " + s.output);
+    context.say(std::to_string(cameras.size()) + " pictures in " + s.output);
 }
 
 }  // namespace gs::cli

@@ -55,6 +55,7 @@ void sh_degree_feature::prepare(const selected_feature& selected, scene&, gaussi
 void sh_degree_feature::schedule(const selected_feature& selected, train::training& training) const {
     const int degree = first_sh_degree(selected);
     training.schedule().sh_degree = degree;
+    training.result().feature_reports["direction"]["sh_degree"] = degree;
     if (selected.values.size() < 2 || selected.values[1] == 0) return;
     training.result().feature_reports["direction"]["sh_degree_at_first"] = degree;
     schedule_revision(training, [&training](int so_far) { return revise(training, so_far); },
@@ -81,7 +82,9 @@ void schedule_revision(train::training& training, std::function<int(int sh_degre
                       const int before = schedule.sh_degree;
                       schedule.sh_degree = revise(before);
                       state_of(training.engine()).set_degree(schedule.sh_degree);
-                      training.result().feature_reports["direction"]["on"] = schedule.sh_degree > 0;
+                      auto& report = training.result().feature_reports["direction"];
+                      report["on"] = schedule.sh_degree > 0;
+                      report["sh_degree"] = schedule.sh_degree;
                       if (schedule.sh_degree > before)  // new bands need time to learn
                           *prune_after = std::max(*prune_after, iteration + schedule.sh_degree_interval);
                   }});

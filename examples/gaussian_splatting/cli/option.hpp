@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "option_value.hpp"
+
+namespace gs::cli {
+
+/// A row of the option table.
+struct option {
+    std::string names;  ///< separated by commas; `!` marks a name that turns a flag off
+    std::string group;  ///< heading in help texts
+    std::vector<command> commands;
+    option_value value;
+    std::string help;  ///< a sentence without its period; begins with a noun or a verb
+    std::string unit{};
+    std::string default_text{};        ///< if the default depends on other settings
+    std::vector<command> required{};   ///< the commands that do not run without it
+    std::vector<std::string> needs{};  ///< names of options that have to be given with it
+    std::vector<std::string> excludes{};
+    bool is_recorded = true;  ///< in settings.json; false if another option records the same member
+
+    bool belongs_to(command c) const;
+    bool is_required_by(command c) const;
+    bool is_positional() const;
+    /// The names as users type them, in the order of `names`.
+    std::vector<std::string> all_names() const;
+    /// The first long name, such as "--sh-degree". Messages and other rows use this one.
+    std::string name() const;
+    /// The name in settings.json, such as "sh_degree".
+    std::string key() const;
+};
+
+/// The table of all options. Their values are the members of `s`, which has to outlive the table.
+std::vector<option> option_table(settings& s);
+
+/// What a command is for, as a phrase that begins with a verb.
+std::string purpose_of(command c);
+
+}  // namespace gs::cli

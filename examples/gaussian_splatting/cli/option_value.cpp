@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "option_value.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace gs::cli {
+
+namespace {
+
+/// The number that is the whole of `word`; none if there is no such number.
+template <class Number>
+std::optional<Number> number_in(const std::string& word) {
+    Number value{};
+    const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (problem != std::errc() || end != word.data() + word.size()) return {};
+    return value;
+}
+
+}  // namespace
+
+std::uint64_t read_whole(const std::string& word, std::uint64_t least, std::uint64_t most) {
+    const auto value = number_in<std::uint64_t>(word);
+    if (!value || *value < least || *value > most)
+        throw refused_word("must be a whole number from " + std::to_string(least) + " to " +
+                           std::to_string(most) + ", not '" + word + "'");
+    return *value;
+}
+
+double read_positive(const std::string& word) {
+    const auto value = number_in<double>(word);
+    const float rounded = static_cast<float>(value.value_or(0));
+    if (!value || !std::isfinite(rounded) || !(rounded > 0))
+        throw refused_word("must be a positive number that float can hold, not '" + word + "'");
+    return *value;
+}
+
+double read_share(const std::string& word) {
+    const auto value = number_in<double>(word);
+    if (!value || !(*value >= 0 && *value < 1))
+        throw refused_word("must be a number from 0 to below 1, not '" + word + "'");
+    return *value;
+}
+
+std::size_t read_choice(const std::string& word, const std::vector<std::string>& names) {
+    const auto found = std::ranges::find(names, word);
+    if (found == names.end()) throw refused_word("must be " + alternatives(names) + ", not '" + word + "'");
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+std::string alternatives(const std::vector<std::string>& names) {
+    std::string all;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        all += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
+    return all;
+}
+
+option_value text(std::string& member, const std::string& type) {
+    return {.type = type,
+            .range = "",
+            .read = [&member](const std::string& word) { member = word; },
+            .json = [&member] { return json_of(member); }};
+}
+
+option_value flag(bool& member) {
+    return {.type = "",
+            .range = "",
+            .read = [&member](const std::string& word) { member = word == "true"; },
+            .json = [&member] { return json_of(member); }};
+}
+
+option_value iterations(std::set<int>& member) {
+    return {.type = "INTEGER...",
+            .range = "1 to the number of iterations",
+            .read =
+                [&member](const std::string& word) {
+                    member.insert(static_cast<int>(read_whole(word, 1, most_iterations)));
+                },
+            .json = [&member] { return json_of(member); },
+            .is_list = true};
+}
+
+option_value effect_list(features::selection& member) {
+    return {.type = "LIST",
+            .range = "",
+            .read = [&member](const std::string& word) { member = features::parse_selection(word); },
+            .json = [&member] { return nlohmann::ordered_json(member.text); }};
+}
+
+}  // namespace gs::cli

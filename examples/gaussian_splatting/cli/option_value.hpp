@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "settings.hpp"
+
+namespace gs::cli {
+
+/// An option does not accept a word. `what()` continues a sentence that begins with the option's name.
+struct refused_word : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// The member that an option sets, and the conversions between text, the member and JSON.
+struct option_value {
+    std::string type;   ///< placeholder in help texts, such as "INTEGER"; empty for a flag
+    std::string range;  ///< the accepted values, such as "1 to 8"; empty if there is nothing to add
+    /// Sets the member from one word; flags get "true" or "false". Throws `refused_word`.
+    std::function<void(const std::string& word)> read;
+    std::function<nlohmann::ordered_json()> json;  ///< the member's value; null if it is unset
+    bool is_list = false;                          ///< takes several words; `read` adds one
+
+    bool is_flag() const { return type.empty(); }
+};
+
+inline constexpr std::uint64_t most_iterations = 10'000'000;
+
+/// Numbers in words. Throw `refused_word` for everything that is not a number of that kind.
+/// @{
+std::uint64_t read_whole(const std::string& word, std::uint64_t least, std::uint64_t most);
+double read_positive(const std::string& word);
+double read_share(const std::string& word);
+/// @}
+
+/// The index of `word` in `names`. Throws `refused_word` that lists them if it is not there.
+std::size_t read_choice(const std::string& word, const std::vector<std::string>& names);
+/// "a, b or c"
+std::string alternatives(const std::vector<std::string>& names);
+
+template <class T>
+nlohmann::ordered_json json_of(const T& member) {
+    return member;
+}
+template <class T>
+nlohmann::ordered_json json_of(const std::optional<T>& member) {
+    return member ? nlohmann::ordered_json(*member) : nlohmann::ordered_json(nullptr);
+}
+
+template <class T>
+T value_in(const T&);
+template <class T>
+T value_in(const std::optional<T>&);
+/// `T` for members of type `T` and of type `std::optional<T>`.
+template <class Member>
+using value_type = decltype(value_in(std::declval<Member&>()));
+
+/// The kinds of values.
+/// @{
+option_value text(std::string& member, const std::string& type);
+option_value flag(bool& member);
+/// Numbers of iterations.
+option_value iterations(std::set<int>& member);
+option_value effect_list(features::selection& member);
+
+/// A flag that sets `member` to one value.
+template <class Member>
+option_value shorthand(Member& member, Member value) {
+    return {.type = "",
+            .range = "",
+            .read =
+                [&member, value](const std::string& word) {
+                    if (word == "true") member = value;
+                },
+            .json = [&member] { return json_of(member); }};
+}
+
+/// A whole number within the bounds.
+template <class Member>
+option_value whole(Member& member, std::uint64_t least, std::uint64_t most) {
+    return {.type = "INTEGER",
+            .range = std::to_string(least) + " to " + std::to_string(most),
+            .read =
+                [=, &member](const std::string& word) {
+                    member = static_cast<value_type<Member>>(read_whole(word, least, most));
+                },
+            .json = [&member] { return json_of(member); }};
+}
+
+/// A positive number that float can hold.
+template <class Member>
+option_value positive(Member& member) {
+    return {.type = "NUMBER",
+            .range = "above 0",
+            .read = [&member](const std::string& word) { member = read_positive(word); },
+            .json = [&member] { return json_of(member); }};
+}
+
+/// A number from 0 to below 1.
+template <class Member>
+option_value share(Member& member) {
+    return {.type = "NUMBER",
+            .range = "0 to below 1",
+            .read = [&member](const std::string& word) { member = read_share(word); },
+            .json = [&member] { return json_of(member); }};
+}
+
+/// One of the words in `names_of(Enum)`.
+template <class Enum>
+option_value choice(Enum& member) {
+    const auto known = names_of(member);
+    const std::vector<std::string> names(known.begin(), known.end());
+    return {.type = "WORD",
+            .range = alternatives(names),
+            .read = [=, &member](
+                        const std::string& word) { member = static_cast<Enum>(read_choice(word, names)); },
+            .json = [&member] { return nlohmann::ordered_json(name_of(member)); }};
+}
+/// @}
+
+}  // namespace gs::cli

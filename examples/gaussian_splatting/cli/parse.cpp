@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "parse.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+#include "../core/error.hpp"
+#include "apply_quality_preset.hpp"
+#include "check_settings.hpp"
+#include "help.hpp"
+#include "nearest_word.hpp"
+#include "option.hpp"
+
+namespace gs::cli {
+
+namespace {
+
+using words = std::vector<std::string>;
+
+bool contains(const words& all, const std::string& word) { return std::ranges::find(all, word) != all.end(); }
+
+[[noreturn]] void print_and_exit(const std::string& text) {
+    std::fputs(text.c_str(), stdout);
+    std::exit(0);
+}
+
+/// In names of options, `_` is `-`.
+void write_dashes(std::string& word) {
+    if (!word.starts_with("--")) return;
+    const auto end = static_cast<std::ptrdiff_t>(std::min(word.find('='), word.size()));
+    std::replace(word.begin(), word.begin() + end, '_', '-');
+}
+
+/// The command that the first word names. Answers the options that may take its place and exits.
+command command_named(const words& given) {
+    const auto names = names_of(command{});
+    const std::string known = alternatives({names.begin(), names.end()});
+    if (given.empty()) throw error("a command is missing: give " + known + " (see --help)");
+    const std::string& first = given.front();
+    if (first == "--help" || first == "-h") print_and_exit(overview());
+    if (first == "--version") print_and_exit(WARPAGG_VERSION "\n");
+    if (first == "--print-reference") print_and_exit(reference_page());
+    const auto found = std::ranges::find(names, first);
+    if (found == names.end())
+        throw error("the command comes first, and '" + first + "' is none: give " + known + " (see --help)");
+    return static_cast<command>(found - names.begin());
+}
+
+/// The options of one command, and the words that CLI11 found for each.
+class command_options {
+  public:
+    command_options(command c, const std::vector<option>& table) : command_(c) {
+        for (const option& row : table)
+            if (row.belongs_to(c)) rows_.push_back(row);
+    }
+
+    const std::vector<option>& rows() const { return rows_; }
+    bool is_explicit(const std::string& name) const { return parsed_.contains(name); }
+
+    /// Sets the values. Throws `error` for words that are not options of the command.
+    void read(const words& given) {
+        check_names(given);
+        split(given);
+        for (const option& row : rows_)
+            if (is_explicit(row.name())) read_row(row);
+        for (const option& row : rows_) check_constraints(row);
+    }
+
+  private:
+    /// CLI11 would only state that an option was not expected. This names the nearest one.
+    void check_names(const words& given) const {
+        for (const std::string& word : given) {
+            const bool is_long = word.starts_with("--");
+            const bool is_short = !is_long && word.size() > 1 && word[0] == '-' &&
+                                  std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+            if (word == "--" || (!is_long && !is_short)) continue;
+            const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
+            const auto row =
+                std::ranges::find_if(rows_, [&](const option& o) { return contains(o.all_names(), name); });
+            if (row == rows_.end()) refuse_unknown(name);
+            if (row->value.is_flag() && name != word && is_long)
+                throw error(name + " takes no value: write " + name + " instead of " + word);
+        }
+    }
+
+    [[noreturn]] void refuse_unknown(const std::string& name) const {
+        words known;
+        for (const option& row : rows_) std::ranges::copy(row.all_names(), std::back_inserter(known));
+        throw error("unknown option " + name + " of " + name_of(command_) + "; the nearest known one is " +
+                    nearest_word(name, known));
+    }
+
+    /// Lets CLI11 find the words of each option.
+    void split(const words& given) {
+        CLI::App app;
+        app.set_help_flag();
+        app.allow_extras();
+        for (const option& row : rows_) {
+            if (row.value.is_flag()) {
+                app.add_flag(row.names);
+                continue;
+            }
+            CLI::Option* added = app.add_option(row.names);
+            added->expected(1, CLI::detail::expected_max_vector_size);
+            added->allow_extra_args(row.value.is_list);
+        }
+        try {
+            app.parse(words(given.rbegin(), given.rend()));  // CLI11 takes the last word first
+        } catch (const CLI::ArgumentMismatch& missing) {
+            const std::string text = missing.what();
+            throw error(text.substr(0, text.find(':')) + " needs a value (see --help)");
+        }
+        for (const option& row : rows_) {
+            const CLI::Option* found = app.get_option(row.name());
+            if (found->count() > 0) parsed_[row.name()] = found->results();
+        }
+        if (!app.remaining().empty())
+            throw error("the word '" + app.remaining().front() + "' belongs to no option of " +
+                        name_of(command_) + " (see --help)");
+    }
+
+    void read_row(const option& row) const {
+        const words& given = parsed_.at(row.name());
+        if (given.size() > 1 && !row.value.is_list && !row.value.is_flag())
+            throw error(row.name() + " is given " + std::to_string(given.size()) + " times: give it once");
+        try {
+            std::ranges::for_each(given, row.value.read);
+        } catch (const refused_word& wrong) {
+            throw error(row.name() + " " + wrong.what());
+        }
+    }
+
+    void check_constraints(const option& row) const {
+        const std::string name = row.name();
+        if (!is_explicit(name)) {
+            if (row.is_required_by(command_))
+                throw error(name_of(command_) + " needs " + name + " " + row.value.type + " (see --help)");
+            return;
+        }
+        for (const std::string& needed : row.needs)
+            if (!is_explicit(needed))
+                throw error(name + " needs " + needed + ": add " + needed + " or leave out " + name);
+        for (const std::string& other : row.excludes)
+            if (is_explicit(other))
+                throw error(name + " and " + other + " exclude each other: leave out one of them");
+    }
+
+    command command_;
+    std::vector<option> rows_;
+    std::map<std::string, words> parsed_;  ///< by `option::name`, those that are given
+};
+
+}  // namespace
+
+settings parse(words given) {
+    settings s;
+    std::ranges::for_each(given, write_dashes);
+    s.command = command_named(given);
+    given.erase(given.begin());
+    command_options options(s.command, option_table(s));
+    if (contains(given, "--help") || contains(given, "-h"))
+        print_and_exit(help_text(s.command, options.rows()));
+    options.read(given);
+    apply_quality_preset(s.quality, options.rows(),
+                         [&](const std::string& name) { return options.is_explicit(name); });
+    set_dependent_values(s);
+    check_settings(s);
+    return s;
+}
+
+}  // namespace gs::cli

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "settings.hpp"
+
+namespace gs::cli {
+
+/// Reads and checks the words that follow the program's name. Exits for --help, --version and
+/// --print-reference. Throws `error` with one sentence that names the option, its value and the remedy.
+settings parse(std::vector<std::string> words);
+
+}  // namespace gs::cli

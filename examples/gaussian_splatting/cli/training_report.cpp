@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "training_report.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include "../densify/adaptive/adaptive_schedule.hpp"
+#include "option.hpp"
+#include "report.hpp"
+
+namespace gs::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+/// By stage of an iteration: milliseconds, and nanoseconds per pair of a pixel and a Gaussian.
+ordered_json stages_json(const device::stage_times& times, double pairs_per_iteration) {
+    ordered_json stages;
+    for (std::size_t i = 0; i < device::stage_names.size(); ++i) {
+        const double ms = times.milliseconds[i] / std::max(times.sampled, 1);
+        stages[device::stage_names[i]] = {{"milliseconds", ms},
+                                          {"nanoseconds_per_pair", ms * 1e6 / pairs_per_iteration}};
+    }
+    return stages;
+}
+
+std::size_t peak_host_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace
+
+namespace {
+
+/// The SH degree that training begins with.
+int first_sh_degree(const features::feature_set& features) {
+    const std::vector<float> values = features.values_if_on("direction");
+    return values.empty() ? 0 : static_cast<int>(values[0]);
+}
+
+}  // namespace
+
+settings resolved(settings s, const train::train_options& options, const std::string& effects_in_use) {
+    const train::schedule& plan = options.schedule;
+    s.schedule = plan;
+    s.schedule.sh_lr = plan.sh_rate();
+    s.schedule.resolution_schedule = plan.resolution_interval();
+    train::adaptive_config& adaptive = s.densification.adaptive;
+    const train::adaptive_schedule densification(adaptive, {.iterations = plan.iterations});
+    adaptive.densify_until_iter = densification.densify_until();
+    adaptive.densify_grad_threshold = densification.growth_threshold();
+    adaptive.prune_share = densification.share_to_prune();
+    s.sh_degree = first_sh_degree(options.features);
+    s.effects.text = effects_in_use;
+    s.max_cap = options.max_cap;
+    s.save_iterations = options.save_iterations;
+    return s;
+}
+
+ordered_json settings_json(settings s) {
+    ordered_json all;
+    for (const option& row : option_table(s))
+        if (row.belongs_to(command::train) && row.is_recorded) all[row.key()] = row.value.json();
+    return all;
+}
+
+ordered_json metrics_json(const settings& s, const training_measures& measures) {
+    const train::train_result& result = measures.result;
+    const int iterations = s.schedule.iterations;
+    ordered_json metrics = to_json(measures.held_out);
+    metrics.update({{"training_psnr", measures.last.psnr},
+                    {"tests", measures.tests},
+                    {"iterations", iterations},
+                    {"gaussians", measures.gaussians},
+                    {"seconds",
+                     {{"load", measures.load_seconds},
+                      {"train", result.seconds},
+                      {"evaluate", measures.evaluate_seconds}}},
+                    {"iterations_per_second", iterations / result.seconds},
+                    {"densify_seconds", result.densify_seconds},
+                    {"skipped_steps", result.skipped_steps},
+                    {"left_out_gradients", result.left_out_gradients},
+                    {"left_out_sums", result.left_out_sums},
+                    {"gaussians_without_gradient", result.without_gradient},
+                    {"pairs_per_iteration", measures.pairs_per_iteration},
+                    {"stages", stages_json(measures.stages, measures.pairs_per_iteration)},
+                    {"peak_host_bytes", peak_host_bytes()},
+                    {"peak_device_bytes", measures.peak_device_bytes},
+                    {"device", measures.device},
+                    {"accumulator", s.deterministic ? "fixed" : "native"},
+                    {"deterministic", s.deterministic},
+                    {"seed", s.seed}});
+    return metrics;
+}
+
+}  // namespace gs::cli
