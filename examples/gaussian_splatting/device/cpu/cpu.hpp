@@ -49,8 +49,8 @@ class basic_cpu {
     class buffer {
       public:
         void resize(std::size_t n) {
-            key_check::note<T>(n);
             if (n > capacity_) {
+                key_check::allocated();
                 memory_.reset(static_cast<T*>(::operator new[](n * sizeof(T), line)));
                 capacity_ = n;
             }
@@ -85,13 +85,13 @@ class basic_cpu {
 
     template <class F>
     void for_each_index(std::size_t n, const F& f) {
-        key_check::note<F>(n);
+        key_check::launched<F>(n);
 #pragma omp parallel for schedule(static)
         for (std::size_t i = 0; i < n; ++i) f(i);
     }
     template <class W = warp, class F>
     void for_each_warp(std::size_t n, const F& f) {
-        key_check::note<F>(n);
+        key_check::launched<F>(n);
         const std::size_t share = std::clamp<std::size_t>(n / resident_warps(), 1, 8);
 #pragma omp parallel for schedule(dynamic, share)
         for (std::size_t i = 0; i < n; ++i) {

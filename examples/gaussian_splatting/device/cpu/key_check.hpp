@@ -12,12 +12,12 @@
 
 namespace gs::device {
 
-/// Checks the promise of a graph key: iterations with equal keys ask for buffers of the same sizes and launch
-/// the same kernels over the same ranges. A GPU that records and replays iterations relies on it; here a
+/// Checks the promise of a graph key: iterations with equal keys launch the same kernels over the same ranges,
+/// and only the first of them allocates memory. A GPU that records and replays iterations relies on it; here a
 /// broken promise is an error. Cost: a few comparisons per launch.
 class key_check {
   public:
-    /// Every type of kernel or buffer has its own address.
+    /// Every type of kernel has its own address.
     template <class Kernel>
     static const void* id() {
         static constexpr char address = 0;
@@ -42,10 +42,15 @@ class key_check {
         if (next_ != expected_->size()) fail("made fewer launches");
     }
 
-    /// Notes a launch over `n` elements, or a buffer of that size, if an iteration runs.
-    template <class What>
-    static void note(std::size_t n) {
-        if (current_ != nullptr) current_->compare({id<What>(), n});
+    /// Notes a launch over `n` elements if an iteration runs.
+    template <class Kernel>
+    static void launched(std::size_t n) {
+        if (current_ != nullptr) current_->compare({id<Kernel>(), n});
+    }
+
+    /// Notes that memory was allocated.
+    static void allocated() {
+        if (current_ != nullptr && !current_->is_new_) current_->fail("allocated memory");
     }
 
   private:
