@@ -48,7 +48,7 @@ template <std::size_t size>
 void by_emulator(const problem<size>& p, float* sums) {
     const warpagg::emulator::narrow_lanes<size> w;
     for (std::size_t i = 0; i < warps; ++i) {
-        warpagg::lanes<float, size> v[values];
+        warpagg::simd_value<float, size> v[values];
         for (std::size_t k = 0; k < values; ++k)
             v[k] = w.load_row(p.held.data(), static_cast<std::ptrdiff_t>((i * values + k) * size));
         const auto active = w.load_row(p.active.data(), static_cast<std::ptrdiff_t>(i * size)) != 0u;

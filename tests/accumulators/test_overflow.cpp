@@ -16,7 +16,7 @@ namespace {
 template <class T, class... Tags>
 T sum_on_lanes(warpagg::policy<Tags...> how) {
     const warpagg::emulator::lanes w;
-    const warpagg::lanes<T, 32> values[1] = {std::numeric_limits<T>::max()};
+    const warpagg::simd_value<T, 32> values[1] = {std::numeric_limits<T>::max()};
     T memory[1] = {std::numeric_limits<T>::max()};
     warpagg::warp_reduce_atomic(w, memory, values, w.lane() < 3u, how);
     return memory[0];

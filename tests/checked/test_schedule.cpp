@@ -19,8 +19,8 @@
 #include <thread>
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/warp/checked.hpp>
 #include <warpagg/iterations.hpp>
+#include <warpagg/warp/checked.hpp>
 #include <warpagg/warp/simd.hpp>
 
 #include "../support/for_each_seed.hpp"
@@ -367,8 +367,8 @@ TEST_CASE("it counts as counted_lanes does") {
     const auto compare = [](auto how, unsigned busy) {
         emulator::counters one, other;
         alignas(32) float sums[9] = {};
-        warpagg::lanes<float, 32> v[9];
-        for (auto& x : v) x = warpagg::lanes<float, 32>(1.0f);
+        warpagg::simd_value<float, 32> v[9];
+        for (auto& x : v) x = warpagg::simd_value<float, 32>(1.0f);
         const emulator::counted_lanes w{{&one}};
         warpagg::warp_reduce_atomic(w, sums, v, w.lane() < busy, how);
         const float v1[9] = {1, 1, 1, 1, 1, 1, 1, 1, 1};

@@ -7,13 +7,13 @@
 #include <warpagg/warp/simd.hpp>
 
 using warpagg::cell;
-using warpagg::lanes;
+using warpagg::simd_value;
 namespace accumulate = warpagg::accumulate;
 
 namespace {
 
 const warpagg::emulator::lanes w;
-const lanes<bool, 32> active(true);
+const simd_value<bool, 32> active(true);
 
 }  // namespace
 
@@ -21,7 +21,7 @@ TEST_CASE("exact") {
     //! [exact]
     cell<accumulate::exact> sums[2];  // in a kernel: in global memory, zero at first
     for (const float large : {1e30f, 1.0f, -1e30f}) {
-        const lanes<float, 32> values[2] = {large, -large};
+        const simd_value<float, 32> values[2] = {large, -large};
         warpagg::warp_reduce_atomic(w, sums, values, active, warpagg::policy{warpagg::exact});
     }
     // sums[0].value(): 32, sums[1].value(): -32
@@ -37,7 +37,7 @@ TEST_CASE("fixed") {
     std::uint32_t fault = 0;
     const sum how{&fault, sum::scale_to_fit(largest)};
     cell<sum> total;
-    const lanes<float, 32> values[1] = {3e6f};
+    const simd_value<float, 32> values[1] = {3e6f};
     warpagg::warp_reduce_atomic(w, &total, values, active, warpagg::policy{how});
     // total.value() / how.scale: 96e6; fault: 0
     //! [fixed]
@@ -49,7 +49,7 @@ TEST_CASE("between warps") {
     //! [between_warps]
     cell<accumulate::exact> total;  // of what warps come to: in whatever order, the same bits
     for (const float large : {1e30f, 1.0f, -1e30f}) {
-        const lanes<float, 32> values[1] = {large};
+        const simd_value<float, 32> values[1] = {large};
         warpagg::warp_reduce_atomic(w, &total, values, active,
                                     warpagg::policy{warpagg::between_warps(warpagg::exact)});
     }

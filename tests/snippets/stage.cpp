@@ -5,7 +5,7 @@
 #include <warpagg/atomic.hpp>
 #include <warpagg/warp/simd.hpp>
 
-using warpagg::lanes;
+using warpagg::simd_value;
 
 TEST_CASE("stage") {
     const warpagg::emulator::lanes w;
@@ -15,7 +15,7 @@ TEST_CASE("stage") {
     const warpagg::stage<float> block(totals, copy, 40);
     block.clear(w, 0, 1);  // by warp 0 of 1; then __syncthreads()
     for (int step = 0; step < 10; ++step) {
-        const lanes<float, 32> values[2] = {1.0f, 2.0f};
+        const simd_value<float, 32> values[2] = {1.0f, 2.0f};
         warpagg::warp_reduce_atomic(w, block.record(7), values, w.lane() < 8u,
                                     warpagg::policy{warpagg::staged});
     }

@@ -5,14 +5,14 @@
 #include <warpagg/atomic.hpp>
 #include <warpagg/warp/simd.hpp>
 
-using warpagg::lanes;
+using warpagg::simd_value;
 
 TEST_CASE("warp_match_reduce_atomic") {
     warpagg::emulator::counters did;
     const warpagg::emulator::counted_lanes w{{&did}};
     //! [warp_match_reduce_atomic]
-    const lanes<unsigned, 32> bin = w.lane() / 10u;  // 0 ten times, 1 ten times, 2 ten times, 3 twice
-    const lanes<unsigned, 32> one[1] = {1u};
+    const simd_value<unsigned, 32> bin = w.lane() / 10u;  // 0 ten times, 1 ten times, 2 ten times, 3 twice
+    const simd_value<unsigned, 32> one[1] = {1u};
     unsigned histogram[4] = {100, 100, 100, 100};
     warpagg::warp_match_reduce_atomic(w, histogram, bin, one, w.lane() != 31u);
     // histogram: 110, 110, 110, 101, by 4 atomics instead of 31

@@ -3,12 +3,12 @@
 #include <doctest/doctest.h>
 
 #include <warpagg/atomic.hpp>
-#include <warpagg/warp/simd.hpp>
 #include <warpagg/warp/serial.hpp>
+#include <warpagg/warp/simd.hpp>
 
 namespace {
 
-using warpagg::lanes;
+using warpagg::simd_value;
 using warpagg::emulator::counted_lanes;
 using warpagg::emulator::counters;
 
@@ -39,8 +39,8 @@ TEST_CASE("warp_reduce_atomic") {
     counters did;
     const counted_lanes w{{&did}};
     //! [warp_reduce_atomic]
-    const lanes<float, 32> x = warpagg::convert<float>(w.lane());  // 0 to 31
-    const lanes<float, 32> values[2] = {x, x * x};
+    const simd_value<float, 32> x = warpagg::convert<float>(w.lane());  // 0 to 31
+    const simd_value<float, 32> values[2] = {x, x * x};
     float record[2] = {1000, 2000};
     warpagg::warp_reduce_atomic(w, record, values, x < 10.0f);
     // record: 1045, 2285, by one atomic instruction
@@ -54,7 +54,7 @@ TEST_CASE("warp_reduce_atomic with a policy") {
     counters did;
     const counted_lanes w{{&did}};
     const auto x = warpagg::convert<float>(w.lane());
-    const lanes<float, 32> values[9] = {x, x, x, x, x, x, x, x, x};
+    const simd_value<float, 32> values[9] = {x, x, x, x, x, x, x, x, x};
     float record[9] = {};
     //! [policy]
     using namespace warpagg;
@@ -70,8 +70,8 @@ TEST_CASE("warp_reduce_atomic with a policy") {
 TEST_CASE("warp_reduce_atomic with another operation") {
     const warpagg::emulator::lanes w;
     //! [operation]
-    const lanes<unsigned, 32> lane = w.lane();
-    const lanes<unsigned, 32> values[1] = {lane};
+    const simd_value<unsigned, 32> lane = w.lane();
+    const simd_value<unsigned, 32> values[1] = {lane};
     unsigned least = 100, most = 3;
     warpagg::warp_reduce_atomic(w, &least, values, lane > 6u, warpagg::policy{warpagg::minimum});
     warpagg::warp_reduce_atomic(w, &most, values, lane > 6u, warpagg::policy{warpagg::maximum});
@@ -83,7 +83,7 @@ TEST_CASE("warp_reduce_atomic with another operation") {
 
 TEST_CASE("warp_reduce_atomic into a structure of arrays") {
     const warpagg::emulator::lanes w;
-    const lanes<float, 32> values[3] = {1.0f, 2.0f, 3.0f};
+    const simd_value<float, 32> values[3] = {1.0f, 2.0f, 3.0f};
     //! [accessor]
     float a[8] = {}, b[8] = {}, c[8] = {};
     warpagg::warp_reduce_atomic(w, separate{{a, b, c}, 5}, values, w.lane() < 4u);
@@ -111,10 +111,10 @@ TEST_CASE("skip_if_warp_idle") {
     float sum = 0;
     //! [skip_if_warp_idle]
     for (unsigned first = 0; first < 128; first += 32) {
-        const lanes<unsigned, 32> i = w.lane() + first;
+        const simd_value<unsigned, 32> i = w.lane() + first;
         const auto active = i < 40u;
         if (warpagg::skip_if_warp_idle(w, active)) continue;  // from i = 64 on
-        const lanes<float, 32> values[1] = {warpagg::convert<float>(i)};
+        const simd_value<float, 32> values[1] = {warpagg::convert<float>(i)};
         warpagg::warp_reduce_atomic(w, &sum, values, active,
                                     warpagg::policy{warpagg::assume_busy, warpagg::scatter});
     }

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <thread>
 #include <vector>
-#include <warpagg/warp/simd.hpp>
 #include <warpagg/warp/serial.hpp>
+#include <warpagg/warp/simd.hpp>
 
 namespace {
 
@@ -49,8 +49,8 @@ void check_sums(Op op) {
     });
     at_once([&](unsigned i) {
         const warpagg::emulator::lanes w;
-        const warpagg::lanes<unsigned, 32> index(i);
-        const warpagg::lanes<T, 32> ones(T(1));
+        const warpagg::simd_value<unsigned, 32> index(i);
+        const warpagg::simd_value<T, 32> ones(T(1));
         w.atomic(
             op, [&](unsigned k) { return &all_lanes[k]; }, index, ones, w.lane() < 3u);
     });

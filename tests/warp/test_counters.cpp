@@ -23,7 +23,7 @@ namespace commit = warpagg::commit;
 namespace idle = warpagg::idle;
 namespace gate = warpagg::gate;
 
-using flags = warpagg::lanes<bool, 32>;
+using flags = warpagg::simd_value<bool, 32>;
 
 flags first_lanes(unsigned n) {
     flags active(false);
@@ -44,8 +44,8 @@ counters cost(unsigned active, unsigned offset = 0) {
     aligned_memory<T> memory;
     counters total;
     const counted_lanes w{{&total}};
-    warpagg::lanes<T, 32> v[N];
-    for (auto& x : v) x = warpagg::lanes<T, 32>(T(1));
+    warpagg::simd_value<T, 32> v[N];
+    for (auto& x : v) x = warpagg::simd_value<T, 32>(T(1));
     warpagg::warp_reduce_atomic<T, N>(w, memory.value + offset, v, first_lanes(active), Policy{});
     return total;
 }
@@ -79,8 +79,8 @@ void check_scatter_of() {
     INFO("N = ", N);
     counters total;
     const counted_lanes w{{&total}};
-    warpagg::lanes<float, 32> v[N];
-    const auto one = [](int) { return warpagg::lanes<float, 32>(1.0f); };
+    warpagg::simd_value<float, 32> v[N];
+    const auto one = [](int) { return warpagg::simd_value<float, 32>(1.0f); };
     reduce::over_warp<warpagg::operation::sum>(reduce::scatter{}, w, one, v);
     CHECK(total.shuffles == scatter_shuffles(N));
 }
@@ -202,11 +202,11 @@ TEST_CASE("assume_busy saves the vote and nothing else") {
 
 TEST_CASE("lanes with equal keys commit once") {
     float memory[32 * 3] = {};
-    const auto cost_by_key = [&](const warpagg::lanes<unsigned, 32>& key) {
+    const auto cost_by_key = [&](const warpagg::simd_value<unsigned, 32>& key) {
         counters total;
         const counted_lanes w{{&total}};
-        warpagg::lanes<float, 32> v[3];
-        for (auto& x : v) x = warpagg::lanes<float, 32>(1.0f);
+        warpagg::simd_value<float, 32> v[3];
+        for (auto& x : v) x = warpagg::simd_value<float, 32>(1.0f);
         warpagg::warp_match_reduce_atomic(w, memory, key, v, first_lanes(32));
         return total;
     };
@@ -216,7 +216,7 @@ TEST_CASE("lanes with equal keys commit once") {
     CHECK(cost_by_key(lane & 3u).atomics == 4 * 3);
     CHECK(cost_by_key(lane / 16u).atomics == 2 * 3);
     // As many steps as the most frequent key has halvings; rising keys and a key for all need none of them.
-    const auto steps = [&](const warpagg::lanes<unsigned, 32>& key) {
+    const auto steps = [&](const warpagg::simd_value<unsigned, 32>& key) {
         return cost_by_key(key).shuffles - cost_by_key(lane).shuffles;
     };
     CHECK(steps(lane) == 0);
@@ -224,9 +224,9 @@ TEST_CASE("lanes with equal keys commit once") {
     CHECK(steps(lane & 3u) == 3 * 3);
     CHECK(steps(lane / 16u) == 4 * 3);
     // And a shuffle of the key itself.
-    const counters one_key = cost_by_key(warpagg::lanes<unsigned, 32>(5u));
+    const counters one_key = cost_by_key(warpagg::simd_value<unsigned, 32>(5u));
     CHECK(one_key.atomics == 3);
-    CHECK(steps(warpagg::lanes<unsigned, 32>(5u)) == scatter_shuffles(3) + 1);
+    CHECK(steps(warpagg::simd_value<unsigned, 32>(5u)) == scatter_shuffles(3) + 1);
 }
 
 TEST_CASE("at_least<K> flips at K") {
@@ -240,7 +240,7 @@ TEST_CASE("the histogram of active lanes") {
     aligned_memory<float> memory;
     counters total;
     const counted_lanes w{{&total}};
-    const warpagg::lanes<float, 32> v[1] = {warpagg::lanes<float, 32>(1.0f)};
+    const warpagg::simd_value<float, 32> v[1] = {warpagg::simd_value<float, 32>(1.0f)};
     for (unsigned active = 0; active <= 32; ++active)
         for (unsigned time = 0; time <= active % 3; ++time)
             warpagg::warp_reduce_atomic<float, 1>(w, memory.value, v, first_lanes(active));
@@ -253,7 +253,7 @@ TEST_CASE("the README's example") {
     counters did;
     const counted_lanes w{{&did}};
     const auto x = warpagg::convert<float>(w.lane());
-    const warpagg::lanes<float, 32> values[2] = {x, x * x};
+    const warpagg::simd_value<float, 32> values[2] = {x, x * x};
     float memory[2] = {};
     warpagg::warp_reduce_atomic(w, memory, values, x < 10.0f);
     CHECK(memory[0] == 45);

@@ -17,8 +17,8 @@
 #include <random>
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/warp/simd.hpp>
 #include <warpagg/warp/serial.hpp>
+#include <warpagg/warp/simd.hpp>
 
 #if !defined(__FAST_MATH__)
 #error "to be compiled with -ffast-math"
@@ -26,8 +26,8 @@
 
 namespace {
 
-using warpagg::lanes;
 using warpagg::policy;
+using warpagg::simd_value;
 namespace reduce = warpagg::reduce;
 namespace commit = warpagg::commit;
 namespace gate = warpagg::gate;
@@ -67,8 +67,8 @@ struct question {
 
 template <class Policy, class T>
 void add_on(const warpagg::emulator::lanes& w, const question<T>& q, T (&to)[n]) {
-    lanes<T, 32> v[n];
-    lanes<bool, 32> active;
+    simd_value<T, 32> v[n];
+    simd_value<bool, 32> active;
     for (int lane = 0; lane < 32; ++lane) {
         active.set(lane, q.is_active(lane));
         for (int i = 0; i < n; ++i) v[i].set(lane, q.value[i][lane]);
@@ -118,8 +118,8 @@ TEST_CASE_TEMPLATE("sums of finite floats are near, and of active lanes", T, flo
 
 TEST_CASE("sums by keys too") {
     const warpagg::emulator::lanes w;
-    const lanes<float, 32> x = warpagg::convert<float>(w.lane()) + 1.0f;
-    const lanes<float, 32> v[1] = {x};
+    const simd_value<float, 32> x = warpagg::convert<float>(w.lane()) + 1.0f;
+    const simd_value<float, 32> v[1] = {x};
     float memory[4] = {};
     warpagg::warp_match_reduce_atomic(w, memory, w.lane() & 3u, v, w.lane() < 20u);
     for (int key = 0; key < 4; ++key) CHECK(memory[key] == 5.0f * static_cast<float>(key + 1) + 40.0f);

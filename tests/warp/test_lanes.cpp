@@ -23,7 +23,7 @@ constexpr int count = 32;
 constexpr int rounds = 50;
 
 template <class T>
-using vector = warpagg::lanes<T, count>;
+using vector = warpagg::simd_value<T, count>;
 template <class T>
 using scalars = std::array<T, count>;
 

@@ -16,8 +16,8 @@ namespace {
 constexpr int width = 32;
 const warpagg::emulator::lanes warp{};
 
-warpagg::lanes<bool, width> flags(std::uint32_t mask) {
-    warpagg::lanes<bool, width> f(false);
+warpagg::simd_value<bool, width> flags(std::uint32_t mask) {
+    warpagg::simd_value<bool, width> f(false);
     for (int lane = 0; lane < width; ++lane) f.set(lane, ((mask >> lane) & 1u) != 0);
     return f;
 }
@@ -59,7 +59,7 @@ TEST_CASE_TEMPLATE("a row is loaded where lanes are active", T, float, double, s
 TEST_CASE_TEMPLATE("a row is stored where lanes are active", T, float, double, std::int32_t, std::uint32_t) {
     for_rows<T>([](std::vector<T> memory, std::ptrdiff_t first, std::uint32_t mask) {
         std::vector<T> expected = memory;
-        warpagg::lanes<T, width> values;
+        warpagg::simd_value<T, width> values;
         for (int lane = 0; lane < width; ++lane) {
             values.set(lane, static_cast<T>(2000 + lane));
             if (((mask >> lane) & 1u) != 0) expected[static_cast<std::size_t>(first + lane)] = values[lane];

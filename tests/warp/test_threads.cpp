@@ -10,8 +10,8 @@
 #include <vector>
 #include <warpagg/atomic.hpp>
 #include <warpagg/warp/checked.hpp>
-#include <warpagg/warp/simd.hpp>
 #include <warpagg/warp/serial.hpp>
+#include <warpagg/warp/simd.hpp>
 
 namespace {
 
@@ -103,7 +103,7 @@ void check_cells(const char* name) {
         const warpagg::emulator::narrow_lanes<8> w;
         for (unsigned i = 0; i < rounds; ++i) {
             const float x = thread % 2 == 0 ? 1024.0f : 0.125f;
-            const warpagg::lanes<float, 8> values[2] = {x, -x};
+            const warpagg::simd_value<float, 8> values[2] = {x, -x};
             warpagg::warp_reduce_atomic(w, sums, values, w.lane() < 4u, warpagg::policy{Accumulate{}});
         }
     });

@@ -12,7 +12,7 @@
 namespace gs {
 
 /// What is computed of a Gaussian is written for a `Real` that is a number, or SIMD registers that hold one
-/// number for each of several Gaussians (`warpagg::lanes`).
+/// number for each of several Gaussians (`warpagg::simd_value`).
 /// @{
 template <class Real>
 using flag_of = decltype(std::declval<Real>() < std::declval<Real>());
@@ -46,8 +46,8 @@ WARPAGG_HD Real exponential(const Real& x) {
 
 namespace warpagg {
 template <class T, int L>
-struct lanes;
+struct simd_value;
 }
 /// For GLM's assertions.
 template <class T, int L>
-struct std::numeric_limits<warpagg::lanes<T, L>> : std::numeric_limits<T> {};
+struct std::numeric_limits<warpagg::simd_value<T, L>> : std::numeric_limits<T> {};

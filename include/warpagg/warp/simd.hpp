@@ -23,7 +23,7 @@ struct counted {
 };
 
 /// The fast emulator: one thread runs a warp of `Size` lanes, 8, 16 or 32, all of them in SIMD registers.
-/// Lane values are `warpagg::lanes<T, Size>`, so kernels are masked (`select`, uniform branches). Lanes
+/// Lane values are `warpagg::simd_value<T, Size>`, so kernels are masked (`select`, uniform branches). Lanes
 /// commit in order of their number. With 8 lanes a value takes one register, where with 32, a GPU's number, a
 /// kernel of more than a few values has most of them in memory.
 template <class Counting, unsigned Size = 32>
@@ -32,7 +32,7 @@ struct basic_lanes : Counting {
     /// @{
     static constexpr unsigned size = Size;
     template <class T>
-    using value = warpagg::lanes<T, static_cast<int>(Size)>;
+    using value = warpagg::simd_value<T, static_cast<int>(Size)>;
     using mask = value<bool>;
 
     WARPAGG_HD value<unsigned> lane() const {

@@ -3,10 +3,9 @@
 #pragma once
 
 /// @file
-/// `lanes<T, L>`: L values of T in SIMD registers, by the GCC and Clang vector extension, in chunks of 256
-/// bits. Arrays that one hopes will vectorise were measured 1.7 times slower (and at -O2 no faster than
-/// scalar code). Not for nvcc, which rejects vector types in host-device templates: keep such code in `.cpp`
-/// files.
+/// `simd_value<T, L>`: L values of T in SIMD registers. It uses the vector extension of GCC and Clang in
+/// chunks of 256 bits, because compilers do not vectorize plain arrays reliably. Not for nvcc, which rejects
+/// vector types in host-device templates: keep such code in `.cpp` files.
 
 #if defined(__AVX__)
 #include <immintrin.h>
@@ -46,10 +45,10 @@ using chunk_t = typename chunk<T>::type;
 }  // namespace detail
 
 /// L values of T, one per lane: `float`, `double`, integers of 32 and 64 bits, `bool`. Has T's arithmetic and
-/// bitwise operators, and comparisons, which give `lanes<bool, L>`; all work lane by lane, and a plain T
+/// bitwise operators, and comparisons, which give `simd_value<bool, L>`; all work lane by lane, and a plain T
 /// stands for the same value in every lane.
 template <class T, int L>
-struct lanes {
+struct simd_value {
     /// What a lane holds, and how chunks of lanes are laid out.
     /// @{
     using scalar = T;
@@ -64,9 +63,9 @@ struct lanes {
     /// @}
 
     /// Of no particular value.
-    lanes() = default;
+    simd_value() = default;
     /// The same value in every lane.
-    WARPAGG_HD lanes(T value) {  // NOLINT: implicit, so that uniform values mix with lane values
+    WARPAGG_HD simd_value(T value) {  // NOLINT: implicit, so that uniform values mix with lane values
         element e;
         if constexpr (std::is_same_v<T, bool>) {
             e = value ? -1 : 0;
@@ -97,14 +96,14 @@ struct lanes {
     }
 
 /// Defines an operator, lane by lane.
-#define WARPAGG_LANES_OPERATOR(op)                                           \
-    friend WARPAGG_HD lanes operator op(const lanes& a, const lanes& b) {    \
-        lanes r;                                                             \
-        WARPAGG_UNROLL                                                       \
-        for (int i = 0; i < chunks; ++i) r.part[i] = a.part[i] op b.part[i]; \
-        return r;                                                            \
-    }                                                                        \
-    WARPAGG_HD lanes& operator op##=(const lanes& b) { return *this = *this op b; }
+#define WARPAGG_LANES_OPERATOR(op)                                                       \
+    friend WARPAGG_HD simd_value operator op(const simd_value& a, const simd_value& b) { \
+        simd_value r;                                                                    \
+        WARPAGG_UNROLL                                                                   \
+        for (int i = 0; i < chunks; ++i) r.part[i] = a.part[i] op b.part[i];             \
+        return r;                                                                        \
+    }                                                                                    \
+    WARPAGG_HD simd_value& operator op##=(const simd_value& b) { return *this = *this op b; }
     WARPAGG_LANES_OPERATOR(+)
     WARPAGG_LANES_OPERATOR(-)
     WARPAGG_LANES_OPERATOR(*)
@@ -119,33 +118,36 @@ struct lanes {
 
     /// Lane by lane; flags are all looked at, without short-circuit.
     /// @{
-    friend WARPAGG_HD lanes operator-(const lanes& a) {
-        lanes r;
+    friend WARPAGG_HD simd_value operator-(const simd_value& a) {
+        simd_value r;
         WARPAGG_UNROLL
         for (int i = 0; i < chunks; ++i) r.part[i] = -a.part[i];
         return r;
     }
-    friend WARPAGG_HD lanes operator!(const lanes& a) requires std::is_same_v<T, bool> {
-        lanes r;
+    friend WARPAGG_HD simd_value operator!(const simd_value& a) requires std::is_same_v<T, bool> {
+        simd_value r;
         WARPAGG_UNROLL
         for (int i = 0; i < chunks; ++i) r.part[i] = ~a.part[i];
         return r;
     }
-    friend WARPAGG_HD lanes operator&&(const lanes& a, const lanes& b) requires std::is_same_v<T, bool> {
+    friend WARPAGG_HD simd_value operator&&(const simd_value& a,
+                                            const simd_value& b) requires std::is_same_v<T, bool> {
         return a & b;
     }
-    friend WARPAGG_HD lanes operator||(const lanes& a, const lanes& b) requires std::is_same_v<T, bool> {
+    friend WARPAGG_HD simd_value operator||(const simd_value& a,
+                                            const simd_value& b) requires std::is_same_v<T, bool> {
         return a | b;
     }
     /// @}
 
 /// Defines a comparison, lane by lane, where `allowed`.
-#define WARPAGG_LANES_COMPARISON(op, allowed)                                                        \
-    friend WARPAGG_HD lanes<bool, L> operator op(const lanes& a, const lanes& b) requires(allowed) { \
-        lanes<bool, L> r;                                                                            \
-        WARPAGG_UNROLL                                                                               \
-        for (int i = 0; i < chunks; ++i) narrow_mask(r, i, a.part[i] op b.part[i]);                  \
-        return r;                                                                                    \
+#define WARPAGG_LANES_COMPARISON(op, allowed)                                                  \
+    friend WARPAGG_HD simd_value<bool, L> operator op(const simd_value& a,                     \
+                                                      const simd_value& b) requires(allowed) { \
+        simd_value<bool, L> r;                                                                 \
+        WARPAGG_UNROLL                                                                         \
+        for (int i = 0; i < chunks; ++i) narrow_mask(r, i, a.part[i] op b.part[i]);            \
+        return r;                                                                              \
     }
     WARPAGG_LANES_COMPARISON(<, has_order)
     WARPAGG_LANES_COMPARISON(<=, has_order)
@@ -157,7 +159,7 @@ struct lanes {
 
     /// Chunk `i` of lanes of 64 bits, converted from lanes of 32 bits.
     template <class From>
-    static WARPAGG_HD void widen(const lanes<From, L>& from, int i, chunk& to) {
+    static WARPAGG_HD void widen(const simd_value<From, L>& from, int i, chunk& to) {
         const auto& both = from.part[i / 2];
         if (i % 2 == 0) {
             to = __builtin_convertvector(__builtin_shufflevector(both, both, 0, 1, 2, 3), chunk);
@@ -168,7 +170,7 @@ struct lanes {
 
   private:
     template <class Chunk>
-    static WARPAGG_HD void narrow_mask(lanes<bool, L>& to, int i, const Chunk& from) {
+    static WARPAGG_HD void narrow_mask(simd_value<bool, L>& to, int i, const Chunk& from) {
         if constexpr (sizeof(element) == sizeof(std::int32_t)) {
             to.part[i] = from;
         } else {
@@ -181,34 +183,36 @@ struct lanes {
 /// What `math` has for scalars, lane by lane.
 /// @{
 template <class T, int L>
-WARPAGG_HD lanes<T, L> select(const lanes<bool, L>& mask, const lanes<T, L>& yes, const lanes<T, L>& no) {
-    lanes<T, L> r;
+WARPAGG_HD simd_value<T, L> select(const simd_value<bool, L>& mask, const simd_value<T, L>& yes,
+                                   const simd_value<T, L>& no) {
+    simd_value<T, L> r;
     WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
-        if constexpr (sizeof(typename lanes<T, L>::element) == sizeof(std::int32_t)) {
+        if constexpr (sizeof(typename simd_value<T, L>::element) == sizeof(std::int32_t)) {
             r.part[i] = mask.part[i] ? yes.part[i] : no.part[i];
         } else {
-            typename lanes<std::int64_t, L>::chunk wide;
-            lanes<std::int64_t, L>::widen(mask, i, wide);
+            typename simd_value<std::int64_t, L>::chunk wide;
+            simd_value<std::int64_t, L>::widen(mask, i, wide);
             r.part[i] = wide ? yes.part[i] : no.part[i];
         }
     }
     return r;
 }
 template <class T, int L>
-WARPAGG_HD lanes<T, L> select(const lanes<bool, L>& mask, const lanes<T, L>& yes,
-                              std::type_identity_t<T> no) {
-    return select(mask, yes, lanes<T, L>(no));
+WARPAGG_HD simd_value<T, L> select(const simd_value<bool, L>& mask, const simd_value<T, L>& yes,
+                                   std::type_identity_t<T> no) {
+    return select(mask, yes, simd_value<T, L>(no));
 }
 
 template <class T, int L>
-requires(!std::is_same_v<T, bool>) WARPAGG_HD lanes<T, L> min(const lanes<T, L>& a, const lanes<T, L>& b) {
-    lanes<T, L> r;
+requires(!std::is_same_v<T, bool>)
+    WARPAGG_HD simd_value<T, L> min(const simd_value<T, L>& a, const simd_value<T, L>& b) {
+    simd_value<T, L> r;
     WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
 #if defined(__AVX__)
         if constexpr (std::is_same_v<T, float>) {  // of a constant GCC would make a comparison and a blend
-            r.part[i] = reinterpret_cast<typename lanes<T, L>::chunk>(
+            r.part[i] = reinterpret_cast<typename simd_value<T, L>::chunk>(
                 _mm256_min_ps(reinterpret_cast<__m256>(b.part[i]), reinterpret_cast<__m256>(a.part[i])));
             continue;
         }
@@ -218,13 +222,14 @@ requires(!std::is_same_v<T, bool>) WARPAGG_HD lanes<T, L> min(const lanes<T, L>&
     return r;
 }
 template <class T, int L>
-requires(!std::is_same_v<T, bool>) WARPAGG_HD lanes<T, L> max(const lanes<T, L>& a, const lanes<T, L>& b) {
-    lanes<T, L> r;
+requires(!std::is_same_v<T, bool>)
+    WARPAGG_HD simd_value<T, L> max(const simd_value<T, L>& a, const simd_value<T, L>& b) {
+    simd_value<T, L> r;
     WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
 #if defined(__AVX__)
         if constexpr (std::is_same_v<T, float>) {  // of a constant GCC would make a comparison and a blend
-            r.part[i] = reinterpret_cast<typename lanes<T, L>::chunk>(
+            r.part[i] = reinterpret_cast<typename simd_value<T, L>::chunk>(
                 _mm256_max_ps(reinterpret_cast<__m256>(b.part[i]), reinterpret_cast<__m256>(a.part[i])));
             continue;
         }
@@ -235,24 +240,25 @@ requires(!std::is_same_v<T, bool>) WARPAGG_HD lanes<T, L> max(const lanes<T, L>&
 }
 template <class T, int L>
 requires(!std::is_same_v<T, bool>)
-    WARPAGG_HD lanes<T, L> min(const lanes<T, L>& a, std::type_identity_t<T> b) {
-    return min(a, lanes<T, L>(b));
+    WARPAGG_HD simd_value<T, L> min(const simd_value<T, L>& a, std::type_identity_t<T> b) {
+    return min(a, simd_value<T, L>(b));
 }
 template <class T, int L>
 requires(!std::is_same_v<T, bool>)
-    WARPAGG_HD lanes<T, L> max(const lanes<T, L>& a, std::type_identity_t<T> b) {
-    return max(a, lanes<T, L>(b));
+    WARPAGG_HD simd_value<T, L> max(const simd_value<T, L>& a, std::type_identity_t<T> b) {
+    return max(a, simd_value<T, L>(b));
 }
 
 /// a * b + c, rounded once.
 template <class T, int L>
-WARPAGG_HD lanes<T, L> fma(const lanes<T, L>& a, const lanes<T, L>& b, const lanes<T, L>& c) {
-    lanes<T, L> r;
+WARPAGG_HD simd_value<T, L> fma(const simd_value<T, L>& a, const simd_value<T, L>& b,
+                                const simd_value<T, L>& c) {
+    simd_value<T, L> r;
     WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
 #if defined(__FMA__)
         if constexpr (std::is_same_v<T, float>) {
-            r.part[i] = reinterpret_cast<typename lanes<T, L>::chunk>(
+            r.part[i] = reinterpret_cast<typename simd_value<T, L>::chunk>(
                 _mm256_fmadd_ps(reinterpret_cast<__m256>(a.part[i]), reinterpret_cast<__m256>(b.part[i]),
                                 reinterpret_cast<__m256>(c.part[i])));
             continue;
@@ -265,13 +271,13 @@ WARPAGG_HD lanes<T, L> fma(const lanes<T, L>& a, const lanes<T, L>& b, const lan
 }
 
 template <class T, int L>
-WARPAGG_HD lanes<T, L> sqrt(const lanes<T, L>& a) {
-    lanes<T, L> r;
+WARPAGG_HD simd_value<T, L> sqrt(const simd_value<T, L>& a) {
+    simd_value<T, L> r;
     WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
 #if defined(__AVX__)
         if constexpr (std::is_same_v<T, float>) {
-            r.part[i] = reinterpret_cast<typename lanes<T, L>::chunk>(
+            r.part[i] = reinterpret_cast<typename simd_value<T, L>::chunk>(
                 _mm256_sqrt_ps(reinterpret_cast<__m256>(a.part[i])));
             continue;
         }
@@ -283,28 +289,28 @@ WARPAGG_HD lanes<T, L> sqrt(const lanes<T, L>& a) {
 }
 
 template <class T, int L>
-WARPAGG_HD lanes<T, L> abs(const lanes<T, L>& a) {
+WARPAGG_HD simd_value<T, L> abs(const simd_value<T, L>& a) {
     return max(a, -a);
 }
 template <class T, int L>
-WARPAGG_HD lanes<T, L> inverse_sqrt(const lanes<T, L>& a) {
-    return lanes<T, L>(T(1)) / sqrt(a);
+WARPAGG_HD simd_value<T, L> inverse_sqrt(const simd_value<T, L>& a) {
+    return simd_value<T, L>(T(1)) / sqrt(a);
 }
 template <class T, int L>
-WARPAGG_HD lanes<T, L> divide(const lanes<T, L>& a, const lanes<T, L>& b) {
+WARPAGG_HD simd_value<T, L> divide(const simd_value<T, L>& a, const simd_value<T, L>& b) {
     return a / b;
 }
 
 template <class To, class From, int L>
-WARPAGG_HD lanes<To, L> convert(const lanes<From, L>& a) {
-    lanes<To, L> r;
+WARPAGG_HD simd_value<To, L> convert(const simd_value<From, L>& a) {
+    simd_value<To, L> r;
     if constexpr (sizeof(To) == sizeof(From)) {
         WARPAGG_UNROLL
         for (int i = 0; i < r.chunks; ++i)
-            r.part[i] = __builtin_convertvector(a.part[i], typename lanes<To, L>::chunk);
+            r.part[i] = __builtin_convertvector(a.part[i], typename simd_value<To, L>::chunk);
     } else if constexpr (sizeof(To) == 2 * sizeof(From)) {
         WARPAGG_UNROLL
-        for (int i = 0; i < r.chunks; ++i) lanes<To, L>::widen(a, i, r.part[i]);
+        for (int i = 0; i < r.chunks; ++i) simd_value<To, L>::widen(a, i, r.part[i]);
     } else {
         WARPAGG_UNROLL
         for (int k = 0; k < L; ++k) r.set(k, static_cast<To>(a[k]));
@@ -316,9 +322,9 @@ WARPAGG_HD lanes<To, L> convert(const lanes<From, L>& a) {
 /// and they make x86 several times slower. 2^a = 2^n 2^f with n = round(a), f in [-1/2, 1/2]; 2^f by the
 /// polynomial of degree 6 with p(0) = 1 and least relative error, 2e-9.
 template <int L>
-WARPAGG_HD lanes<float, L> exp2(const lanes<float, L>& x) {
-    using real = lanes<float, L>;
-    using integer = lanes<std::uint32_t, L>;  // shifting a negative exponent is defined
+WARPAGG_HD simd_value<float, L> exp2(const simd_value<float, L>& x) {
+    using real = simd_value<float, L>;
+    using integer = simd_value<std::uint32_t, L>;  // shifting a negative exponent is defined
     const real a = min(max(x, -126.0f), 0x1.fffffep6f);
     constexpr float round = 0x1.8p23f;  // adding it leaves the nearest integer in the low bits
     const real shifted = a + real(round);
@@ -339,8 +345,8 @@ WARPAGG_HD lanes<float, L> exp2(const lanes<float, L>& x) {
     return p;
 }
 template <int L>
-WARPAGG_HD lanes<double, L> exp2(const lanes<double, L>& a) {
-    lanes<double, L> r;
+WARPAGG_HD simd_value<double, L> exp2(const simd_value<double, L>& a) {
+    simd_value<double, L> r;
     WARPAGG_UNROLL
     for (int k = 0; k < L; ++k) r.set(k, math::exp2(a[k]));
     return r;
@@ -350,9 +356,9 @@ WARPAGG_HD lanes<double, L> exp2(const lanes<double, L>& a) {
 /// and m in [sqrt(1/2), sqrt(2)), log2(m) is 2 / ln 2 artanh(s) of s = (m - 1) / (m + 1), whose series ends
 /// at s^11, where the rest is 2e-11 of it.
 template <int L>
-WARPAGG_HD lanes<float, L> log2(const lanes<float, L>& a) {
-    using real = lanes<float, L>;
-    using integer = lanes<std::int32_t, L>;
+WARPAGG_HD simd_value<float, L> log2(const simd_value<float, L>& a) {
+    using real = simd_value<float, L>;
+    using integer = simd_value<std::int32_t, L>;
     constexpr std::int32_t least = 0x3f3504f3;  // sqrt(1/2)
     integer bits, rest;
     static_assert(sizeof bits == sizeof a);
@@ -371,38 +377,38 @@ WARPAGG_HD lanes<float, L> log2(const lanes<float, L>& a) {
     return fma(p, s, convert<float>(n));
 }
 template <int L>
-WARPAGG_HD lanes<double, L> log2(const lanes<double, L>& a) {
-    lanes<double, L> r;
+WARPAGG_HD simd_value<double, L> log2(const simd_value<double, L>& a) {
+    simd_value<double, L> r;
     WARPAGG_UNROLL
     for (int k = 0; k < L; ++k) r.set(k, math::log2(a[k]));
     return r;
 }
 
 template <int L>
-WARPAGG_HD lanes<std::uint32_t, L> popcount(const lanes<std::uint32_t, L>& a) {
-    lanes<std::uint32_t, L> r;
+WARPAGG_HD simd_value<std::uint32_t, L> popcount(const simd_value<std::uint32_t, L>& a) {
+    simd_value<std::uint32_t, L> r;
     WARPAGG_UNROLL
     for (int k = 0; k < L; ++k) r.set(k, math::popcount(a[k]));
     return r;
 }
 template <int L>
-WARPAGG_HD lanes<std::uint32_t, L> countr_zero(const lanes<std::uint32_t, L>& a) {
-    lanes<std::uint32_t, L> r;
+WARPAGG_HD simd_value<std::uint32_t, L> countr_zero(const simd_value<std::uint32_t, L>& a) {
+    simd_value<std::uint32_t, L> r;
     WARPAGG_UNROLL
     for (int k = 0; k < L; ++k) r.set(k, math::countr_zero(a[k]));
     return r;
 }
 /// a + b; of integers modulo 2^bits, signed ones too.
 template <class T, int L>
-WARPAGG_HD lanes<T, L> wrapping_add(const lanes<T, L>& a, const lanes<T, L>& b) {
+WARPAGG_HD simd_value<T, L> wrapping_add(const simd_value<T, L>& a, const simd_value<T, L>& b) {
     if constexpr (std::is_integral_v<T> && std::is_signed_v<T>) {
         using words =
-            typename lanes<std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>, L>::chunk;
-        lanes<T, L> r;
+            typename simd_value<std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>, L>::chunk;
+        simd_value<T, L> r;
         WARPAGG_UNROLL
         for (int i = 0; i < r.chunks; ++i)
-            r.part[i] = reinterpret_cast<typename lanes<T, L>::chunk>(reinterpret_cast<words>(a.part[i]) +
-                                                                      reinterpret_cast<words>(b.part[i]));
+            r.part[i] = reinterpret_cast<typename simd_value<T, L>::chunk>(
+                reinterpret_cast<words>(a.part[i]) + reinterpret_cast<words>(b.part[i]));
         return r;
     } else {
         return a + b;
@@ -410,7 +416,7 @@ WARPAGG_HD lanes<T, L> wrapping_add(const lanes<T, L>& a, const lanes<T, L>& b) 
 }
 
 template <class T, int L>
-WARPAGG_HD T uniform(const lanes<T, L>& a) {
+WARPAGG_HD T uniform(const simd_value<T, L>& a) {
     return a[0];
 }
 /// @}
@@ -434,5 +440,10 @@ using warpagg::sqrt;
 using warpagg::uniform;
 using warpagg::wrapping_add;
 }  // namespace math
+
+/// @cond deprecated
+template <class T, int L>
+using lanes [[deprecated("use simd_value")]] = simd_value<T, L>;
+/// @endcond
 
 }  // namespace warpagg

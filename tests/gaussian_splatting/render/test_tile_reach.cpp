@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <warpagg/warp/simd.hpp>
 #include <warpagg/warp/serial.hpp>
+#include <warpagg/warp/simd.hpp>
 
 #include "render/tiles/tile_reach.hpp"
 
@@ -74,8 +74,8 @@ TEST_CASE("a splat reaches some tile of its box where looking at each finds one"
 
 TEST_CASE("lanes look for tiles each for itself") {
     using lanes_of_8 = warpagg::emulator::narrow_lanes<8>;
-    using real = warpagg::lanes<float, 8>;
-    using number = warpagg::lanes<std::uint32_t, 8>;
+    using real = warpagg::simd_value<float, 8>;
+    using number = warpagg::simd_value<std::uint32_t, 8>;
     std::mt19937 random(6);
     const warpagg::emulator::serial one{};
     const lanes_of_8 w;
@@ -83,7 +83,7 @@ TEST_CASE("lanes look for tiles each for itself") {
     for (int i = 0; i < 2000; ++i) {
         real values[8];
         number x0(0u), x1(0u), y0(0u), y1(0u);
-        warpagg::lanes<bool, 8> asked(false);
+        warpagg::simd_value<bool, 8> asked(false);
         for (auto& v : values) v = real(0.0f);
         bool expected[8];
         for (int lane = 0; lane < 8; ++lane) {

@@ -8,7 +8,7 @@
 int main() {
     const warpagg::emulator::lanes warp;
     const auto lane = warp.lane();
-    const warpagg::lanes<unsigned, 32> values[2] = {lane, lane + lane};
+    const warpagg::simd_value<unsigned, 32> values[2] = {lane, lane + lane};
     unsigned record[2] = {1000, 2000};
     warpagg::warp_reduce_atomic(warp, record, values, (lane & 1u) == 0u);
     std::printf("%u %u\n", record[0], record[1]);
