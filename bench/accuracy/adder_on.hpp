@@ -122,9 +122,9 @@ class adder_on final : public adder {
 
     /// The time includes sorting.
     std::vector<float> add_up_in_order() {
-        using pieces = warpagg::ordered_pieces<float>;
+        using tiles = warpagg::segmented_sum_tiles<float>;
         const auto n = static_cast<unsigned>(active_);
-        const std::size_t edges = 2 * pieces::pieces(n);
+        const std::size_t edges = 2 * tiles::tiles(n);
         for (auto* b : {&sorted_keys_, &numbers_}) b->resize(n_);
         sorted_values_.resize(active_);
         ordered_sums_.resize(sums_);
@@ -137,11 +137,12 @@ class adder_on final : public adder {
             device_.sort_pairs(sorted_keys_, numbers_, n_);
             device_.for_each_index(active_,
                                    gather_values{values_.data(), numbers_.data(), sorted_values_.data()});
-            device_.for_each_warp(pieces::pieces(n),
-                                  pieces{sorted_keys_.data(), sorted_values_.data(), n, ordered_sums_.data(),
-                                         edge_keys_.data(), edge_sums_.data()});
-            device_.for_each_index(edges, warpagg::ordered_join<float>{edge_keys_.data(), edge_sums_.data(),
-                                                                       edges, ordered_sums_.data()});
+            device_.for_each_warp(tiles::tiles(n),
+                                  tiles{sorted_keys_.data(), sorted_values_.data(), n, ordered_sums_.data(),
+                                        edge_keys_.data(), edge_sums_.data()});
+            device_.for_each_index(
+                edges, warpagg::segmented_sum_fixup<float>{edge_keys_.data(), edge_sums_.data(), edges,
+                                                           ordered_sums_.data()});
         });
         std::vector<float> sums(sums_);
         device_.download(sums.data(), ordered_sums_.data(), sums_);

@@ -3,45 +3,49 @@
 #pragma once
 
 /// @file
-/// Sums by key without any atomic, added in one order: the same bits from run to run. The values come sorted
-/// by their keys, equal keys in the order that is to be kept: std::stable_sort and cub::DeviceRadixSort do
-/// that. Two kernels, on any model of `warp`: `ordered_pieces`, then `ordered_join`.
+/// Segmented sums without atomics, added in a fixed order, so that the result has the same bits from run to
+/// run. The values come sorted by key. Values of equal keys are added in the order in which they come, so
+/// sort stably, as std::stable_sort and cub::DeviceRadixSort do. Two kernels, on any model of `warp`:
+/// `segmented_sum_tiles`, then `segmented_sum_fixup`.
 
 #include "warp/concept.hpp"
 
 namespace warpagg {
 
-/// The first kernel: a warp for each `piece` places of the sorted values.
+/// The first kernel: one warp for each tile of `tile_size` consecutive values.
 ///
-/// @snippet ordered.cpp ordered
+/// @snippet segmented_sum.cpp segmented sum
 ///
-/// Sums of keys that end in another piece than they begin wait at its edges. Error of a sum of n values of
-/// condition k: (n/1024 + 42) u k with 32 lanes, u half an ulp of one. Cost: values and keys are read once;
-/// 2 log2(W) + 3 shuffles and two votes for W of them.
+/// The sum of a key whose values continue in another tile waits at the edge between them for
+/// `segmented_sum_fixup`. Error of a sum of n values of condition k: (n/1024 + 42) u k with 32 lanes, where u
+/// is half an ulp of one. Cost: one read of values and keys; 2 log2(W) + 3 shuffles and two votes for each W
+/// values.
 /// Precondition: keys are below 2^32 - 1.
 template <class T>
-struct ordered_pieces {
-    static constexpr unsigned piece = 1024;          ///< places of a warp
-    static constexpr unsigned no_key = 0xffffffffu;  ///< of an edge that is none
-    const unsigned* keys;                            ///< n, sorted
-    const T* values;                                 ///< n
-    unsigned n;                                      ///< places
-    T* sums;              ///< by key; those of keys that are not there stay as they are
-    unsigned* edge_keys;  ///< two a piece
-    T* edge_sums;         ///< two a piece
+struct segmented_sum_tiles {
+    static constexpr unsigned tile_size = 1024;      ///< values per warp
+    static constexpr unsigned no_key = 0xffffffffu;  ///< marks an unused edge
+    const unsigned* keys;                            ///< n keys, sorted
+    const T* values;                                 ///< n values
+    unsigned n;                                      ///< number of values
+    T* sums;              ///< one sum per key; keys without values keep what is there
+    unsigned* edge_keys;  ///< two per tile
+    T* edge_sums;         ///< two per tile
 
-    /// How many there are of n places.
-    static constexpr WARPAGG_HD unsigned pieces(unsigned n) { return n / piece + (n % piece != 0 ? 1 : 0); }
+    /// The number of tiles of n values.
+    static constexpr WARPAGG_HD unsigned tiles(unsigned n) {
+        return n / tile_size + (n % tile_size != 0 ? 1 : 0);
+    }
 
-    /// The sums of piece `index`. All lanes call this.
+    /// Computes the sums of tile `index`. All lanes call this.
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
         using math::select;
         using math::uniform;
-        const unsigned begin = index * piece, end = begin + math::min(n - begin, piece);
+        const unsigned begin = index * tile_size, end = begin + math::min(n - begin, tile_size);
         const unsigned first = key_at(w, begin);
-        unsigned open = first;  // the key whose values go on, and what they came to so far
+        unsigned open = first;  // the key whose values continue, and their sum so far
         T so_far{};
         write_edge(w, 2 * index + 1, no_key, T{});
         for (unsigned base = begin; base < end; base += W::size) {
@@ -79,6 +83,11 @@ struct ordered_pieces {
             write_edge(w, 2 * index + 1, open, so_far);
     }
 
+    /// @cond deprecated
+    [[deprecated("use tile_size")]] static constexpr unsigned piece = tile_size;
+    [[deprecated("use tiles")]] static constexpr WARPAGG_HD unsigned pieces(unsigned n) { return tiles(n); }
+    /// @endcond
+
   private:
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
@@ -93,7 +102,7 @@ struct ordered_pieces {
         w.store(edge_keys, to, value_t<W, unsigned>(key), w.lane() == 0u);
         w.store(edge_sums, to, value_t<W, T>(sum), w.lane() == 0u);
     }
-    /// A key's values ended where a row of lanes did.
+    /// Writes the sum of a key whose values ended with the last row of lanes.
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
     WARPAGG_HD void close(const W& w, unsigned index, unsigned key, unsigned first, T sum) const {
@@ -104,22 +113,23 @@ struct ordered_pieces {
     }
 };
 
-/// The second kernel: an index for each of the edges, two a piece. Adds up what one key has at several.
+/// The second kernel: one index for each edge, two per tile. Adds up the parts of a key that lie at several
+/// edges.
 template <class T>
-struct ordered_join {
-    const unsigned* edge_keys;  ///< as `ordered_pieces` left them
-    const T* edge_sums;         ///< likewise
-    std::size_t edges;          ///< how many
-    T* sums;                    ///< by key
+struct segmented_sum_fixup {
+    const unsigned* edge_keys;  ///< as `segmented_sum_tiles` left them
+    const T* edge_sums;         ///< as `segmented_sum_tiles` left them
+    std::size_t edges;          ///< number of edges
+    T* sums;                    ///< one sum per key
 
-    /// The sum of the key whose first edge this is, if it is one's.
+    /// Adds up the key whose first edge this is; does nothing at other edges.
     WARPAGG_HD void operator()(std::size_t edge) const {
-        constexpr unsigned no_key = ordered_pieces<T>::no_key;
+        constexpr unsigned no_key = segmented_sum_tiles<T>::no_key;
         const unsigned key = edge_keys[edge];
         if (key == no_key) return;
         std::size_t before = edge;
         while (before > 0 && edge_keys[before - 1] == no_key) --before;
-        if (before > 0 && edge_keys[before - 1] == key) return;  // whoever has the key's first edge adds
+        if (before > 0 && edge_keys[before - 1] == key) return;  // the key's first edge adds
         T sum = edge_sums[edge];
         for (std::size_t next = edge + 1; next < edges; ++next) {
             if (edge_keys[next] == no_key) continue;
@@ -129,5 +139,12 @@ struct ordered_join {
         sums[key] = sum;
     }
 };
+
+/// @cond deprecated
+template <class T>
+using ordered_pieces [[deprecated("use segmented_sum_tiles")]] = segmented_sum_tiles<T>;
+template <class T>
+using ordered_join [[deprecated("use segmented_sum_fixup")]] = segmented_sum_fixup<T>;
+/// @endcond
 
 }  // namespace warpagg

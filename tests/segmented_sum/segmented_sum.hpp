@@ -17,24 +17,24 @@ namespace {
 
 using namespace warpagg;
 
-/// One warp takes all pieces.
+/// One warp takes all tiles.
 template <class T>
-struct sum_pieces {
-    ordered_pieces<T> pieces;
+struct sum_tiles {
+    segmented_sum_tiles<T> tiles;
 
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
     WARPAGG_HD void operator()(const W& w) const {
-        for (unsigned i = 0; i < pieces.pieces(pieces.n); ++i) pieces(w, i);
+        for (unsigned i = 0; i < tiles.tiles(tiles.n); ++i) tiles(w, i);
     }
 };
 template <class T>
-struct join_edges {
-    ordered_join<T> join;
+struct fix_up_edges {
+    segmented_sum_fixup<T> fixup;
 
     template <class W>
     WARPAGG_HD void operator()(const W&) const {
-        for (std::size_t edge = 0; edge < join.edges; ++edge) join(edge);
+        for (std::size_t edge = 0; edge < fixup.edges; ++edge) fixup(edge);
     }
 };
 
@@ -42,12 +42,12 @@ struct join_edges {
 template <class T>
 std::vector<T> ordered_sums(const std::vector<unsigned>& keys, const std::vector<T>& values, unsigned sums) {
     const auto n = static_cast<unsigned>(keys.size());
-    const std::size_t edges = 2 * ordered_pieces<T>::pieces(n);
+    const std::size_t edges = 2 * segmented_sum_tiles<T>::tiles(n);
     typename backend::template memory<unsigned> in(keys), edge_keys(std::vector<unsigned>(edges + 1));
     typename backend::template memory<T> of(values), to(std::vector<T>(sums, T(-1))),
         edge_sums(std::vector<T>(edges + 1));
-    backend::launch(sum_pieces<T>{{in.data(), of.data(), n, to.data(), edge_keys.data(), edge_sums.data()}});
-    backend::launch(join_edges<T>{{edge_keys.data(), edge_sums.data(), edges, to.data()}});
+    backend::launch(sum_tiles<T>{{in.data(), of.data(), n, to.data(), edge_keys.data(), edge_sums.data()}});
+    backend::launch(fix_up_edges<T>{{edge_keys.data(), edge_sums.data(), edges, to.data()}});
     return to.download();
 }
 
@@ -73,8 +73,8 @@ void check_whole(const std::vector<unsigned>& often) {
 
 }  // namespace
 
-static_assert(ordered_pieces<float>::pieces(0) == 0 && ordered_pieces<float>::pieces(1025) == 2 &&
-              ordered_pieces<float>::pieces(0xffffffffu) == 1u << 22);
+static_assert(segmented_sum_tiles<float>::tiles(0) == 0 && segmented_sum_tiles<float>::tiles(1025) == 2 &&
+              segmented_sum_tiles<float>::tiles(0xffffffffu) == 1u << 22);
 
 TEST_SUITE_BEGIN(backend::name);
 
