@@ -232,15 +232,16 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
     }
 }
 
-/// The same for a type of yours that consists of numbers, at `base[key]`: see components.hpp. On models whose
+/// The same for an aggregate, a type of yours, at `base[key]`: see aggregate.hpp. On models whose
 /// lane values are scalars, not on `emulator::lanes`.
 WARPAGG_EXEC_CHECK_DISABLE
-template <warp W, composite R, class Policy = policy<>>
+template <warp W, aggregate R, class Policy = policy<>>
 WARPAGG_HD void warp_match_reduce_atomic(const W& w, R* base, const value_t<W, unsigned>& key, const R& value,
                                          const mask_t<W>& active, Policy how = {},
                                          call_site at = call_site::here("warp_match_reduce_atomic")) {
-    const detail::numbers_of<R> numbers(value);
-    warp_match_reduce_atomic(w, detail::destination_of_numbers(base), key, numbers.number, active, how, at);
+    const detail::components_of<R> components(value);
+    warp_match_reduce_atomic(w, detail::destination_of_components(base), key, components.component, active,
+                             how, at);
 }
 
 /// Does not compile: a key has 32 bits, and of a wider one the rest would be lost.

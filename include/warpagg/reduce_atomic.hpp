@@ -68,7 +68,7 @@ WARPAGG_HD void reduce_and_commit(const W& w, Record record, const V (&values)[N
 /// `warp_reduce_atomic`, once its destination is an accessor and its policy is complete.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Choice, warp W, class Record, class V, int N>
-WARPAGG_HD void aggregate(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
+WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
     using op = typename Choice::operation;
     using commit_rule = typename Choice::commit;
     if constexpr (requires { w.observe(active); }) w.observe(active);
@@ -167,7 +167,7 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
                 return commit::record_of<typename choice::commit>(dst);
             }
         }();
-        detail::aggregate<choice>(w, record, values, detail::opaque(w, active));
+        detail::apply_policy<choice>(w, record, values, detail::opaque(w, active));
     }
 }
 
@@ -179,16 +179,16 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const V (&values)[N], co
     warp_reduce_atomic<scalar_t<V>, N>(w, dst, values, active, how, at);
 }
 
-/// The same for a type of yours that consists of numbers: see components.hpp. On models whose lane values are
+/// The same for an aggregate, a type of yours: see aggregate.hpp. On models whose lane values are
 /// scalars, not on `emulator::lanes`.
 ///
 /// @snippet warp_reduce_atomic.cpp a type of yours
 WARPAGG_EXEC_CHECK_DISABLE
-template <warp W, class Dst, composite R, class Policy = policy<>>
+template <warp W, class Dst, aggregate R, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const R& value, const mask_t<W>& active,
                                    Policy how = {}, call_site at = call_site::here("warp_reduce_atomic")) {
-    const detail::numbers_of<R> numbers(value);
-    warp_reduce_atomic(w, detail::destination_of_numbers(dst), numbers.number, active, how, at);
+    const detail::components_of<R> components(value);
+    warp_reduce_atomic(w, detail::destination_of_components(dst), components.component, active, how, at);
 }
 
 /// Does not compile: several tags go into one policy.

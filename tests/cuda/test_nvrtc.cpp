@@ -36,7 +36,7 @@ struct particle {
     float mass, momentum[2];
 };
 template <>
-struct warpagg::components<particle> : warpagg::consists_of<float, 3> {};
+struct warpagg::aggregate_traits<particle> : warpagg::aggregate_of<float, 3> {};
 
 extern "C" __global__ void the_rest(float* floats, long long* wide, unsigned* words, particle* particles, bool active) {
     using namespace warpagg;

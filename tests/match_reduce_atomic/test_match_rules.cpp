@@ -21,7 +21,7 @@ struct particle {
 }  // namespace
 
 template <>
-struct warpagg::components<particle> : warpagg::consists_of<float, 3> {};
+struct warpagg::aggregate_traits<particle> : warpagg::aggregate_of<float, 3> {};
 
 TEST_SUITE_BEGIN("match rules");
 

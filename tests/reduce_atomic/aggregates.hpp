@@ -23,18 +23,18 @@ struct moments {
 }  // namespace
 
 template <>
-struct warpagg::components<particle> : warpagg::consists_of<float, 4> {};
+struct warpagg::aggregate_traits<particle> : warpagg::aggregate_of<float, 4> {};
 template <>
-struct warpagg::components<moments> : warpagg::consists_of<double, 2> {};
+struct warpagg::aggregate_traits<moments> : warpagg::aggregate_of<double, 2> {};
 
 namespace {
 
 template <class R>
-WARPAGG_HD R* as_composite(typename warpagg::components<R>::type* p) {
+WARPAGG_HD R* as_aggregate(typename warpagg::aggregate_traits<R>::type* p) {
     return reinterpret_cast<R*>(p);
 }
 template <class R, class Dst>
-WARPAGG_HD Dst as_composite(Dst dst) {
+WARPAGG_HD Dst as_aggregate(Dst dst) {
     return dst;
 }
 
@@ -48,17 +48,17 @@ struct as_a_whole {
         static_assert(sizeof value == sizeof v);
         std::memcpy(&value, v, sizeof value);
         if constexpr (std::is_same_v<Policy, policy<>>) {
-            warpagg::warp_reduce_atomic(w, as_composite<R>(dst), value, active);
+            warpagg::warp_reduce_atomic(w, as_aggregate<R>(dst), value, active);
         } else {
-            warpagg::warp_reduce_atomic(w, as_composite<R>(dst), value, active, Policy{});
+            warpagg::warp_reduce_atomic(w, as_aggregate<R>(dst), value, active, Policy{});
         }
     }
 };
 
 template <class R, class Destination>
 void check_components(layout (*place)(unsigned, unsigned), const char* what) {
-    using T = typename warpagg::components<R>::type;
-    constexpr int n = warpagg::components<R>::count;
+    using T = typename warpagg::aggregate_traits<R>::type;
+    constexpr int n = warpagg::aggregate_traits<R>::count;
     const problem<T> p(n, place);
     check<as_a_whole<R, policy<>>, n, Destination>(p, what, as_chosen<T, n, policy<>>);
     check<as_a_whole<R, policy<reduce::shfl_down>>, n, Destination>(p, what, {});

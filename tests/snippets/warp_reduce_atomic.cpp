@@ -27,7 +27,7 @@ struct gradient {
     float mean[2], opacity;
 };
 template <>
-struct warpagg::components<gradient> : warpagg::consists_of<float, 3> {};
+struct warpagg::aggregate_traits<gradient> : warpagg::aggregate_of<float, 3> {};
 
 template <warpagg::warp W>
 void add(const W& w, gradient* gradients, unsigned id, const gradient& mine, bool active) {
