@@ -106,7 +106,7 @@ class adder_on final : public adder {
   private:
     template <class Accumulate>
     std::vector<float> add_up_to_cells(const Accumulate& how) {
-        return add_up<warpagg::cell<Accumulate>>(how);
+        return add_up<warpagg::accumulator<Accumulate>>(how);
     }
 
     /// Runs f, and notes how long that took.

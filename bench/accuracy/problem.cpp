@@ -26,10 +26,10 @@ void add_conditioned(double k, std::size_t n, std::mt19937_64& random, std::vect
 }
 
 /// Adds one value.
-void add(cell<accumulate::exact>& sum, float x) {
-    std::int64_t numbers[accumulate::exact::numbers];
-    accumulate::exact::split(x, numbers);
-    for (int i = 0; i < accumulate::exact::numbers; ++i) sum.number[i] += numbers[i];
+void add(accumulator<accumulate::exact>& sum, float x) {
+    std::int64_t limbs[accumulate::exact::limbs];
+    accumulate::exact::split(x, limbs);
+    for (int i = 0; i < accumulate::exact::limbs; ++i) sum.limb[i] += limbs[i];
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ problem draw(const generator& values_of, std::size_t n, std::uint32_t sums, bool
 }
 
 double sizes::minus(float x) const {
-    cell<accumulate::exact> difference = exact;
+    accumulator<accumulate::exact> difference = exact;
     add(difference, -x);
     return static_cast<double>(difference.value());
 }

@@ -34,7 +34,7 @@ problem draw(const generator& values_of, std::size_t n, std::uint32_t sums, bool
 /// What errors of a sum are relative to, and bounds are made of.
 struct sizes {
     double n = 0, magnitude = 0, largest = 0, sum = 0;
-    warpagg::cell<warpagg::accumulate::exact> exact;
+    warpagg::accumulator<warpagg::accumulate::exact> exact;
 
     /// How far x is from the exact sum, rounded once.
     double minus(float x) const;

@@ -3,18 +3,18 @@
 #pragma once
 
 /// @file
-/// In what a sum of floats is kept, in the warp and in memory: what its error is bound by, and whether the
-/// order of additions shows. n is the number of additions to a sum S, k its condition number sum|x| / |S|,
-/// u = 2^-24. docs/policies.md has what each costs.
+/// How a sum of floats is kept, in the warp and in memory. The kinds differ in their error bounds and in
+/// whether the order of additions changes the result. n is the number of additions to a sum S, k its
+/// condition number sum|x| / |S|, u = 2^-24. docs/policies.md lists their costs.
 
 #include "core/axis.hpp"
 #include "core/operation.hpp"
-#include "detail/accumulate/limbs.hpp"
+#include "detail/accumulate/superaccumulator.hpp"
 
 namespace warpagg {
 
-/// Each but `native` takes a float apart into `numbers` values of type `number`, `split`, which are combined
-/// by `operation`, and has the sum that such values stand for, `value`.
+/// Each kind but `native` decomposes a float into `limbs` values of type `limb` by `split`. `operation`
+/// combines limbs, and `value` converts summed limbs to a float.
 namespace accumulate {
 
 /// The values' own type. Error: (n/32 + 5) u k if all lanes are active, n u k at most. The order shows.
@@ -27,11 +27,15 @@ struct f64 {
     static constexpr auto of = axis::accumulate;
     /// See the namespace.
     /// @{
-    using number = double;
-    static constexpr int numbers = 1;
+    using limb = double;
+    static constexpr int limbs = 1;
+    /// @cond deprecated
+    using number [[deprecated("use limb")]] = limb;
+    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
+    /// @endcond
     using operation = warpagg::operation::sum;
-    WARPAGG_HD static void split(float x, number (&to)[numbers]) { to[0] = static_cast<double>(x); }
-    WARPAGG_HD static float value(const number (&sum)[numbers]) { return static_cast<float>(sum[0]); }
+    WARPAGG_HD static void split(float x, limb (&to)[limbs]) { to[0] = static_cast<double>(x); }
+    WARPAGG_HD static float value(const limb (&sum)[limbs]) { return static_cast<float>(sum[0]); }
     /// @}
 };
 
@@ -41,10 +45,14 @@ struct f64 {
 /// denormals are zero here as elsewhere.
 struct compensated {
     static constexpr auto of = axis::accumulate;
-    using number = std::uint64_t;  ///< the bits of both, the first in the lower half
+    using limb = std::uint64_t;  ///< the bits of both, the first in the lower half
     /// See the namespace.
     /// @{
-    static constexpr int numbers = 1;
+    static constexpr int limbs = 1;
+    /// @cond deprecated
+    using number [[deprecated("use limb")]] = limb;
+    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
+    /// @endcond
     /// Adds pairs.
     struct operation : warpagg::operation::on_words<operation> {
         /// See `on_words`.
@@ -58,8 +66,8 @@ struct compensated {
         }
     };
 
-    WARPAGG_HD static void split(float x, number (&to)[numbers]) { to[0] = word(x, 0); }
-    WARPAGG_HD static float value(const number (&sum)[numbers]) { return half(sum[0]) + half(sum[0] >> 32); }
+    WARPAGG_HD static void split(float x, limb (&to)[limbs]) { to[0] = word(x, 0); }
+    WARPAGG_HD static float value(const limb (&sum)[limbs]) { return half(sum[0]) + half(sum[0] >> 32); }
     /// @}
 
   private:
@@ -91,8 +99,12 @@ struct fixed {
     static constexpr auto of = axis::accumulate;
     /// See the namespace.
     /// @{
-    using number = std::int64_t;
-    static constexpr int numbers = 1;
+    using limb = std::int64_t;
+    static constexpr int limbs = 1;
+    /// @cond deprecated
+    using number [[deprecated("use limb")]] = limb;
+    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
+    /// @endcond
     using operation = warpagg::operation::sum;
     /// @}
 
@@ -100,7 +112,7 @@ struct fixed {
     float scale = 1;                 ///< a power of two; sums are to be divided by it: see `scale_to_fit`
 
     /// Whether x could be taken.
-    WARPAGG_HD bool split(float x, number (&to)[numbers]) const {
+    WARPAGG_HD bool split(float x, limb (&to)[limbs]) const {
         const double units = static_cast<double>(x) * static_cast<double>(scale) * power_of_two(Q);
         const double room = power_of_two(63 - LogValues);
         const bool fits = parts_of_float(x).finite && units < room && units > -room;
@@ -108,7 +120,7 @@ struct fixed {
         return fits;
     }
     /// Of sums of values that were scaled, scaled.
-    WARPAGG_HD static float value(const number (&sum)[numbers]) {
+    WARPAGG_HD static float value(const limb (&sum)[limbs]) {
         return static_cast<float>(static_cast<double>(sum[0]) * power_of_two(-Q));
     }
 
@@ -141,11 +153,15 @@ template <unsigned K>
 struct binned {
     static_assert(K >= 2 && K <= 8, "binned<K> takes 2 <= K <= 8 windows");
     static constexpr auto of = axis::accumulate;
-    using number =
+    using limb =
         std::uint64_t;  ///< a window's number, from 1, in the upper 8 bits, a signed sum in the others
     /// See the namespace.
     /// @{
-    static constexpr int numbers = K;
+    static constexpr int limbs = K;
+    /// @cond deprecated
+    using number [[deprecated("use limb")]] = limb;
+    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
+    /// @endcond
 
     /// Of two windows' sums the higher one; the sum of both if the window is the same.
     struct operation : warpagg::operation::on_words<operation> {
@@ -157,7 +173,7 @@ struct binned {
         }
     };
 
-    WARPAGG_HD static void split(float x, number (&to)[numbers]) {
+    WARPAGG_HD static void split(float x, limb (&to)[limbs]) {
         const parts_of_float p(x);
         const std::uint64_t wide = std::uint64_t{p.significand} << p.bit % window;
         const std::uint64_t low = wide & ((1u << window) - 1), high = wide >> window;
@@ -172,9 +188,9 @@ struct binned {
         }
     }
 
-    WARPAGG_HD static float value(const number (&sum)[numbers]) {
+    WARPAGG_HD static float value(const limb (&sum)[limbs]) {
         if (sum[0] >> 56 == infinite) return sum_of_infinities((sum[0] & 1u) != 0, (sum[0] & 2u) != 0);
-        limbs exact;
+        superaccumulator exact;
         for (const auto word : sum) {
             const std::uint64_t number = word >> 56;
             if (number == 0) continue;
@@ -200,29 +216,33 @@ struct exact {
     static constexpr auto of = axis::accumulate;
     /// See the namespace.
     /// @{
-    using number = std::int64_t;
-    static constexpr int numbers = 10;
+    using limb = std::int64_t;
+    static constexpr int limbs = 10;
+    /// @cond deprecated
+    using number [[deprecated("use limb")]] = limb;
+    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
+    /// @endcond
     using operation = warpagg::operation::sum;
 
-    WARPAGG_HD static void split(float x, number (&to)[numbers]) {
+    WARPAGG_HD static void split(float x, limb (&to)[limbs]) {
         const parts_of_float p(x);
         const std::uint64_t wide = std::uint64_t{p.significand} << p.bit % 32;
         const std::int64_t low = static_cast<std::int64_t>(wide & 0xffffffffu),
                            high = static_cast<std::int64_t>(wide >> 32);
         const int first = static_cast<int>(p.bit / 32);
-        for (int i = 0; i + 1 < numbers; ++i) {  // without an index known at run time: in registers
+        for (int i = 0; i + 1 < limbs; ++i) {  // without an index known at run time: in registers
             const std::int64_t part = !p.finite ? 0 : i == first ? low : i == first + 1 ? high : 0;
             to[i] = p.negative ? -part : part;
         }
         const bool positive = p.nan || !p.negative, negative = p.nan || p.negative;
-        to[numbers - 1] = p.finite ? 0 : (positive ? 1 : 0) + (negative ? std::int64_t{1} << 32 : 0);
+        to[limbs - 1] = p.finite ? 0 : (positive ? 1 : 0) + (negative ? std::int64_t{1} << 32 : 0);
     }
 
-    WARPAGG_HD static float value(const number (&sum)[numbers]) {
-        if (sum[numbers - 1] != 0)
-            return sum_of_infinities((sum[numbers - 1] & 0xffffffff) != 0, sum[numbers - 1] >> 32 != 0);
-        limbs whole;
-        for (unsigned i = 0; i + 1 < numbers; ++i) whole.limb[i] = sum[i];
+    WARPAGG_HD static float value(const limb (&sum)[limbs]) {
+        if (sum[limbs - 1] != 0)
+            return sum_of_infinities((sum[limbs - 1] & 0xffffffff) != 0, sum[limbs - 1] >> 32 != 0);
+        superaccumulator whole;
+        for (unsigned i = 0; i + 1 < limbs; ++i) whole.limb[i] = sum[i];
         return whole.nearest();
     }
     /// @}
@@ -237,19 +257,22 @@ struct exact {
 template <class A>
 struct between_warps : A {
     static_assert(
-        requires { typename A::number; } && !requires { typename A::kept; },
+        requires { typename A::limb; } && !requires { typename A::storage; },
         "between_warps is of f64, compensated, fixed<Q>, binned<K> or exact");
-    using kept = A;  ///< what memory's cells are of
+    using storage = A;  ///< kind of the accumulators in memory
+    /// @cond deprecated
+    using kept [[deprecated("use storage")]] = storage;
+    /// @endcond
 };
 
 }  // namespace accumulate
 
-/// A sum in memory that is kept as `Accumulate` says. Bytes of zero are a sum of nothing.
+/// A sum in memory, kept as `Accumulate` specifies. An accumulator of zero bytes is an empty sum.
 template <class Accumulate>
-struct cell {
-    typename Accumulate::number number[Accumulate::numbers]{};  ///< see `Accumulate`
+struct accumulator {
+    typename Accumulate::limb limb[Accumulate::limbs]{};  ///< see `Accumulate`
     /// The sum, as a float.
-    WARPAGG_HD float value() const { return Accumulate::value(number); }
+    WARPAGG_HD float value() const { return Accumulate::value(limb); }
 };
 
 /// The tag as an object, for `policy{...}`.
@@ -265,5 +288,10 @@ constexpr WARPAGG_HD accumulate::between_warps<A> between_warps(const A& how) {
     return {how};
 }
 /// @}
+
+/// @cond deprecated
+template <class Accumulate>
+using cell [[deprecated("use accumulator")]] = accumulator<Accumulate>;
+/// @endcond
 
 }  // namespace warpagg

@@ -104,27 +104,27 @@ WARPAGG_HD auto record_of_key(Base base, unsigned key) {
     return component_of_key<Base>{base, key};
 }
 
-/// The numbers of the cells of a base, as a base.
+/// The limbs of the accumulators of a base, as a base.
 /// @{
-template <class Base, int Numbers>
-struct numbers_by_key {
+template <class Base, int Limbs>
+struct limbs_by_key {
     Base base;
     WARPAGG_HD auto operator()(unsigned key, unsigned i) const {
-        return base(key, i / Numbers)->number + i % Numbers;
+        return base(key, i / Limbs)->limb + i % Limbs;
     }
 };
 template <class Accumulate>
-WARPAGG_HD auto base_of_numbers(cell<Accumulate>* base) {
-    return base->number;
+WARPAGG_HD auto base_of_limbs(accumulator<Accumulate>* base) {
+    return base->limb;
 }
 template <class Accumulate, class Base>
-WARPAGG_HD auto base_of_numbers(Base base) {
-    constexpr bool are_cells = requires {
-        { base(0u, 0u) } -> std::same_as<cell<Accumulate>*>;
+WARPAGG_HD auto base_of_limbs(Base base) {
+    constexpr bool are_accumulators = requires {
+        { base(0u, 0u) } -> std::same_as<accumulator<Accumulate>*>;
     };
-    static_assert(are_cells,
-                  "a sum that is not native is kept in cells: the base's are cell<...> of the policy's tag");
-    return numbers_by_key<Base, Accumulate::numbers>{base};
+    static_assert(are_accumulators,
+                  "a sum that is not native needs a base of accumulator<...>, of the policy's tag");
+    return limbs_by_key<Base, Accumulate::limbs>{base};
 }
 /// @}
 
@@ -220,13 +220,13 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
     if constexpr (detail::is_accumulated<accumulation>) {
         static_assert(std::is_same_v<scalar_t<V>, float>,
                       "only sums of float are kept otherwise than as they are");
-        value_t<W, typename accumulation::number> numbers[N * accumulation::numbers];
+        value_t<W, typename accumulation::limb> limbs[N * accumulation::limbs];
         {
             const detail::library_call<W> call(w, at);
-            detail::take_apart(w, how.accumulating(), values, active, numbers);
+            detail::decompose(w, how.accumulating(), values, active, limbs);
         }
-        warp_match_reduce_atomic(w, detail::base_of_numbers<accumulation>(base), key, numbers, active,
-                                 typename detail::policy_of_numbers<Policy>::type{}, at);
+        warp_match_reduce_atomic(w, detail::base_of_limbs<accumulation>(base), key, limbs, active,
+                                 typename detail::policy_of_limbs<Policy>::type{}, at);
     } else {
         detail::match_and_commit<Policy>(w, base, key, values, active, at);
     }

@@ -90,13 +90,13 @@ inline constexpr bool is_gated<unnamed> = false;
 /// Whether sums are kept otherwise than in the values' own type.
 template <class Accumulate>
 inline constexpr bool is_accumulated = requires {
-    typename Accumulate::number;
+    typename Accumulate::limb;
 };
 
 /// Whether a warp's own sum is native all the same.
 template <class Accumulate>
 inline constexpr bool is_between_warps = requires {
-    typename Accumulate::kept;
+    typename Accumulate::storage;
 };
 
 template <class P>
@@ -173,24 +173,24 @@ policy(Tags...) -> policy<Tags...>;
 
 namespace detail {
 
-/// The policy by which numbers that values were taken apart into are added.
+/// The policy by which the limbs of decomposed values are added.
 template <class Chosen, class... Tags>
-struct of_numbers {
+struct of_limbs {
     using type = policy<Tags...>;
 };
 template <class... Chosen, class Next, class... Tags>
-struct of_numbers<policy<Chosen...>, Next, Tags...>
-    : of_numbers<std::conditional_t<Next::of == axis::accumulate, policy<Chosen...>, policy<Chosen..., Next>>,
-                 Tags...> {};
+struct of_limbs<policy<Chosen...>, Next, Tags...>
+    : of_limbs<std::conditional_t<Next::of == axis::accumulate, policy<Chosen...>, policy<Chosen..., Next>>,
+               Tags...> {};
 template <class... Chosen>
-struct of_numbers<policy<Chosen...>> {
+struct of_limbs<policy<Chosen...>> {
     using type = policy<Chosen...>;
 };
 template <class Policy>
-struct policy_of_numbers;
+struct policy_of_limbs;
 template <class... Tags>
-struct policy_of_numbers<policy<Tags...>> {
-    using type = typename of_numbers<policy<typename policy<Tags...>::accumulate::operation>, Tags...>::type;
+struct policy_of_limbs<policy<Tags...>> {
+    using type = typename of_limbs<policy<typename policy<Tags...>::accumulate::operation>, Tags...>::type;
 };
 
 }  // namespace detail

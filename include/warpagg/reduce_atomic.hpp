@@ -122,11 +122,11 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
 /// @param at      where the call stands, by its default
 /// @param how     see policy.hpp; it may name another operation than the sum, or in what sums of float are
 /// kept:
-///                see accumulate/accumulate.hpp
+///                see accumulator.hpp
 ///
 /// @pre All lanes of the warp call this, with the same `dst`, which holds N values of T, aligned as T.
 ///
-/// Sums that are not native: what a value is taken apart into is computed in idle warps, too (ask
+/// Sums that are not native: values are decomposed in idle warps, too (ask
 /// `skip_if_warp_idle` first where many are); a `fixed` that is to tell of faults takes a vote more.
 ///
 /// The order in which warps add is not fixed. Inside a warp the tree is, the same for every reduction but
@@ -146,15 +146,15 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
     static_assert(!detail::is_accumulated<accumulation> || std::is_same_v<T, float>,
                   "only sums of float are kept otherwise than as they are");
     if constexpr (detail::is_accumulated<accumulation> && !detail::is_between_warps<accumulation>) {
-        using number = typename accumulation::number;
-        value_t<W, number> numbers[N * accumulation::numbers];
+        using limb = typename accumulation::limb;
+        value_t<W, limb> limbs[N * accumulation::limbs];
         {
             const detail::library_call<W> call(w, at);
-            detail::take_apart(w, how.accumulating(), values, active, numbers);
+            detail::decompose(w, how.accumulating(), values, active, limbs);
         }
-        warp_reduce_atomic<number, N * accumulation::numbers>(
-            w, detail::record_of_numbers<accumulation>(dst), numbers, active,
-            typename detail::policy_of_numbers<Policy>::type{}, at);
+        warp_reduce_atomic<limb, N * accumulation::limbs>(
+            w, detail::record_of_limbs<accumulation>(dst), limbs, active,
+            typename detail::policy_of_limbs<Policy>::type{}, at);
     } else {
         const detail::library_call<W> call(w, at);
         if constexpr (std::is_same_v<typename choice::idle, idle::assume_busy>) {
@@ -162,7 +162,8 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
         }
         const auto record = [&] {
             if constexpr (detail::is_between_warps<accumulation>) {
-                return detail::results_to_cells<typename accumulation::kept>(how.accumulating(), dst);
+                return detail::results_to_accumulators<typename accumulation::storage>(how.accumulating(),
+                                                                                       dst);
             } else {
                 return commit::record_of<typename choice::commit>(dst);
             }

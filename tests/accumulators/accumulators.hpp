@@ -120,7 +120,7 @@ struct kept_by<accumulate::between_warps<Accumulate>> {
 
 template <class Accumulate, class... Tags>
 std::vector<float> sums(const std::vector<float>& values, Accumulate how, Tags... tags) {
-    using cell = warpagg::cell<typename kept_by<Accumulate>::type>;
+    using cell = warpagg::accumulator<typename kept_by<Accumulate>::type>;
     typename backend::template memory<float> in(values);
     typename backend::template memory<cell> cells(std::vector<cell>(3));
     const policy all{how, tags...};
@@ -365,9 +365,9 @@ struct cell_by_key {
 /// What no single record shows: lanes that take no part, accessors, and keys.
 template <class Accumulate>
 struct add_by_accessors {
-    cell<Accumulate>* strided;
-    cell<Accumulate>* by_key;
-    cell<Accumulate>* by_key_and_component;
+    accumulator<Accumulate>* strided;
+    accumulator<Accumulate>* by_key;
+    accumulator<Accumulate>* by_key_and_component;
 
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
@@ -380,19 +380,20 @@ struct add_by_accessors {
                 select(active, math::convert<float>(math::convert<int>(index)), value_t<W, float>(nan_value));
             const value_t<W, float> v[2] = {x, x * -1.0f};
             const policy how{Accumulate{}};
-            warp_reduce_atomic(w, every_other_cell<cell<Accumulate>>{strided}, v, active, how);
-            warp_reduce_atomic(w, every_other_cell<cell<Accumulate>>{strided}, v, mask_t<W>(false), how);
+            warp_reduce_atomic(w, every_other_cell<accumulator<Accumulate>>{strided}, v, active, how);
+            warp_reduce_atomic(w, every_other_cell<accumulator<Accumulate>>{strided}, v, mask_t<W>(false),
+                               how);
             warp_match_reduce_atomic(w, by_key, index % 3u, v, active, how);
-            warp_match_reduce_atomic(w, cell_by_key<cell<Accumulate>>{by_key_and_component}, index % 3u, v,
-                                     active, policy{Accumulate{}, per_lane});
+            warp_match_reduce_atomic(w, cell_by_key<accumulator<Accumulate>>{by_key_and_component},
+                                     index % 3u, v, active, policy{Accumulate{}, per_lane});
         }
     }
 };
 
 template <class Accumulate>
 void check_accessors(const std::string& name) {
-    using cells = std::vector<cell<Accumulate>>;
-    typename backend::template memory<cell<Accumulate>> strided(cells(4)), by_key(cells(6)),
+    using cells = std::vector<accumulator<Accumulate>>;
+    typename backend::template memory<accumulator<Accumulate>> strided(cells(4)), by_key(cells(6)),
         transposed(cells(6));
     backend::launch(add_by_accessors<Accumulate>{strided.data(), by_key.data(), transposed.data()});
     float sum[3] = {};
@@ -412,7 +413,7 @@ void check_accessors(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("cells behind accessors and keys") {
+TEST_CASE("accumulators behind accessors and keys") {
     check_accessors<accumulate::f64>("f64");
     check_accessors<accumulate::compensated>("compensated");
     check_accessors<accumulate::fixed<10>>("fixed<10>");
@@ -514,7 +515,7 @@ TEST_CASE("between warps fixed says what does not fit") {
 TEST_CASE("infinities of binned do not count, they are there or not") {
     for (const float x : {infinity, -infinity, nan_value}) {
         using binned = accumulate::binned<3>;
-        std::uint64_t sum[binned::numbers];
+        std::uint64_t sum[binned::limbs];
         binned::split(x, sum);
         for (int doubled = 0; doubled < 40; ++doubled)
             for (auto& word : sum) word = binned::operation::combine_words(word, word);

@@ -63,13 +63,13 @@ __device__ void keep(void* cells, float* result, bool active, Accumulate how) {
     using namespace warpagg;
     const cuda_warp w;
     const float two[2] = {1, -1};
-    auto* const to = static_cast<cell<Accumulate>*>(cells);
+    auto* const to = static_cast<accumulator<Accumulate>*>(cells);
     warp_reduce_atomic(w, to, two, active, policy{how});
     warp_match_reduce_atomic(w, to, w.lane() % 2, two, active, policy{how});
     *result = to->value();
 }
 
-extern "C" __global__ void kept_otherwise(void* cells, float* result, unsigned* fault, bool active) {
+extern "C" __global__ void other_accumulators(void* cells, float* result, unsigned* fault, bool active) {
     namespace accumulate = warpagg::accumulate;
     keep(cells, result, active, accumulate::f64{});
     keep(cells, result, active, accumulate::compensated{});

@@ -6,7 +6,7 @@
 #include <warpagg/atomic.hpp>
 #include <warpagg/warp/simd.hpp>
 
-using warpagg::cell;
+using warpagg::accumulator;
 using warpagg::simd_value;
 namespace accumulate = warpagg::accumulate;
 
@@ -19,7 +19,7 @@ const simd_value<bool, 32> active(true);
 
 TEST_CASE("exact") {
     //! [exact]
-    cell<accumulate::exact> sums[2];  // in a kernel: in global memory, zero at first
+    accumulator<accumulate::exact> sums[2];  // in a kernel: in global memory, zero at first
     for (const float large : {1e30f, 1.0f, -1e30f}) {
         const simd_value<float, 32> values[2] = {large, -large};
         warpagg::warp_reduce_atomic(w, sums, values, active, warpagg::policy{warpagg::exact});
@@ -36,7 +36,7 @@ TEST_CASE("fixed") {
     const float largest = 3e6f;  // of the values, in magnitude
     std::uint32_t fault = 0;
     const sum how{&fault, sum::scale_to_fit(largest)};
-    cell<sum> total;
+    accumulator<sum> total;
     const simd_value<float, 32> values[1] = {3e6f};
     warpagg::warp_reduce_atomic(w, &total, values, active, warpagg::policy{how});
     // total.value() / how.scale: 96e6; fault: 0
@@ -47,7 +47,7 @@ TEST_CASE("fixed") {
 
 TEST_CASE("between warps") {
     //! [between_warps]
-    cell<accumulate::exact> total;  // of what warps come to: in whatever order, the same bits
+    accumulator<accumulate::exact> total;  // of what warps come to: in whatever order, the same bits
     for (const float large : {1e30f, 1.0f, -1e30f}) {
         const simd_value<float, 32> values[1] = {large};
         warpagg::warp_reduce_atomic(w, &total, values, active,

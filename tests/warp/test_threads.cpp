@@ -98,7 +98,7 @@ namespace {
 template <class Accumulate>
 void check_cells(const char* name) {
     constexpr unsigned rounds = 2000;
-    warpagg::cell<Accumulate> sums[2];
+    warpagg::accumulator<Accumulate> sums[2];
     on_each_thread([&](unsigned thread) {
         const warpagg::emulator::narrow_lanes<8> w;
         for (unsigned i = 0; i < rounds; ++i) {
@@ -115,7 +115,7 @@ void check_cells(const char* name) {
 
 }  // namespace
 
-TEST_CASE("threads add to cells of every kind") {
+TEST_CASE("threads add to accumulators of every kind") {
     check_cells<warpagg::accumulate::f64>("f64");
     check_cells<warpagg::accumulate::compensated>("compensated");
     check_cells<warpagg::accumulate::fixed<10>>("fixed<10>");

@@ -4,6 +4,6 @@
 #include <warpagg/atomic.hpp>
 #include <warpagg/warp/serial.hpp>
 
-void wrong(warpagg::cell<warpagg::accumulate::exact>* to, const double (&v)[3]) {
+void wrong(warpagg::accumulator<warpagg::accumulate::exact>* to, const double (&v)[3]) {
     warpagg::warp_reduce_atomic(warpagg::emulator::serial{}, to, v, true, warpagg::policy{warpagg::exact});
 }

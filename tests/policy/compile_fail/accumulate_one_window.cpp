@@ -4,7 +4,7 @@
 #include <warpagg/atomic.hpp>
 #include <warpagg/warp/serial.hpp>
 
-void wrong(warpagg::cell<warpagg::accumulate::binned<1>>* to, const float (&v)[3]) {
+void wrong(warpagg::accumulator<warpagg::accumulate::binned<1>>* to, const float (&v)[3]) {
     warpagg::warp_reduce_atomic(warpagg::emulator::serial{}, to, v, true,
                                 warpagg::policy{warpagg::binned<1>});
 }

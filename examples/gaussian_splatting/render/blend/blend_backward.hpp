@@ -5,9 +5,9 @@
 #include <type_traits>
 #include <warpagg/atomic.hpp>
 
+#include "../project/project_backward.hpp"
 #include "background.hpp"
 #include "list_reader.hpp"
-#include "../project/project_backward.hpp"
 
 namespace gs::raster {
 
@@ -18,9 +18,9 @@ struct sum_of {
     using type = Real;
 };
 template <class Real, class Policy>
-requires requires { typename Policy::accumulate::kept; }
+requires requires { typename Policy::accumulate::storage; }
 struct sum_of<Real, Policy> {
-    using type = warpagg::cell<typename Policy::accumulate::kept>;
+    using type = warpagg::accumulator<typename Policy::accumulate::storage>;
 };
 template <class Real, class Policy>
 using sum_in_memory = typename sum_of<Real, Policy>::type;

@@ -16,7 +16,7 @@ namespace gs::raster {
 /// Rounds sums that were kept in cells: one index a sum.
 template <class Accumulate>
 struct round_sums {
-    const warpagg::cell<Accumulate>* cells;
+    const warpagg::accumulator<Accumulate>* cells;
     float unit;  ///< what a cell's one is worth
     float* sums;
 
@@ -93,7 +93,7 @@ class gradient_sums {
 
   private:
     template <class Kernel>
-    using kept_by = typename Kernel::policy::accumulate::kept;
+    using kept_by = typename Kernel::policy::accumulate::storage;
 
     Device& device_;
     buffer<Real> sums_;

@@ -8,36 +8,36 @@
 namespace warpagg {
 
 template <class Accumulate>
-struct cell;  // see accumulator.hpp
+struct accumulator;  // see accumulator.hpp
 
 namespace detail {
 
-/// A destination's cells, as an accessor.
+/// The accumulators of a destination, as an accessor.
 template <class Accumulate, class Dst>
-WARPAGG_HD auto cells_of(Dst dst) {
+WARPAGG_HD auto accumulators_of(Dst dst) {
     static_assert(commit::is_destination<Dst>,
                   "the destination is a pointer, a span or an accessor: of a container, pass its data()");
-    auto cells = commit::destination(dst);
-    static_assert(
-        std::is_same_v<decltype(cells(0u)), cell<Accumulate>*>,
-        "a sum that is not native is kept in cells: the destination's are cell<...> of the policy's tag");
-    return cells;
+    auto accumulators = commit::destination(dst);
+    static_assert(std::is_same_v<decltype(accumulators(0u)), accumulator<Accumulate>*>,
+                  "a sum that is not native needs a destination of accumulator<...>, of the policy's tag");
+    return accumulators;
 }
 
-/// The numbers of the cells of a destination, as an accessor by number.
+/// The limbs of the accumulators of a destination, as an accessor.
 /// @{
-template <class Cells, int Numbers>
-struct numbers_of_cells {
-    Cells cells;
-    WARPAGG_HD auto operator()(unsigned i) const { return cells(i / Numbers)->number + i % Numbers; }
+template <class Accumulators, int Limbs>
+struct limbs_of_accumulators {
+    Accumulators accumulators;
+    WARPAGG_HD auto operator()(unsigned i) const { return accumulators(i / Limbs)->limb + i % Limbs; }
 };
 template <class Accumulate, class Dst>
-WARPAGG_HD auto record_of_numbers(Dst dst) {
-    auto cells = cells_of<Accumulate>(dst);
-    if constexpr (std::is_same_v<decltype(cells), commit::contiguous_record<cell<Accumulate>>>) {
-        return cells.first->number;
+WARPAGG_HD auto record_of_limbs(Dst dst) {
+    auto accumulators = accumulators_of<Accumulate>(dst);
+    if constexpr (std::is_same_v<decltype(accumulators),
+                                 commit::contiguous_record<accumulator<Accumulate>>>) {
+        return accumulators.first->limb;
     } else {
-        return numbers_of_cells<decltype(cells), Accumulate::numbers>{cells};
+        return limbs_of_accumulators<decltype(accumulators), Accumulate::limbs>{accumulators};
     }
 }
 /// @}
@@ -47,10 +47,10 @@ inline constexpr bool can_fault = requires(const Accumulate& a) {
     a.fault;
 };
 
-/// Takes x apart; whether it could be.
+/// Decomposes x; returns whether x is in range.
 template <class Accumulate>
 WARPAGG_HD bool split_one(const Accumulate& how, float x,
-                          typename Accumulate::number (&to)[Accumulate::numbers]) {
+                          typename Accumulate::limb (&to)[Accumulate::limbs]) {
     if constexpr (can_fault<Accumulate>) {
         return how.split(x, to);
     } else {
@@ -59,28 +59,28 @@ WARPAGG_HD bool split_one(const Accumulate& how, float x,
     }
 }
 
-/// Takes the lanes' values apart, number k of values[i] to numbers[i * Accumulate::numbers + k], and says of
-/// those of active lanes that could not be that there are such.
+/// Decomposes the values of the lanes: limb k of values[i] goes to limbs[i * Accumulate::limbs + k]. Sets
+/// `*how.fault` if a value of an active lane is out of range.
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Accumulate, warp W, class V, int N, class Number, int M>
-WARPAGG_HD void take_apart(const W& w, const Accumulate& how, const V (&values)[N], const mask_t<W>& active,
-                           Number (&numbers)[M]) {
-    constexpr int each = Accumulate::numbers;
-    typename Accumulate::number part[each];
+template <class Accumulate, warp W, class V, int N, class Limb, int M>
+WARPAGG_HD void decompose(const W& w, const Accumulate& how, const V (&values)[N], const mask_t<W>& active,
+                          Limb (&limbs)[M]) {
+    constexpr int each = Accumulate::limbs;
+    typename Accumulate::limb part[each];
     mask_t<W> fits(true);
     WARPAGG_UNROLL
     for (int i = 0; i < N; ++i) {
         if constexpr (requires { typename V::scalar; }) {
-            typename Accumulate::number words[each][W::size];  // not set in vectors: see on_words
+            typename Accumulate::limb words[each][W::size];  // not set in vectors: see on_words
             for (int lane = 0; lane < static_cast<int>(W::size); ++lane) {
                 if (!split_one(how, values[i][lane], part)) fits.set(lane, false);
                 for (int k = 0; k < each; ++k) words[k][lane] = part[k];
             }
-            for (int k = 0; k < each; ++k) std::memcpy(numbers[i * each + k].part, words[k], sizeof words[k]);
+            for (int k = 0; k < each; ++k) std::memcpy(limbs[i * each + k].part, words[k], sizeof words[k]);
         } else {
             fits = split_one(how, values[i], part) && fits;
             WARPAGG_UNROLL
-            for (int k = 0; k < each; ++k) numbers[i * each + k] = part[k];
+            for (int k = 0; k < each; ++k) limbs[i * each + k] = part[k];
         }
     }
     if constexpr (can_fault<Accumulate>) {
@@ -92,27 +92,27 @@ WARPAGG_HD void take_apart(const W& w, const Accumulate& how, const V (&values)[
     }
 }
 
-/// Cells that take what a warp comes to, a float each.
-template <class Accumulate, class Cells>
-struct cells_of_results {
+/// Accumulators to which a warp adds its results, one float each.
+template <class Accumulate, class Accumulators>
+struct accumulators_of_results {
     Accumulate how;
-    Cells cells;
-    WARPAGG_HD auto operator()(unsigned i) const { return cells(i); }
+    Accumulators accumulators;
+    WARPAGG_HD auto operator()(unsigned i) const { return accumulators(i); }
 };
 template <class Accumulate, class Dst>
-WARPAGG_HD auto results_to_cells(const Accumulate& how, Dst dst) {
-    auto cells = cells_of<Accumulate>(dst);
-    return cells_of_results<Accumulate, decltype(cells)>{how, cells};
+WARPAGG_HD auto results_to_accumulators(const Accumulate& how, Dst dst) {
+    auto accumulators = accumulators_of<Accumulate>(dst);
+    return accumulators_of_results<Accumulate, decltype(accumulators)>{how, accumulators};
 }
-/// Number k of each of them, as an accessor.
-template <class Cells>
-struct one_number_of_cells {
-    Cells cells;
+/// Limb k of each of them, as an accessor.
+template <class Accumulators>
+struct one_limb_of_accumulators {
+    Accumulators accumulators;
     int k;
-    WARPAGG_HD auto operator()(unsigned i) const { return cells(i)->number + k; }
+    WARPAGG_HD auto operator()(unsigned i) const { return accumulators(i)->limb + k; }
 };
 
-/// Commits a value of each active lane to the component that it names.
+/// Commits one value per active lane to the component that the lane names.
 /// @{
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Dst, class V>
@@ -121,16 +121,16 @@ WARPAGG_HD void commit_value(const W& w, Dst dst, const value_t<W, unsigned>& co
     w.atomic(Op{}, dst, component, v, active);
 }
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Op, warp W, class Accumulate, class Cells, class V>
-WARPAGG_HD void commit_value(const W& w, const cells_of_results<Accumulate, Cells>& dst,
+template <class Op, warp W, class Accumulate, class Accumulators, class V>
+WARPAGG_HD void commit_value(const W& w, const accumulators_of_results<Accumulate, Accumulators>& dst,
                              const value_t<W, unsigned>& component, const V& v, const mask_t<W>& active) {
     const V values[1] = {v};
-    value_t<W, typename Accumulate::number> numbers[Accumulate::numbers];
-    take_apart(w, dst.how, values, active, numbers);
+    value_t<W, typename Accumulate::limb> limbs[Accumulate::limbs];
+    decompose(w, dst.how, values, active, limbs);
     WARPAGG_UNROLL
-    for (int k = 0; k < Accumulate::numbers; ++k)
-        w.atomic(typename Accumulate::operation{}, one_number_of_cells<Cells>{dst.cells, k}, component,
-                 numbers[k], active);
+    for (int k = 0; k < Accumulate::limbs; ++k)
+        w.atomic(typename Accumulate::operation{},
+                 one_limb_of_accumulators<Accumulators>{dst.accumulators, k}, component, limbs[k], active);
 }
 /// @}
 

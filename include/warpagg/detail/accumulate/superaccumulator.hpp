@@ -6,12 +6,12 @@
 
 namespace warpagg::accumulate {
 
-/// A float taken apart: (-1)^negative significand 2^(bit - 149), or what is not a number or infinite.
+/// A float decomposed: (-1)^negative significand 2^(bit - 149), or an infinity or NaN.
 struct parts_of_float {
     std::uint32_t significand;  ///< below 2^24
-    unsigned bit;               ///< 0 to 253: the place of its lowest bit among those of all floats
+    unsigned bit;               ///< 0 to 253: position of its lowest bit, in units of 2^-149
     bool negative;              ///< its sign bit
-    bool finite;                ///< else nothing but `nan` and `negative` counts
+    bool finite;                ///< if false, only `nan` and `negative` have a meaning
     bool nan;                   ///< not a number
 
     /// Of any float.
@@ -27,10 +27,10 @@ struct parts_of_float {
     }
 };
 
-/// An integer of any sign in units of 2^-149, the least float: limb i counts 2^(32 i).
-struct limbs {
-    static constexpr unsigned count = 12;  ///< of the floats' 277 bits, and of carries above them
-    std::int64_t limb[count]{};            ///< of either sign, carried or not
+/// A signed integer in units of 2^-149, the smallest float; limb i has the weight 2^(32 i) (Kulisch).
+struct superaccumulator {
+    static constexpr unsigned count = 12;  ///< room for the 277 bits of floats, and for carries above them
+    std::int64_t limb[count]{};            ///< signed; carries need not be propagated
 
     /// Adds value 2^bit. Precondition: |value| < 2^62, bit <= 32 (count - 3), fewer than 2^29 additions.
     WARPAGG_HD void add(std::int64_t value, unsigned bit) {
@@ -45,7 +45,7 @@ struct limbs {
         }
     }
 
-    /// The float nearest to it, the even one of two; infinite beyond the largest.
+    /// The nearest float, ties to even; infinite beyond the largest float.
     WARPAGG_HD float nearest() const {
         std::uint32_t digit[count];
         const bool negative = digits(digit, 1);
@@ -75,7 +75,8 @@ struct limbs {
     }
 
   private:
-    /// The digits of `sign` times it to base 2^32; whether that is negative, when they are the complement.
+    /// Writes the digits of `sign` times this integer to base 2^32. Returns whether the product is negative;
+    /// the digits are its two's complement then.
     WARPAGG_HD bool digits(std::uint32_t (&digit)[count], std::int64_t sign) const {
         std::int64_t carry = 0;
         for (unsigned i = 0; i < count; ++i) {
@@ -87,7 +88,7 @@ struct limbs {
     }
 };
 
-/// What a sum is that holds infinities of either sign; a NaN counts as one of each.
+/// The sum of infinities of the given signs; a NaN counts as one of each sign.
 WARPAGG_HD float sum_of_infinities(bool positive, bool negative) {
     const std::uint32_t bits = positive && negative ? 0x7fc00000u : positive ? 0x7f800000u : 0xff800000u;
     float result;
