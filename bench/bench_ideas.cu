@@ -18,7 +18,7 @@
 
 namespace {
 
-using warpagg::cuda_warp;
+using warp = warpagg::cuda_warp;
 using warpagg::policy;
 namespace reduce = warpagg::reduce;
 namespace commit = warpagg::commit;
@@ -27,7 +27,7 @@ constexpr unsigned records = 1u << 20, blocks = 132 * 16, threads = 128, steps_p
 constexpr int rounds = 7, n = 9, stride = 12;
 
 __device__ void scatter(const warp& w, float (&sums)[n]) {
-    reduce::over_warp<warpagg::operation::sum>(
+    reduce::reduce_over_warp<warpagg::operation::sum>(
         reduce::scatter{}, w, [&](int i) { return sums[i]; }, sums);
 }
 

@@ -19,12 +19,12 @@ namespace accumulate {
 
 /// The values' own type. Error: (n/32 + 5) u k if all lanes are active, n u k at most. The order shows.
 struct native {
-    static constexpr auto of = axis::accumulate;
+    static constexpr auto axis = warpagg::axis::accumulate;
 };
 
 /// Double. Error: n 2^-53 k + u. The order shows.
 struct f64 {
-    static constexpr auto of = axis::accumulate;
+    static constexpr auto axis = warpagg::axis::accumulate;
     /// See the namespace.
     /// @{
     using limb = double;
@@ -44,7 +44,7 @@ struct f64 {
 /// Precondition: not compiled with -ffast-math, which takes the second for zero. With nvcc's -ftz=true
 /// denormals are zero here as elsewhere.
 struct compensated {
-    static constexpr auto of = axis::accumulate;
+    static constexpr auto axis = warpagg::axis::accumulate;
     using limb = std::uint64_t;  ///< the bits of both, the first in the lower half
     /// See the namespace.
     /// @{
@@ -96,7 +96,7 @@ template <int Q, int LogValues = 25>
 struct fixed {
     static_assert(Q >= -100 && Q <= 149, "fixed<Q> takes -100 <= Q <= 149");
     static_assert(LogValues >= 1 && LogValues <= 39, "fixed<Q, LogValues> takes 1 <= LogValues <= 39");
-    static constexpr auto of = axis::accumulate;
+    static constexpr auto axis = warpagg::axis::accumulate;
     /// See the namespace.
     /// @{
     using limb = std::int64_t;
@@ -152,7 +152,7 @@ struct fixed {
 template <unsigned K>
 struct binned {
     static_assert(K >= 2 && K <= 8, "binned<K> takes 2 <= K <= 8 windows");
-    static constexpr auto of = axis::accumulate;
+    static constexpr auto axis = warpagg::axis::accumulate;
     using limb =
         std::uint64_t;  ///< a window's number, from 1, in the upper 8 bits, a signed sum in the others
     /// See the namespace.
@@ -213,7 +213,7 @@ struct binned {
 /// Collange et al. 2015), and a tenth for what is infinite. Error: half an ulp, the sum is rounded once. The
 /// same bits in any order, for up to 2^31 values; infinities and NaN add up as in IEEE 754.
 struct exact {
-    static constexpr auto of = axis::accumulate;
+    static constexpr auto axis = warpagg::axis::accumulate;
     /// See the namespace.
     /// @{
     using limb = std::int64_t;

@@ -45,7 +45,7 @@ struct reduce_for {
 };
 template <class Measured>
 using not_spread =
-    std::conditional_t<Measured::leaves == reduce::results_in::spread, reduce::shfl_down, Measured>;
+    std::conditional_t<Measured::placement == reduce::result_placement::spread, reduce::shfl_down, Measured>;
 template <class Measured>
 struct reduce_for<commit::scalar, Measured> {
     using type = not_spread<Measured>;
@@ -56,20 +56,20 @@ struct reduce_for<commit::packed<K>, Measured> {
 };
 template <class Measured>
 struct reduce_for<commit::contiguous, Measured> {
-    using type =
-        std::conditional_t<Measured::leaves == reduce::results_in::first_lane, reduce::scatter, Measured>;
+    using type = std::conditional_t<Measured::placement == reduce::result_placement::first_lane,
+                                    reduce::scatter, Measured>;
 };
 
 /// The commit whose instructions are fewest where a reduction leaves its results.
 template <class Reduce>
-using commit_after = std::conditional_t<Reduce::leaves == reduce::results_in::spread ||
-                                            Reduce::leaves == reduce::results_in::every_lane,
+using commit_after = std::conditional_t<Reduce::placement == reduce::result_placement::spread ||
+                                            Reduce::placement == reduce::result_placement::every_lane,
                                         commit::contiguous, commit::scalar>;
 
-/// A policy with all that it leaves open filled in. A reduction named by the caller is not gated unless the
-/// caller says so.
+/// A policy with a tag on every axis: the caller's tags, and the measured defaults for the other axes. A
+/// reduction that the caller names is gated only if the caller names a gate, too.
 template <class T, int N, class Policy>
-struct choice {
+struct resolved_policy {
     static_assert(
         or_default<typename Policy::operation, warpagg::operation::sum>::template suits<T>,
         "memory has sums of 32 bits and more, and minimum, maximum, bit_and, bit_or and bit_xor of integers "
@@ -79,13 +79,13 @@ struct choice {
         or_default<typename Policy::reduce,
                    typename reduce_for<typename Policy::commit, typename measured<T, N>::reduce>::type>;
     using commit = or_default<typename Policy::commit, commit_after<reduce>>;
-    /// By which lanes commit that the gate leaves to themselves.
-    using alone = std::conditional_t<std::is_same_v<typename Policy::commit, unnamed> ||
-                                         !by_one_lane<typename Policy::commit>,
-                                     warpagg::commit::packed<4>, typename Policy::commit>;
+    /// The commit of lanes that the gate keeps from reducing.
+    using ungated_commit = std::conditional_t<std::is_same_v<typename Policy::commit, unset> ||
+                                                  !by_one_lane<typename Policy::commit>,
+                                              warpagg::commit::packed<4>, typename Policy::commit>;
     using idle = or_default<typename Policy::idle, warpagg::idle::skip>;
     static constexpr bool measured_gate =
-        std::is_same_v<typename Policy::reduce, unnamed> && !std::is_same_v<idle, warpagg::idle::add_zeros>;
+        std::is_same_v<typename Policy::reduce, unset> && !std::is_same_v<idle, warpagg::idle::add_zeros>;
     using gate =
         or_default<typename Policy::gate,
                    std::conditional_t<measured_gate, typename measured<T, N>::gate, warpagg::gate::always>>;
@@ -94,8 +94,8 @@ struct choice {
 }  // namespace detail
 
 /// What `warp_reduce_atomic` does with N values of T where no policy is given, spelt out.
-template <class T, int N, class Choice = detail::choice<T, N, policy<>>>
-using default_policy =
-    policy<typename Choice::reduce, typename Choice::commit, typename Choice::idle, typename Choice::gate>;
+template <class T, int N, class Resolved = detail::resolved_policy<T, N, policy<>>>
+using default_policy = policy<typename Resolved::reduce, typename Resolved::commit, typename Resolved::idle,
+                              typename Resolved::gate>;
 
 }  // namespace warpagg

@@ -70,10 +70,10 @@ WARPAGG_HD bool keys_rise(const W& w, const value_t<W, unsigned>& key, const mas
 
 /// By what instructions the records of keys are committed: as the policy says, else by the largest groups
 /// that keep all records aligned.
-template <class Choice, class Policy, int N>
-using commit_of_keys = std::conditional_t<std::is_same_v<typename Choice::reduce, reduce::per_lane> ||
-                                              !std::is_same_v<typename Policy::commit, unnamed>,
-                                          typename Choice::commit, commit::packed<N % 4 == 0 ? 4 : 2>>;
+template <class Resolved, class Policy, int N>
+using commit_of_keys = std::conditional_t<std::is_same_v<typename Resolved::reduce, reduce::per_lane> ||
+                                              !std::is_same_v<typename Policy::commit, unset>,
+                                          typename Resolved::commit, commit::packed<N % 4 == 0 ? 4 : 2>>;
 
 /// Every active lane commits its own values to its key's record.
 WARPAGG_EXEC_CHECK_DISABLE
@@ -137,7 +137,7 @@ WARPAGG_HD void match_and_commit(const W& w, Base base, const value_t<W, unsigne
     using math::popcount;
     using math::select;
     using math::uniform;
-    using chosen = choice<scalar_t<V>, N, Policy>;
+    using chosen = resolved_policy<scalar_t<V>, N, Policy>;
     using operation = typename chosen::operation;
     using bits = value_t<W, std::uint32_t>;
     static_assert(

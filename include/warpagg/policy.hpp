@@ -15,47 +15,48 @@ namespace warpagg {
 
 namespace detail {
 
-struct unnamed {};
+/// Stands for the tag of an axis on which a policy has none.
+struct unset {};
 
 /// The tag among Tags that is of axis A.
 template <axis A, class... Tags>
 struct named {
-    using type = unnamed;
+    using type = unset;
 };
 template <axis A, class Tag, class... Tags>
 struct named<A, Tag, Tags...> {
-    using type = std::conditional_t<Tag::of == A, Tag, typename named<A, Tags...>::type>;
+    using type = std::conditional_t<Tag::axis == A, Tag, typename named<A, Tags...>::type>;
 };
 template <axis A, class... Tags>
 using named_t = typename named<A, Tags...>::type;
 
 /// The object among tags that is of axis A.
 template <axis A>
-WARPAGG_HD constexpr unnamed object_of() {
+WARPAGG_HD constexpr unset object_of() {
     return {};
 }
 template <axis A, class Tag, class... Tags>
 WARPAGG_HD constexpr auto object_of(Tag tag, Tags... tags) {
-    if constexpr (Tag::of == A) {
+    if constexpr (Tag::axis == A) {
         return tag;
     } else {
         return object_of<A>(tags...);
     }
 }
 
-/// A tag's object; nothing where it holds nothing.
+/// Holds a tag's object; empty if the tag is.
 template <class Tag, bool = __is_empty(Tag)>
-class carried {
+class optional_member {
   public:
-    carried() = default;
-    constexpr WARPAGG_HD explicit carried(Tag) {}
+    optional_member() = default;
+    constexpr WARPAGG_HD explicit optional_member(Tag) {}
     constexpr WARPAGG_HD Tag accumulating() const { return {}; }
 };
 template <class Tag>
-class carried<Tag, false> {
+class optional_member<Tag, false> {
   public:
-    carried() = default;
-    constexpr WARPAGG_HD explicit carried(Tag tag) : tag_(tag) {}
+    optional_member() = default;
+    constexpr WARPAGG_HD explicit optional_member(Tag tag) : tag_(tag) {}
     constexpr WARPAGG_HD Tag accumulating() const { return tag_; }
 
   private:
@@ -63,29 +64,31 @@ class carried<Tag, false> {
 };
 
 template <class Tag, class Default>
-using or_default = std::conditional_t<std::is_same_v<Tag, unnamed>, Default, Tag>;
+using or_default = std::conditional_t<std::is_same_v<Tag, unset>, Default, Tag>;
 
 template <class Reduce>
-inline constexpr auto leaves = Reduce::leaves;
+inline constexpr auto placement_of = Reduce::placement;
 template <>
-inline constexpr auto leaves<unnamed> = reduce::results_in::every_lane;  // whatever suits the commit
+inline constexpr auto placement_of<unset> =
+    reduce::result_placement::every_lane;  // whatever suits the commit
 
 template <class Reduce, class Commit>
 inline constexpr bool spreads_own_values =
-    leaves<Reduce> == reduce::results_in::own_lane&& std::is_same_v<Commit, commit::contiguous>;
+    placement_of<Reduce> == reduce::result_placement::own_lane&& std::is_same_v<Commit, commit::contiguous>;
 template <class Reduce, class Commit>
 inline constexpr bool spreads_first_lane =
-    leaves<Reduce> == reduce::results_in::first_lane&& std::is_same_v<Commit, commit::contiguous>;
+    placement_of<Reduce> == reduce::result_placement::first_lane&& std::is_same_v<Commit, commit::contiguous>;
 template <class Commit>
 inline constexpr bool by_one_lane = std::is_same_v<Commit, commit::scalar>;
 template <unsigned K>
 inline constexpr bool by_one_lane<commit::packed<K>> = true;
 template <class Reduce, class Commit>
-inline constexpr bool gathers_spread = leaves<Reduce> == reduce::results_in::spread&& by_one_lane<Commit>;
+inline constexpr bool gathers_spread =
+    placement_of<Reduce> == reduce::result_placement::spread&& by_one_lane<Commit>;
 template <class Gate>
 inline constexpr bool is_gated = Gate::lanes > 0;
 template <>
-inline constexpr bool is_gated<unnamed> = false;
+inline constexpr bool is_gated<unset> = false;
 
 /// Whether sums are kept otherwise than in the values' own type.
 template <class Accumulate>
@@ -111,10 +114,10 @@ concept is_policy = requires {
 ///
 /// @snippet warp_reduce_atomic.cpp policy
 template <class... Tags>
-struct policy : detail::carried<detail::named_t<axis::accumulate, Tags...>> {
+struct policy : detail::optional_member<detail::named_t<axis::accumulate, Tags...>> {
     /// How many of the tags are of axis A.
     template <axis A>
-    static constexpr int count = (0 + ... + (Tags::of == A ? 1 : 0));
+    static constexpr int count = (0 + ... + (Tags::axis == A ? 1 : 0));
     static_assert(count<axis::operation> <= 1,
                   "a policy takes one operation: minimum, maximum, bit_and, bit_or or bit_xor");
     static_assert(count<axis::reduce> <= 1,
@@ -150,7 +153,7 @@ struct policy : detail::carried<detail::named_t<axis::accumulate, Tags...>> {
     static_assert(!(std::is_same_v<reduce, warpagg::reduce::per_lane> && detail::is_gated<gate>),
                   "per_lane has no reduction for at_least<K> to stand before: take always");
     static_assert(!std::is_same_v<commit, warpagg::commit::staged> ||
-                      std::is_same_v<operation, detail::unnamed>,
+                      std::is_same_v<operation, detail::unset>,
                   "a stage is added to memory: staged goes with the sum");
     static_assert(!(std::is_same_v<idle, warpagg::idle::add_zeros> && detail::is_gated<gate>),
                   "at_least<K> sends an idle warp to per-lane atomics, so it never adds zeros: take skip");
@@ -165,7 +168,7 @@ struct policy : detail::carried<detail::named_t<axis::accumulate, Tags...>> {
     policy() = default;
     /// From objects: `policy{scatter}`.
     constexpr WARPAGG_HD explicit policy(Tags... tags) requires(sizeof...(Tags) > 0)
-        : detail::carried<accumulate>(detail::object_of<axis::accumulate>(tags...)) {}
+        : detail::optional_member<accumulate>(detail::object_of<axis::accumulate>(tags...)) {}
 };
 /// `policy{scatter, skip}` is a `policy<reduce::scatter, idle::skip>`.
 template <class... Tags>
@@ -180,7 +183,7 @@ struct of_limbs {
 };
 template <class... Chosen, class Next, class... Tags>
 struct of_limbs<policy<Chosen...>, Next, Tags...>
-    : of_limbs<std::conditional_t<Next::of == axis::accumulate, policy<Chosen...>, policy<Chosen..., Next>>,
+    : of_limbs<std::conditional_t<Next::axis == axis::accumulate, policy<Chosen...>, policy<Chosen..., Next>>,
                Tags...> {};
 template <class... Chosen>
 struct of_limbs<policy<Chosen...>> {

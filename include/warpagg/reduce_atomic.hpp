@@ -56,42 +56,43 @@ struct active_values {
 };
 
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Choice, warp W, class Record, class V, int N>
+template <class Resolved, warp W, class Record, class V, int N>
 WARPAGG_HD void reduce_and_commit(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
-    using op = typename Choice::operation;
-    using reduction = typename Choice::reduce;
+    using op = typename Resolved::operation;
+    using reduction = typename Resolved::reduce;
     V results[N];
-    over_warp<op>(reduction{}, w, active_values<op, V, mask_t<W>>{values, active}, results);
-    commit::results<op, reduction, typename Choice::commit>(w, record, results);
+    reduce_over_warp<op>(reduction{}, w, active_values<op, V, mask_t<W>>{values, active}, results);
+    commit::results<op, reduction, typename Resolved::commit>(w, record, results);
 }
 
 /// `warp_reduce_atomic`, once its destination is an accessor and its policy is complete.
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Choice, warp W, class Record, class V, int N>
+template <class Resolved, warp W, class Record, class V, int N>
 WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
-    using op = typename Choice::operation;
-    using commit_rule = typename Choice::commit;
+    using op = typename Resolved::operation;
+    using commit_rule = typename Resolved::commit;
     if constexpr (requires { w.observe(active); }) w.observe(active);
     if constexpr (requires { w.require_uniform(record(0u)); }) w.require_uniform(record(0u));
-    if constexpr (std::is_same_v<typename Choice::reduce, reduce::per_lane>) {
+    if constexpr (std::is_same_v<typename Resolved::reduce, reduce::per_lane>) {
         commit::each_lane<op, commit_rule>(w, record, values, active);
-    } else if constexpr (is_gated<typename Choice::gate>) {
-        using alone = typename Choice::alone;
+    } else if constexpr (is_gated<typename Resolved::gate>) {
+        using gate = typename Resolved::gate;
+        using ungated = typename Resolved::ungated_commit;
         const unsigned least =
-            commit::is_packed<op, alone, V>(w, record) ? Choice::gate::lanes_if_packed : Choice::gate::lanes;
+            commit::is_packed<op, ungated, V>(w, record) ? gate::lanes_if_packed : gate::lanes;
         if (math::popcount(w.ballot(active)) < least) [[unlikely]] {
             V own[N];  // what is indexed by lanes lies in memory, where the values themselves need not
             WARPAGG_UNROLL
             for (int i = 0; i < N; ++i) own[i] = values[i];
-            commit::each_lane<op, alone>(w, record, own, active);
+            commit::each_lane<op, ungated>(w, record, own, active);
             return;
         }
-        reduce_and_commit<Choice>(w, record, values, active);
+        reduce_and_commit<Resolved>(w, record, values, active);
     } else {
-        if constexpr (std::is_same_v<typename Choice::idle, idle::skip>) {
+        if constexpr (std::is_same_v<typename Resolved::idle, idle::skip>) {
             if (!w.any(active)) return;
         }
-        reduce_and_commit<Choice>(w, record, values, active);
+        reduce_and_commit<Resolved>(w, record, values, active);
     }
 }
 
@@ -142,7 +143,7 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
     static_assert(detail::is_policy<Policy>,
                   "warp_reduce_atomic takes one policy: put the tags into policy{...}");
     using accumulation = typename Policy::accumulate;
-    using choice = detail::choice<T, N, Policy>;
+    using resolved_policy = detail::resolved_policy<T, N, Policy>;
     static_assert(!detail::is_accumulated<accumulation> || std::is_same_v<T, float>,
                   "only sums of float are kept otherwise than as they are");
     if constexpr (detail::is_accumulated<accumulation> && !detail::is_between_warps<accumulation>) {
@@ -157,7 +158,7 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
             typename detail::policy_of_limbs<Policy>::type{}, at);
     } else {
         const detail::library_call<W> call(w, at);
-        if constexpr (std::is_same_v<typename choice::idle, idle::assume_busy>) {
+        if constexpr (std::is_same_v<typename resolved_policy::idle, idle::assume_busy>) {
             if constexpr (requires { w.require_busy(active); }) w.require_busy(active);
         }
         const auto record = [&] {
@@ -165,10 +166,10 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
                 return detail::results_to_accumulators<typename accumulation::storage>(how.accumulating(),
                                                                                        dst);
             } else {
-                return commit::record_of<typename choice::commit>(dst);
+                return commit::record_of<typename resolved_policy::commit>(dst);
             }
         }();
-        detail::apply_policy<choice>(w, record, values, detail::opaque(w, active));
+        detail::apply_policy<resolved_policy>(w, record, values, detail::opaque(w, active));
     }
 }
 

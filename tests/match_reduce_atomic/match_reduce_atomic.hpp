@@ -208,7 +208,8 @@ void check_match(const match_problem<T, Op>& p, const char* what, unsigned alone
 
 template <int N, class Base, class T>
 void check_match_default(const match_problem<T>& p) {
-    check_match<policy<>, N, Base>(p, "no tags", warpagg::detail::choice<T, N, policy<>>::gate::lanes);
+    check_match<policy<>, N, Base>(p, "no tags",
+                                   warpagg::detail::resolved_policy<T, N, policy<>>::gate::lanes);
 }
 
 template <int N, class T>
@@ -223,7 +224,8 @@ void check_match_policies() {
 template <class Op, class T>
 void check_match_operation(const char* what) {
     const match_problem<T, Op> p(3, guarded);
-    check_match<policy<Op>, 3, by_accessor>(p, what, warpagg::detail::choice<T, 3, policy<Op>>::gate::lanes);
+    check_match<policy<Op>, 3, by_accessor>(p, what,
+                                            warpagg::detail::resolved_policy<T, 3, policy<Op>>::gate::lanes);
 }
 
 }  // namespace

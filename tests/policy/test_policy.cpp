@@ -69,7 +69,7 @@ TEST_CASE("tags choose the same in any order") {
 }
 
 TEST_CASE("the tags of an axis are found, or none is") {
-    using nothing = warpagg::detail::unnamed;
+    using nothing = warpagg::detail::unset;
     CHECK(chooses<policy<>, nothing, nothing, nothing, nothing>);
     CHECK(chooses<policy<commit::packed<2>>, nothing, commit::packed<2>, nothing, nothing>);
     CHECK(chooses<policy<gate::at_least<2, 5>, reduce::redux>, reduce::redux, nothing, nothing,
@@ -80,7 +80,9 @@ TEST_CASE("the tags of an axis are found, or none is") {
 
 TEST_CASE("what no tag names follows from what one names") {
     using measured = gate::at_least<2, 4>;  // as measured for nine floats
-    const auto floats = []<class Policy>(Policy) { return warpagg::detail::choice<float, 9, Policy>{}; };
+    const auto floats = []<class Policy>(Policy) {
+        return warpagg::detail::resolved_policy<float, 9, Policy>{};
+    };
     using scattered = decltype(floats(policy<>{}));
     CHECK(chooses<scattered, reduce::scatter, commit::contiguous, idle::skip, measured>);
     CHECK(std::is_same_v<scattered::operation, operation::sum>);

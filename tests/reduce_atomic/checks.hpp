@@ -25,9 +25,9 @@ template <class Commit>
 constexpr unsigned neighbours_of = 1;
 template <unsigned K>
 constexpr unsigned neighbours_of<warpagg::commit::packed<K>> = K;
-template <class T, int N, class Policy, class Choice = warpagg::detail::choice<T, N, Policy>>
-constexpr rule as_chosen{Choice::gate::lanes, Choice::gate::lanes_if_packed, false,
-                         neighbours_of<typename Choice::alone>};
+template <class T, int N, class Policy, class Resolved = warpagg::detail::resolved_policy<T, N, Policy>>
+constexpr rule as_chosen{Resolved::gate::lanes, Resolved::gate::lanes_if_packed, false,
+                         neighbours_of<typename Resolved::ungated_commit>};
 
 template <class T, class Op = operation::sum>
 struct problem {

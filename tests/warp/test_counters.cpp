@@ -81,7 +81,7 @@ void check_scatter_of() {
     const counted_lanes w{{&total}};
     warpagg::simd_value<float, 32> v[N];
     const auto one = [](int) { return warpagg::simd_value<float, 32>(1.0f); };
-    reduce::over_warp<warpagg::operation::sum>(reduce::scatter{}, w, one, v);
+    reduce::reduce_over_warp<warpagg::operation::sum>(reduce::scatter{}, w, one, v);
     CHECK(total.shuffles == scatter_shuffles(N));
 }
 

@@ -17,7 +17,7 @@ namespace operation {
 
 /// Addition: of floats, of integers (modulo 2^bits), of pairs of halves.
 struct sum {
-    static constexpr auto of = axis::operation;
+    static constexpr auto axis = warpagg::axis::operation;
     template <class T>
     static constexpr bool suits = !std::is_integral_v<T> || sizeof(T) >= 4;
     template <class V>
@@ -33,7 +33,7 @@ struct sum {
 
 /// Of integers of 32 or 64 bits.
 struct for_integers {
-    static constexpr auto of = axis::operation;
+    static constexpr auto axis = warpagg::axis::operation;
     template <class T>
     static constexpr bool suits = std::is_integral_v<T> && sizeof(T) >= 4;
     /// The sign bit of a signed T alone, zero if T is unsigned: T's least value.
@@ -96,7 +96,7 @@ struct bit_or : for_integers {
 /// compare-and-swap.
 template <class Op>
 struct on_words {
-    static constexpr auto of = axis::operation;
+    static constexpr auto axis = warpagg::axis::operation;
     static constexpr bool by_exchange = true;  ///< no atomic instruction has it
     template <class T>
     static constexpr bool suits = std::is_integral_v<T> && !std::is_signed_v<T> && sizeof(T) == 8;

@@ -17,14 +17,14 @@ namespace reduce {
 
 /// `cooperative_groups::reduce`, value by value; every lane ends with the results. Only on `cuda_warp`.
 struct cooperative {
-    static constexpr auto of = axis::reduce;
-    static constexpr auto leaves = results_in::every_lane;
+    static constexpr auto axis = warpagg::axis::reduce;
+    static constexpr auto placement = result_placement::every_lane;
 };
 
 /// Cost: N log2(W) shuffles.
 template <class Op, class Values, class T, int N>
-__device__ __forceinline__ void over_warp(cooperative, const cuda_warp&, const Values& value,
-                                          T (&results)[N]) {
+__device__ __forceinline__ void reduce_over_warp(cooperative, const cuda_warp&, const Values& value,
+                                                 T (&results)[N]) {
     namespace groups = ::cooperative_groups;
     const auto warp = groups::tiled_partition<32>(groups::this_thread_block());
     WARPAGG_UNROLL

@@ -15,13 +15,14 @@ namespace reduce {
 
 /// CUB's `WarpReduce`, value by value; lane 0 ends with the results. Only on `cuda_warp`.
 struct cub {
-    static constexpr auto of = axis::reduce;
-    static constexpr auto leaves = results_in::first_lane;
+    static constexpr auto axis = warpagg::axis::reduce;
+    static constexpr auto placement = result_placement::first_lane;
 };
 
 /// Cost: N log2(W) shuffles.
 template <class Op, class Values, class T, int N>
-__device__ __forceinline__ void over_warp(cub, const cuda_warp&, const Values& value, T (&results)[N]) {
+__device__ __forceinline__ void reduce_over_warp(cub, const cuda_warp&, const Values& value,
+                                                 T (&results)[N]) {
     using machine = ::cub::WarpReduce<T>;
     static_assert(sizeof(typename machine::TempStorage) <= 1, "a whole warp reduces by shuffles alone");
     typename machine::TempStorage nothing;

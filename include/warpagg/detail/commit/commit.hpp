@@ -95,7 +95,7 @@ WARPAGG_HD void scattered(const W& w, Dst dst, const V (&v)[N]) {
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, class Reduce, class Commit, warp W, class Dst, class V, int N>
 WARPAGG_HD void results(const W& w, Dst dst, const V (&v)[N]) {
-    if constexpr (Reduce::leaves == reduce::results_in::spread) {
+    if constexpr (Reduce::placement == reduce::result_placement::spread) {
         scattered<Op>(w, dst, v);
     } else if constexpr (std::is_same_v<Commit, contiguous>) {
         own_value<Op>(w, dst, v);

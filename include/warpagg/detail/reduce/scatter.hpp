@@ -88,7 +88,7 @@ WARPAGG_HD void scatter_from(const W& w, const mask_t<W>* upper, const Values& v
 /// 12).
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
-WARPAGG_HD void over_warp(scatter, const W& w, const Values& value, V (&results)[N]) {
+WARPAGG_HD void reduce_over_warp(scatter, const W& w, const Values& value, V (&results)[N]) {
     static_assert(W::size <= 32);
     using detail::is_upper;
     const mask_t<W> upper[] = {is_upper<1>(w), is_upper<2>(w), is_upper<4>(w), is_upper<8>(w),

@@ -35,7 +35,7 @@ WARPAGG_HD void across_from(const W& w, V (&v)[N]) {
 /// 1). Lane 0 holds the results afterwards. Cost: N log2(W) shuffles.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
-WARPAGG_HD void over_warp(shfl_down, const W& w, const Values& value, V (&results)[N]) {
+WARPAGG_HD void reduce_over_warp(shfl_down, const W& w, const Values& value, V (&results)[N]) {
     WARPAGG_UNROLL
     for (int i = 0; i < N; ++i) results[i] = value(i);
     detail::down_from<Op, W::size / 2>(w, results);
@@ -44,7 +44,7 @@ WARPAGG_HD void over_warp(shfl_down, const W& w, const Values& value, V (&result
 /// The same tree, to every lane. Cost: N log2(W) shuffles.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
-WARPAGG_HD void over_warp(butterfly, const W& w, const Values& value, V (&results)[N]) {
+WARPAGG_HD void reduce_over_warp(butterfly, const W& w, const Values& value, V (&results)[N]) {
     WARPAGG_UNROLL
     for (int i = 0; i < N; ++i) results[i] = value(i);
     detail::across_from<Op, W::size / 2>(w, results);
@@ -53,7 +53,7 @@ WARPAGG_HD void over_warp(butterfly, const W& w, const Values& value, V (&result
 /// By `redux.sync` to every lane. Cost: N instructions, or those of `butterfly` on a model that lacks it.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
-WARPAGG_HD void over_warp(redux, const W& w, const Values& value, V (&results)[N]) {
+WARPAGG_HD void reduce_over_warp(redux, const W& w, const Values& value, V (&results)[N]) {
     using T = warpagg::scalar_t<V>;
     static_assert(std::is_integral_v<T> && sizeof(T) == 4,
                   "redux is for integers of 32 bits: take butterfly or scatter");
@@ -61,8 +61,17 @@ WARPAGG_HD void over_warp(redux, const W& w, const Values& value, V (&results)[N
         WARPAGG_UNROLL
         for (int i = 0; i < N; ++i) results[i] = w.redux(Op{}, value(i));
     } else {
-        over_warp<Op>(butterfly{}, w, value, results);
+        reduce_over_warp<Op>(butterfly{}, w, value, results);
     }
 }
+
+/// @cond deprecated
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, class Reduce, warp W, class Values, class V, int N>
+[[deprecated("use reduce_over_warp")]] WARPAGG_HD void over_warp(Reduce how, const W& w, const Values& value,
+                                                                 V (&results)[N]) {
+    reduce_over_warp<Op>(how, w, value, results);
+}
+/// @endcond
 
 }  // namespace warpagg::reduce
