@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <vector>
+#include <warpagg/warp/fork_shadow_process.hpp>
 
 #include "../support/diagnoses.hpp"
 

@@ -12,7 +12,7 @@ export LC_ALL=C
 
 # Those that only nvcc takes, as they call CUDA's intrinsics; and those that it does not, as they are for the host.
 nvcc_only=(warp/cuda.hpp simt/cuda.hpp reduce/cooperative.hpp reduce/cub.hpp)
-host_only=(warp/simd_value.hpp warp/simd.hpp simt/simd.hpp simt/lanes.hpp simt/checked.hpp 'warp/checked.*')
+host_only=(warp/fork_shadow_process.hpp warp/simd_value.hpp warp/simd.hpp simt/simd.hpp simt/lanes.hpp simt/checked.hpp 'warp/checked.*')
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -20,7 +20,7 @@ enum class diagnosis {
     different_masks,          ///< lanes wait for one another at one place, each with a mask of its own
     different_iterations,     ///< lanes meet at one place in different iterations of a loop over `iterations`
     destination_not_uniform,  ///< lanes name different destinations
-    inactive_lane_read,       ///< memory depends on what was read from a lane that took no part
+    inactive_lane_read,       ///< memory depends on a value read from a lane that took no part
     idle_warp,                ///< `assume_busy`, but no lane is active
     mixed_access,             ///< atomic and plain accesses to one address, not ordered by a barrier or sync
     data_race,                ///< a plain write and another plain access to one address, not ordered either

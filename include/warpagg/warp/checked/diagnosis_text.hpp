@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// What the machine says when it finds something, in words.
+/// The text of each diagnosis.
 
 #include <bit>
 #include <cstdint>

@@ -13,7 +13,7 @@
 
 namespace warpagg::emulator::detail {
 
-class machine;
+class simulator;
 
 inline unsigned first_of(std::uint32_t lanes) { return static_cast<unsigned>(std::countr_zero(lanes)); }
 template <class F>
@@ -28,7 +28,7 @@ struct arrival {
     unsigned value_size;  ///< of the type in question
     call_site at;         ///< in the library, if the library does it
     void* operands;       ///< this lane's, of whatever type `complete` knows
-    void (*complete)(machine&, unsigned warp, std::uint32_t lanes);  ///< null for activemask
+    void (*complete)(simulator&, unsigned warp, std::uint32_t lanes);  ///< null for activemask
 };
 
 struct loop_frame {

@@ -35,7 +35,7 @@ report try_launch(const grid& g, const Kernel& kernel) {
         std::abort();
     }
     const std::uint64_t seed = g.seed.value_or(seed_in_environment().value_or(1));
-    return detail::machine(g.blocks, g.threads, seed, g.count).run([&kernel](detail::machine& m) {
+    return detail::simulator(g.blocks, g.threads, seed, g.count).run([&kernel](detail::simulator& m) {
         kernel(checked(m));
     });
 }

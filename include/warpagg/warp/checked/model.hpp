@@ -32,13 +32,13 @@ class checked {
     /// @}
 
     /// Made by `launch`.
-    explicit checked(detail::machine& m) : machine_(&m) {}
+    explicit checked(detail::simulator& m) : simulator_(&m) {}
 
-    unsigned lane() const { return machine_->lane(); }            ///< in the warp
-    unsigned thread_index() const { return machine_->thread(); }  ///< in the block
-    unsigned block_size() const { return machine_->threads(); }   ///< in threads
-    unsigned block_index() const { return machine_->block(); }    ///< in the grid
-    unsigned grid_size() const { return machine_->blocks(); }     ///< in blocks
+    unsigned lane() const { return simulator_->lane(); }            ///< in the warp
+    unsigned thread_index() const { return simulator_->thread(); }  ///< in the block
+    unsigned block_size() const { return simulator_->threads(); }   ///< in threads
+    unsigned block_index() const { return simulator_->block(); }    ///< in the grid
+    unsigned grid_size() const { return simulator_->blocks(); }     ///< in blocks
 
     // ------------------------------------------------------------------------------ all lanes together
 
@@ -74,18 +74,18 @@ class checked {
                                     call_site at = call_site::here("atomic")) const {
         T* const to = active ? dst(index) : nullptr;
         commit mine{to};
-        meet<T>(all_lanes, at, mine, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+        meet<T>(all_lanes, at, mine, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
             if (counters* c = m.count()) count_commit(*c, {m, warp, lanes});
         });
         if (to == nullptr) return;
-        machine_->write_memory(to, v, detail::access_kind::atomic, at);
+        simulator_->write_memory(to, v, detail::access_kind::atomic, at);
         detail::atomic(op, to, v);
     }
 
     /// `__syncwarp()`: what the lanes did to memory is before what they will do.
     void sync(call_site at = call_site::here("sync")) const { synchronize(all_lanes, at); }
     /// `__syncthreads()`.
-    void barrier(call_site at = call_site::here("barrier")) const { machine_->barrier(at); }
+    void barrier(call_site at = call_site::here("barrier")) const { simulator_->barrier(at); }
 
     // -------------------------------------------------------------------------- the lanes of a mask: CUDA's
 
@@ -128,7 +128,7 @@ class checked {
     /// same answer; beyond that it is as the seed draws, for a compiler may take lanes apart as it likes.
     std::uint32_t activemask(call_site at = call_site::here("activemask")) const {
         std::uint32_t mask = 0;
-        machine_->meet({~std::uint32_t{0}, false, 0, at, &mask, nullptr});
+        simulator_->meet({~std::uint32_t{0}, false, 0, at, &mask, nullptr});
         return mask;
     }
 
@@ -174,19 +174,19 @@ class checked {
     /// The block's array of `n` values that this line declares, as `__shared__ T a[n]` does; not initialized.
     template <class T>
     watched<T> shared(std::size_t n, call_site at = call_site::here("shared")) const {
-        return {static_cast<T*>(machine_->shared().at(at, n * sizeof(T))), n};
+        return {static_cast<T*>(simulator_->shared().at(at, n * sizeof(T))), n};
     }
 
     // ------------------------------------------------------------------------- what the library tells
 
     /// Called by the library, not by kernels.
     /// @{
-    void enter(const call_site& at) const { machine_->self().calls.push_back(at); }
-    void leave() const { machine_->self().calls.pop_back(); }
+    void enter(const call_site& at) const { simulator_->self().calls.push_back(at); }
+    void leave() const { simulator_->self().calls.pop_back(); }
 
     void observe(bool active, call_site at = call_site::here("observe")) const {
-        if (machine_->count() == nullptr) return;
-        meet<bool>(all_lanes, at, active, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+        if (simulator_->count() == nullptr) return;
+        meet<bool>(all_lanes, at, active, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
             unsigned busy = 0;
             group<bool>{m, warp, lanes}.each(
                 [&](unsigned, bool active_there) { busy += active_there ? 1u : 0u; });
@@ -194,7 +194,7 @@ class checked {
         });
     }
     void require_uniform(const void* destination, call_site at = call_site::here("require_uniform")) const {
-        meet<void*>(all_lanes, at, destination, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+        meet<void*>(all_lanes, at, destination, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
             const group<const void*> g{m, warp, lanes};
             const unsigned first = detail::first_of(lanes);
             std::uint32_t other = 0;
@@ -205,16 +205,16 @@ class checked {
         });
     }
     void require_busy(bool busy, call_site at = call_site::here("require_busy")) const {
-        meet<bool>(all_lanes, at, busy, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+        meet<bool>(all_lanes, at, busy, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
             bool some = false;
             group<bool>{m, warp, lanes}.each([&](unsigned, bool there) { some = some || there; });
             if (!some) m.diagnose(warp, [&] { return detail::idle_warp(m.self().site(), lanes); });
         });
     }
 
-    void enter_loop(const call_site& at) const { machine_->self().loops.push_back({at, 0}); }
-    void next_iteration() const { ++machine_->self().loops.back().iteration; }
-    void leave_loop() const { machine_->self().loops.pop_back(); }
+    void enter_loop(const call_site& at) const { simulator_->self().loops.push_back({at, 0}); }
+    void next_iteration() const { ++simulator_->self().loops.back().iteration; }
+    void leave_loop() const { simulator_->self().loops.pop_back(); }
     /// @}
 
   private:
@@ -227,7 +227,7 @@ class checked {
     /// What the lanes that have met brought.
     template <class Operands>
     struct group {
-        detail::machine& m;
+        detail::simulator& m;
         unsigned warp;
         std::uint32_t lanes;
         Operands& operator[](unsigned lane) const {
@@ -242,8 +242,8 @@ class checked {
 
     template <class T, class Operands, class F>
     void meet(who w, const call_site& at, Operands& mine, F complete) const {
-        machine_->meet({w.mask, w.all_lanes, sizeof(T), at, const_cast<std::remove_const_t<Operands>*>(&mine),
-                        complete});
+        simulator_->meet({w.mask, w.all_lanes, sizeof(T), at,
+                          const_cast<std::remove_const_t<Operands>*>(&mine), complete});
     }
 
     struct ballot_part {
@@ -252,7 +252,7 @@ class checked {
     };
     WARPAGG_OUT_OF_LINE std::uint32_t vote(who w, bool p, const call_site& at) const {
         ballot_part mine{p};
-        meet<bool>(w, at, mine, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+        meet<bool>(w, at, mine, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
             if (counters* c = m.count()) ++c->votes;
             const group<ballot_part> g{m, warp, lanes};
             std::uint32_t bits = 0;
@@ -270,7 +270,7 @@ class checked {
     template <class T>
     std::uint32_t equal(who w, T key, const call_site& at) const {
         match_part<T> mine{key};
-        meet<T>(w, at, mine, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+        meet<T>(w, at, mine, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
             if (counters* c = m.count()) ++c->votes;
             const group<match_part<T>> g{m, warp, lanes};
             g.each([&](unsigned, match_part<T>& part) {
@@ -292,7 +292,7 @@ class checked {
     template <class T>
     WARPAGG_OUT_OF_LINE T exchange(who w, T v, unsigned from, const call_site& at) const {
         shuffle_part<T> mine{v, from, v};
-        meet<T>(w, at, mine, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+        meet<T>(w, at, mine, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
             if (counters* c = m.count()) c->shuffles += (sizeof(T) + 3) / 4;
             const group<shuffle_part<T>> g{m, warp, lanes};
             g.each([&](unsigned lane, shuffle_part<T>& part) {
@@ -304,7 +304,7 @@ class checked {
 
     void synchronize(who w, const call_site& at) const {
         bool nothing = false;
-        meet<bool>(w, at, nothing, [](detail::machine& m, unsigned warp, std::uint32_t lanes) {
+        meet<bool>(w, at, nothing, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
             m.warp(warp).synchronize(lanes);
         });
     }
@@ -329,16 +329,16 @@ class checked {
 
     template <class T>
     T read(const T* from, const call_site& at) const {
-        machine_->access_memory(from, sizeof(T), detail::access_kind::read, at);
+        simulator_->access_memory(from, sizeof(T), detail::access_kind::read, at);
         return *from;
     }
     template <class T>
     void write(T* to, const T& v, const call_site& at) const {
-        machine_->write_memory(to, v, detail::access_kind::write, at);
+        simulator_->write_memory(to, v, detail::access_kind::write, at);
         *to = v;
     }
 
-    detail::machine* machine_;
+    detail::simulator* simulator_;
 };
 
 }  // namespace warpagg::emulator

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -24,27 +25,27 @@
 namespace warpagg::emulator::detail {
 
 /// What a launch runs on: the lanes of one block at a time, what they wait for, and what they did to memory.
-class machine {
+class simulator {
   public:
-    machine(unsigned blocks, unsigned threads, std::uint64_t seed, counters* count)
+    simulator(unsigned blocks, unsigned threads, std::uint64_t seed, counters* count)
         : blocks_(blocks), threads_(threads), count_(count), random_(seed), scheduler_(random_) {
         report_.seed = seed;
     }
-    machine(const machine&) = delete;
-    machine& operator=(const machine&) = delete;
+    simulator(const simulator&) = delete;
+    simulator& operator=(const simulator&) = delete;
 
     /// The one that the calling lane runs on; null outside of kernels.
-    static machine*& running() {
-        static thread_local machine* m = nullptr;
+    static simulator*& running() {
+        static thread_local simulator* m = nullptr;
         return m;
     }
 
     /// Runs `body` once per thread, block after block in an order drawn at random, until a diagnosis.
     template <class F>
     report run(const F& body) {
-        body_ = [](machine& m, const void* f) { (*static_cast<const F*>(f))(m); };
+        body_ = [](simulator& m, const void* f) { (*static_cast<const F*>(f))(m); };
         argument_ = &body;
-        machine* const outer = std::exchange(running(), this);
+        simulator* const outer = std::exchange(running(), this);
         std::vector<unsigned> order(blocks_);
         for (unsigned b = 0; b < blocks_; ++b) {
             order[b] = b;
@@ -55,11 +56,11 @@ class machine {
             if (stopped_) break;
         }
         running() = outer;
-        if (twin_.is_child()) twin_.hand_over();
+        if (is_shadow()) shadow_process_->hand_over();
 #if defined(__cpp_exceptions)
         if (exception_) std::rethrow_exception(exception_);
 #endif
-        if (report_.ok() && twin_.differs()) blame_garbage();
+        if (report_.ok() && shadow_process_ != nullptr && shadow_process_->differs()) blame_undefined_read();
         return std::move(report_);
     }
 
@@ -97,13 +98,14 @@ class machine {
         scheduler_.sleep();
     }
 
-    /// A lane reads from `from`, which is not there.
+    /// The value that a lane reads from lane `from`, which takes no part.
     template <class T>
     T undefined(unsigned number, unsigned lane, unsigned from) {
-        twin_.split();
+        if (shadow_process_ == nullptr && start_shadow_process != nullptr)
+            shadow_process_ = start_shadow_process();
         const unsigned thread = number * warp_state::size + lane;
         const undefined_read read{warps_[number].lane[lane].site(), block_, thread, from};
-        return undefined_.make<T>(read, random_, twin_.is_child());
+        return undefined_.make<T>(read, random_, is_shadow());
     }
 
     /// Before an access to memory: others may run first; and the access must not conflict with another.
@@ -125,7 +127,8 @@ class machine {
         const call_site& at = self().kernel_site(here);
         if (const undefined_read* read = undefined_.origin(value))
             diagnose(read->thread / warp_state::size, [&] { return inactive_lane_read(*read, at); });
-        twin_.note({at, block_, thread(), undefined_.count()}, address, &value, sizeof(T));
+        if (shadow_process_ != nullptr)
+            shadow_process_->note({at, block_, thread(), undefined_.count()}, address, &value, sizeof(T));
     }
 
     /// Reports what `find()` says of a warp. The lanes stop where they are, so nothing that owns memory may
@@ -172,7 +175,7 @@ class machine {
         body_(*this, argument_);
 #endif
         lane_returns();
-        scheduler_.finish();  // the machine may be gone when it returns
+        scheduler_.finish();  // the simulator may be gone when it returns
     }
 
     void lane_returns() {
@@ -278,9 +281,11 @@ class machine {
                warp().known[lane()][a.thread % warp_state::size] >= a.clock;
     }
 
-    /// The twin wrote something else.
-    void blame_garbage() {
-        const twin::write* write = twin_.first_difference();
+    bool is_shadow() const { return shadow_process_ != nullptr && shadow_process_->is_child(); }
+
+    /// The shadow process made other writes: diagnoses the undefined read before the first of them.
+    void blame_undefined_read() {
+        const shadow_process::write* write = shadow_process_->first_difference();
         const undefined_read& read =
             write != nullptr ? undefined_.last_of(write->reads_before, write->block, write->thread)
                              : undefined_.last();
@@ -302,7 +307,7 @@ class machine {
     counters* count_;
     random_source random_;
     scheduler scheduler_;
-    void (*body_)(machine&, const void*) = nullptr;
+    void (*body_)(simulator&, const void*) = nullptr;
     const void* argument_ = nullptr;
 
     unsigned block_ = 0;
@@ -313,7 +318,7 @@ class machine {
 
     shadow_memory shadow_;
     undefined_values undefined_;
-    twin twin_;
+    std::unique_ptr<shadow_process> shadow_process_;  // from the first undefined read on
 
     bool stopped_ = false;
     report report_;

@@ -25,7 +25,7 @@ struct place {
 
 }  // namespace detail
 
-/// An array whose accesses the machine sees, so that ordinary code (`a[i] = b[j]`) is checked for races: in
+/// An array whose accesses the simulator sees, so that ordinary code (`a[i] = b[j]`) is checked for races: in
 /// place of a pointer, which a kernel that is a template over its arrays' types takes on CUDA. `T` is
 /// trivially copyable. Outside of a kernel it is an ordinary span. Does not check bounds; address sanitizer
 /// does.
@@ -44,19 +44,19 @@ class watched {
     }
     explicit watched(Range& range) : watched(std::data(range), std::size(range)) {}
 
-    /// An element: read by conversion, written by assignment, each seen by the machine.
+    /// An element: read by conversion, written by assignment, each seen by the simulator.
     class reference {
       public:
         /// @{
         /// As of a `T&`.
         reference(T* to, const call_site& at) : to_(to), at_(at) {}
         operator value_type() const {  // NOLINT: implicit, as of a reference
-            if (auto* m = detail::machine::running())
+            if (auto* m = detail::simulator::running())
                 m->access_memory(to_, sizeof(T), detail::access_kind::read, at_);
             return *to_;
         }
         const reference& operator=(const value_type& v) const requires(!std::is_const_v<T>) {
-            if (auto* m = detail::machine::running())
+            if (auto* m = detail::simulator::running())
                 m->write_memory(to_, v, detail::access_kind::write, at_);
             *to_ = v;
             return *this;
