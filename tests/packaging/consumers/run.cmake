@@ -68,6 +68,9 @@ run("installing" "${CMAKE_COMMAND}" --install "${WORK_DIR}/warpagg" --prefix "${
 configure("${consumers_dir}/find_package" -B "${WORK_DIR}/find_package" "-DCMAKE_PREFIX_PATH=${prefix}"
     ${strict} ${without})
 build_and_run("${WORK_DIR}/find_package")
+configure("${consumers_dir}/old_names" -B "${WORK_DIR}/old_names" "-DCMAKE_PREFIX_PATH=${prefix}"
+    ${strict} ${without})
+build_and_run("${WORK_DIR}/old_names")
 include("${consumers_dir}/unit_testing.cmake")
 
 # The one version number is everywhere the same, and another major version is refused.
