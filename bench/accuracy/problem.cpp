@@ -28,7 +28,7 @@ void add_conditioned(double k, std::size_t n, std::mt19937_64& random, std::vect
 /// Adds one value.
 void add(accumulator<accumulate::exact>& sum, float x) {
     std::int64_t limbs[accumulate::exact::limbs];
-    accumulate::exact::split(x, limbs);
+    accumulate::exact::decompose(x, limbs);
     for (int i = 0; i < accumulate::exact::limbs; ++i) sum.limb[i] += limbs[i];
 }
 

@@ -13,7 +13,7 @@
 
 namespace warpagg {
 
-/// Each kind but `native` decomposes a float into `limbs` values of type `limb` by `split`. `operation`
+/// Each kind but `native` decomposes a float into `limbs` values of type `limb` by `decompose`. `operation`
 /// combines limbs, and `value` converts summed limbs to a float.
 namespace accumulate {
 
@@ -29,14 +29,18 @@ struct f64 {
     /// @{
     using limb = double;
     static constexpr int limbs = 1;
+    using operation = warpagg::operation::sum;
+    WARPAGG_HD static void decompose(float x, limb (&to)[limbs]) { to[0] = static_cast<double>(x); }
+    WARPAGG_HD static float value(const limb (&sum)[limbs]) { return static_cast<float>(sum[0]); }
+    /// @}
+
     /// @cond deprecated
     using number [[deprecated("use limb")]] = limb;
     [[deprecated("use limbs")]] static constexpr int numbers = limbs;
+    [[deprecated("use decompose")]] WARPAGG_HD static void split(float x, limb (&to)[limbs]) {
+        decompose(x, to);
+    }
     /// @endcond
-    using operation = warpagg::operation::sum;
-    WARPAGG_HD static void split(float x, limb (&to)[limbs]) { to[0] = static_cast<double>(x); }
-    WARPAGG_HD static float value(const limb (&sum)[limbs]) { return static_cast<float>(sum[0]); }
-    /// @}
 };
 
 /// Two floats, of which the second has what rounding took from the first (Joldes et al. 2017, algorithm 5).
@@ -49,10 +53,6 @@ struct compensated {
     /// See the namespace.
     /// @{
     static constexpr int limbs = 1;
-    /// @cond deprecated
-    using number [[deprecated("use limb")]] = limb;
-    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
-    /// @endcond
     /// Adds pairs.
     struct operation : warpagg::operation::on_words<operation> {
         /// See `on_words`.
@@ -66,9 +66,17 @@ struct compensated {
         }
     };
 
-    WARPAGG_HD static void split(float x, limb (&to)[limbs]) { to[0] = word(x, 0); }
+    WARPAGG_HD static void decompose(float x, limb (&to)[limbs]) { to[0] = word(x, 0); }
     WARPAGG_HD static float value(const limb (&sum)[limbs]) { return half(sum[0]) + half(sum[0] >> 32); }
     /// @}
+
+    /// @cond deprecated
+    using number [[deprecated("use limb")]] = limb;
+    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
+    [[deprecated("use decompose")]] WARPAGG_HD static void split(float x, limb (&to)[limbs]) {
+        decompose(x, to);
+    }
+    /// @endcond
 
   private:
     WARPAGG_HD static float half(std::uint64_t bits) {
@@ -101,10 +109,6 @@ struct fixed {
     /// @{
     using limb = std::int64_t;
     static constexpr int limbs = 1;
-    /// @cond deprecated
-    using number [[deprecated("use limb")]] = limb;
-    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
-    /// @endcond
     using operation = warpagg::operation::sum;
     /// @}
 
@@ -112,7 +116,7 @@ struct fixed {
     float scale = 1;                 ///< a power of two; sums are to be divided by it: see `scale_to_fit`
 
     /// Whether x could be taken.
-    WARPAGG_HD bool split(float x, limb (&to)[limbs]) const {
+    WARPAGG_HD bool decompose(float x, limb (&to)[limbs]) const {
         const double units = static_cast<double>(x) * static_cast<double>(scale) * power_of_two(Q);
         const double room = power_of_two(63 - LogValues);
         const bool fits = parts_of_float(x).finite && units < room && units > -room;
@@ -136,6 +140,14 @@ struct fixed {
         return scale;
     }
 
+    /// @cond deprecated
+    using number [[deprecated("use limb")]] = limb;
+    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
+    [[deprecated("use decompose")]] WARPAGG_HD bool split(float x, limb (&to)[limbs]) const {
+        return decompose(x, to);
+    }
+    /// @endcond
+
   private:
     WARPAGG_HD static double power_of_two(int exponent) {
         const auto bits = static_cast<std::uint64_t>(exponent + 1023) << 52;
@@ -158,10 +170,6 @@ struct binned {
     /// See the namespace.
     /// @{
     static constexpr int limbs = K;
-    /// @cond deprecated
-    using number [[deprecated("use limb")]] = limb;
-    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
-    /// @endcond
 
     /// Of two windows' sums the higher one; the sum of both if the window is the same.
     struct operation : warpagg::operation::on_words<operation> {
@@ -173,7 +181,7 @@ struct binned {
         }
     };
 
-    WARPAGG_HD static void split(float x, limb (&to)[limbs]) {
+    WARPAGG_HD static void decompose(float x, limb (&to)[limbs]) {
         const parts_of_float p(x);
         const std::uint64_t wide = std::uint64_t{p.significand} << p.bit % window;
         const std::uint64_t low = wide & ((1u << window) - 1), high = wide >> window;
@@ -201,6 +209,14 @@ struct binned {
     }
     /// @}
 
+    /// @cond deprecated
+    using number [[deprecated("use limb")]] = limb;
+    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
+    [[deprecated("use decompose")]] WARPAGG_HD static void split(float x, limb (&to)[limbs]) {
+        decompose(x, to);
+    }
+    /// @endcond
+
   private:
     static constexpr unsigned window = 24;           // bits
     static constexpr std::uint64_t infinite = 0xff;  // above all windows
@@ -218,13 +234,9 @@ struct exact {
     /// @{
     using limb = std::int64_t;
     static constexpr int limbs = 10;
-    /// @cond deprecated
-    using number [[deprecated("use limb")]] = limb;
-    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
-    /// @endcond
     using operation = warpagg::operation::sum;
 
-    WARPAGG_HD static void split(float x, limb (&to)[limbs]) {
+    WARPAGG_HD static void decompose(float x, limb (&to)[limbs]) {
         const parts_of_float p(x);
         const std::uint64_t wide = std::uint64_t{p.significand} << p.bit % 32;
         const std::int64_t low = static_cast<std::int64_t>(wide & 0xffffffffu),
@@ -246,6 +258,14 @@ struct exact {
         return whole.nearest();
     }
     /// @}
+
+    /// @cond deprecated
+    using number [[deprecated("use limb")]] = limb;
+    [[deprecated("use limbs")]] static constexpr int numbers = limbs;
+    [[deprecated("use decompose")]] WARPAGG_HD static void split(float x, limb (&to)[limbs]) {
+        decompose(x, to);
+    }
+    /// @endcond
 };
 
 /// Float while a warp adds up what its lanes have, as `native`; in memory what A is, which takes each warp's

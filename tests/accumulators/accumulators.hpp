@@ -516,7 +516,7 @@ TEST_CASE("infinities of binned do not count, they are there or not") {
     for (const float x : {infinity, -infinity, nan_value}) {
         using binned = accumulate::binned<3>;
         std::uint64_t sum[binned::limbs];
-        binned::split(x, sum);
+        binned::decompose(x, sum);
         for (int doubled = 0; doubled < 40; ++doubled)
             for (auto& word : sum) word = binned::operation::combine_words(word, word);
         CHECK(bits_of(binned::value(sum)) == bits_of(x));

@@ -49,12 +49,12 @@ inline constexpr bool can_fault = requires(const Accumulate& a) {
 
 /// Decomposes x; returns whether x is in range.
 template <class Accumulate>
-WARPAGG_HD bool split_one(const Accumulate& how, float x,
-                          typename Accumulate::limb (&to)[Accumulate::limbs]) {
+WARPAGG_HD bool decompose_one(const Accumulate& how, float x,
+                              typename Accumulate::limb (&to)[Accumulate::limbs]) {
     if constexpr (can_fault<Accumulate>) {
-        return how.split(x, to);
+        return how.decompose(x, to);
     } else {
-        how.split(x, to);
+        how.decompose(x, to);
         return true;
     }
 }
@@ -73,12 +73,12 @@ WARPAGG_HD void decompose(const W& w, const Accumulate& how, const V (&values)[N
         if constexpr (requires { typename V::scalar; }) {
             typename Accumulate::limb words[each][W::size];  // not set in vectors: see on_words
             for (int lane = 0; lane < static_cast<int>(W::size); ++lane) {
-                if (!split_one(how, values[i][lane], part)) fits.set(lane, false);
+                if (!decompose_one(how, values[i][lane], part)) fits.set(lane, false);
                 for (int k = 0; k < each; ++k) words[k][lane] = part[k];
             }
             for (int k = 0; k < each; ++k) std::memcpy(limbs[i * each + k].part, words[k], sizeof words[k]);
         } else {
-            fits = split_one(how, values[i], part) && fits;
+            fits = decompose_one(how, values[i], part) && fits;
             WARPAGG_UNROLL
             for (int k = 0; k < each; ++k) limbs[i * each + k] = part[k];
         }

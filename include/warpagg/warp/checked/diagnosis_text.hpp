@@ -16,14 +16,14 @@
 
 namespace warpagg::emulator::detail {
 
-struct finding {
+struct violation {
     diagnosis what;
     call_site at, other;
     std::uint32_t lanes;
     std::string sentence;
 };
 
-inline finding not_in_mask(const lane_state& self, const arrival& a, std::uint32_t lane) {
+inline violation not_in_mask(const lane_state& self, const arrival& a, std::uint32_t lane) {
     return {diagnosis::lane_not_in_mask,
             self.kernel_site(a.at),
             {},
@@ -32,7 +32,7 @@ inline finding not_in_mask(const lane_state& self, const arrival& a, std::uint32
                 ", which lacks its own bit."};
 }
 
-inline finding out_of_step(const call_site& at, std::uint32_t lanes, std::uint32_t others) {
+inline violation out_of_step(const call_site& at, std::uint32_t lanes, std::uint32_t others) {
     return {diagnosis::different_iterations,
             at,
             {},
@@ -42,7 +42,7 @@ inline finding out_of_step(const call_site& at, std::uint32_t lanes, std::uint32
 }
 
 /// No lane of the warp can go on, and some wait for others.
-inline finding stuck(const warp_state& w) {
+inline violation stuck(const warp_state& w) {
     const lane_state& first = w.lane[first_of(w.waiting)];
     std::uint32_t here = 0;
     for_each_lane(w.waiting, [&](unsigned lane) { here |= first.meets(w.lane[lane]) ? 1u << lane : 0u; });
@@ -78,7 +78,7 @@ inline finding stuck(const warp_state& w) {
                 " at another place."};
 }
 
-inline finding not_uniform(const call_site& at, std::uint32_t lanes, unsigned first) {
+inline violation not_uniform(const call_site& at, std::uint32_t lanes, unsigned first) {
     return {diagnosis::destination_not_uniform,
             at,
             {},
@@ -87,12 +87,12 @@ inline finding not_uniform(const call_site& at, std::uint32_t lanes, unsigned fi
                 std::to_string(first) + "."};
 }
 
-inline finding idle_warp(const call_site& at, std::uint32_t lanes) {
+inline violation idle_warp(const call_site& at, std::uint32_t lanes) {
     return {diagnosis::idle_warp, at, {}, lanes, "The policy says assume_busy, but no lane is active."};
 }
 
-inline finding barrier_not_reached(const call_site& at, std::uint32_t returned, unsigned in_barrier,
-                                   unsigned threads) {
+inline violation barrier_not_reached(const call_site& at, std::uint32_t returned, unsigned in_barrier,
+                                     unsigned threads) {
     return {diagnosis::barrier_not_reached,
             at,
             {},
@@ -102,12 +102,12 @@ inline finding barrier_not_reached(const call_site& at, std::uint32_t returned, 
                 " of this warp returned without it."};
 }
 
-inline finding another_barrier(const call_site& at, const call_site& other, std::uint32_t lanes) {
+inline violation another_barrier(const call_site& at, const call_site& other, std::uint32_t lanes) {
     return {diagnosis::different_call_sites, at, other, lanes,
             lanes_sentence(lanes) + " of this warp went to the barrier at another place."};
 }
 
-inline finding conflict(const access& before, const access& now) {
+inline violation conflict(const access& before, const access& now) {
     constexpr unsigned width = warp_state::size;
     constexpr const char* does[] = {"reads", "writes", "updates atomically"};
     constexpr const char* did[] = {"read", "wrote", "updated atomically"};
@@ -125,7 +125,7 @@ inline finding conflict(const access& before, const access& now) {
 }
 
 /// `at` writes what it had from `read`.
-inline finding inactive_lane_read(const undefined_read& read, const call_site& at) {
+inline violation inactive_lane_read(const undefined_read& read, const call_site& at) {
     const unsigned lane = read.thread % warp_state::size;
     return {diagnosis::inactive_lane_read, at, read.at, 1u << lane,
             "What is written depends on what lane " + std::to_string(lane) + " read from lane " +

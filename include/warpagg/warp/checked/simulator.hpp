@@ -293,12 +293,12 @@ class simulator {
         note(read.thread / warp_state::size,
              inactive_lane_read(read, write != nullptr ? write->at : read.at));
     }
-    void note(unsigned number, finding f) {
-        report_.what = f.what;
-        report_.at = f.at;
-        report_.other = f.other;
-        report_.lanes = f.lanes;
-        report_.sentence = std::move(f.sentence);
+    void note(unsigned number, violation v) {
+        report_.what = v.what;
+        report_.at = v.at;
+        report_.other = v.other;
+        report_.lanes = v.lanes;
+        report_.sentence = std::move(v.sentence);
         report_.block = block_;
         report_.warp = number;
     }
