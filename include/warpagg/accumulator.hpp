@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// How a sum of floats is kept, in the warp and in memory. The kinds differ in their error bounds and in
-/// whether the order of additions changes the result. n is the number of additions to a sum S, k its
-/// condition number sum|x| / |S|, u = 2^-24. docs/policies.md lists their costs.
+/// How a sum of floats is kept, in the warp and in memory. The kinds differ in their error bounds
+/// and in whether the order of additions changes the result. n is the number of additions to a sum
+/// S, k its condition number sum|x| / |S|, u = 2^-24. docs/policies.md lists their costs.
 
 #include "core/axis.hpp"
 #include "core/operation.hpp"
@@ -13,16 +13,17 @@
 
 namespace warpagg {
 
-/// Each kind but `native` decomposes a float into `limbs` values of type `limb` by `decompose`. `operation`
-/// combines limbs, and `value` converts summed limbs to a float.
+/// Each kind but `native` decomposes a float into `limbs` values of type `limb` by `decompose`.
+/// `operation` combines limbs, and `value` converts summed limbs to a float.
 namespace accumulate {
 
-/// The values' own type. Error: (n/32 + 5) u k if all lanes are active, n u k at most. The order shows.
+/// The type of the values. Error: (n/32 + 5) u k if all lanes are active, at most n u k otherwise.
+/// The result depends on the order of additions.
 struct native {
     static constexpr auto axis = warpagg::axis::accumulate;
 };
 
-/// Double. Error: n 2^-53 k + u. The order shows.
+/// Double. Error: n 2^-53 k + u. The result depends on the order of additions.
 struct f64 {
     static constexpr auto axis = warpagg::axis::accumulate;
     /// See the namespace.
@@ -43,10 +44,10 @@ struct f64 {
     /// @endcond
 };
 
-/// Two floats, of which the second has what rounding took from the first (Joldes et al. 2017, algorithm 5).
-/// Error: u + 5 n u^2 k. The order shows. Memory adds by compare-and-swap.
-/// Precondition: not compiled with -ffast-math, which takes the second for zero. With nvcc's -ftz=true
-/// denormals are zero here as elsewhere.
+/// Two floats; the second holds the rounding error of the first (Joldes et al. 2017, algorithm 5).
+/// Error: u + 5 n u^2 k. The result depends on the order of additions. Memory adds by
+/// compare-and-swap. Precondition: not compiled with -ffast-math, which optimizes the second float
+/// away. nvcc's -ftz=true flushes denormals to zero here, too.
 struct compensated {
     static constexpr auto axis = warpagg::axis::accumulate;
     using limb = std::uint64_t;  ///< the bits of both, the first in the lower half
@@ -61,7 +62,7 @@ struct compensated {
             const float of_y = sum - x, error = (x - (sum - of_y)) + (y - of_y);
             const float rest = half(a >> 32) + half(b >> 32) + error;
             const float first = sum + rest, second = rest - (first - sum);
-            // Beyond the largest float there is no rest, only NaN.
+            // Beyond the largest float the rest would be NaN.
             return first - first == 0 ? word(first, second) : word(sum, 0);
         }
     };
@@ -93,11 +94,12 @@ struct compensated {
     }
 };
 
-/// An integer of 64 bits in units of 2^-Q / scale. Error: n 2^-(Q+1) / scale + u |S|. The same bits in any
-/// order.
+/// A 64-bit integer in units of 2^-Q / scale. Error: n 2^-(Q+1) / scale + u |S|. The result has the
+/// same bits for any order of additions.
 ///
-/// A value that is not finite, or of 2^(63-LogValues-Q) / scale or more, is left out, and `*fault` becomes 1,
-/// where it stays: as long as it is 0 no sum of fewer than 2^LogValues values has overflowed.
+/// A value that is not finite, or whose magnitude is 2^(63-LogValues-Q) / scale or more, is not
+/// added; it sets `*fault` to 1. As long as `*fault` is 0, no sum of fewer than 2^LogValues values
+/// has overflowed.
 ///
 /// @snippet accumulate.cpp fixed
 template <int Q, int LogValues = 25>
@@ -112,10 +114,10 @@ struct fixed {
     using operation = warpagg::operation::sum;
     /// @}
 
-    std::uint32_t* fault = nullptr;  ///< in memory, where the sums are; null if nobody is to be told
-    float scale = 1;                 ///< a power of two; sums are to be divided by it: see `scale_to_fit`
+    std::uint32_t* fault = nullptr;  ///< in the memory of the sums; null to report no faults
+    float scale = 1;                 ///< a power of two; divide sums by it: see `scale_to_fit`
 
-    /// Whether x could be taken.
+    /// Returns whether x is in range.
     WARPAGG_HD bool decompose(float x, limb (&to)[limbs]) const {
         const double units = static_cast<double>(x) * static_cast<double>(scale) * power_of_two(Q);
         const double room = power_of_two(63 - LogValues);
@@ -123,13 +125,13 @@ struct fixed {
         to[0] = fits ? static_cast<std::int64_t>(::llrint(units)) : 0;
         return fits;
     }
-    /// Of sums of values that were scaled, scaled.
+    /// The sum of the scaled values; not divided by `scale`.
     WARPAGG_HD static float value(const limb (&sum)[limbs]) {
         return static_cast<float>(static_cast<double>(sum[0]) * power_of_two(-Q));
     }
 
-    /// The largest scale by which values up to this in magnitude fit, as far as a float can be.
-    /// Precondition: it is finite.
+    /// The largest scale, a power of two that float can hold, for which values up to this magnitude
+    /// are in range. Precondition: the magnitude is finite.
     static WARPAGG_HD float scale_to_fit(float largest) {
         const double room = power_of_two(63 - LogValues - Q);
         const double magnitude = static_cast<double>(largest < 0 ? -largest : largest);
@@ -157,21 +159,20 @@ struct fixed {
     }
 };
 
-/// K words, each the integer sum of what values have in one window of 24 bits: word i has the highest window
-/// in use of those whose number is i modulo K (indexed summation: Demmel and Nguyen 2015). Error: n 2^(24
-/// (1-K)) max|x| + u |S|. The same bits in any order, for up to 2^31 values; infinities and NaN add up as in
-/// IEEE 754. Memory adds by compare-and-swap.
+/// K words, each the integer sum of one window of 24 bits of the values: word i holds the highest
+/// window in use of those whose index is i modulo K (indexed summation: Demmel and Nguyen 2015).
+/// Error: n 2^(24 (1-K)) max|x| + u |S|. The result has the same bits for any order of up to 2^31
+/// additions. Infinities and NaN add up as in IEEE 754. Memory adds by compare-and-swap.
 template <unsigned K>
 struct binned {
     static_assert(K >= 2 && K <= 8, "binned<K> takes 2 <= K <= 8 windows");
     static constexpr auto axis = warpagg::axis::accumulate;
-    using limb =
-        std::uint64_t;  ///< a window's number, from 1, in the upper 8 bits, a signed sum in the others
+    using limb = std::uint64_t;  ///< upper 8 bits: a window's index, from 1; other bits: a signed sum
     /// See the namespace.
     /// @{
     static constexpr int limbs = K;
 
-    /// Of two windows' sums the higher one; the sum of both if the window is the same.
+    /// The sum of the higher window; the sum of both if the window is the same.
     struct operation : warpagg::operation::on_words<operation> {
         /// See `on_words`.
         WARPAGG_HD static std::uint64_t combine_words(std::uint64_t a, std::uint64_t b) {
@@ -185,13 +186,13 @@ struct binned {
         const parts_of_float p(x);
         const std::uint64_t wide = std::uint64_t{p.significand} << p.bit % window;
         const std::uint64_t low = wide & ((1u << window) - 1), high = wide >> window;
-        const unsigned number = p.bit / window + 1;
-        const std::uint64_t words[2] = {low == 0 ? 0 : word(number, p.negative ? 0 - low : low),
-                                        high == 0 ? 0 : word(number + 1, p.negative ? 0 - high : high)};
+        const unsigned index = p.bit / window + 1;
+        const std::uint64_t words[2] = {low == 0 ? 0 : word(index, p.negative ? 0 - low : low),
+                                        high == 0 ? 0 : word(index + 1, p.negative ? 0 - high : high)};
         const std::uint64_t signs = (p.nan || !p.negative ? 1u : 0u) | (p.nan || p.negative ? 2u : 0u);
         WARPAGG_UNROLL
-        for (unsigned k = 0; k < K; ++k) {  // without an index known at run time: in registers
-            to[k] = number % K == k ? words[0] : (number + 1) % K == k ? words[1] : 0;
+        for (unsigned k = 0; k < K; ++k) {  // a run-time index would put the array into memory
+            to[k] = index % K == k ? words[0] : (index + 1) % K == k ? words[1] : 0;
             if (!p.finite) to[k] = k == 0 ? word(infinite, signs) : 0;
         }
     }
@@ -200,10 +201,10 @@ struct binned {
         if (sum[0] >> 56 == infinite) return sum_of_infinities((sum[0] & 1u) != 0, (sum[0] & 2u) != 0);
         superaccumulator exact;
         for (const auto word : sum) {
-            const std::uint64_t number = word >> 56;
-            if (number == 0) continue;
+            const std::uint64_t index = word >> 56;
+            if (index == 0) continue;
             const std::int64_t signed_sum = static_cast<std::int64_t>(word << 8) >> 8;
-            exact.add(signed_sum, static_cast<unsigned>(number - 1) * window);
+            exact.add(signed_sum, static_cast<unsigned>(index - 1) * window);
         }
         return exact.nearest();
     }
@@ -220,14 +221,15 @@ struct binned {
   private:
     static constexpr unsigned window = 24;           // bits
     static constexpr std::uint64_t infinite = 0xff;  // above all windows
-    WARPAGG_HD static std::uint64_t word(std::uint64_t number, std::uint64_t sum) {
-        return number << 56 | (sum & 0xffffffffffffffu);
+    WARPAGG_HD static std::uint64_t word(std::uint64_t index, std::uint64_t sum) {
+        return index << 56 | (sum & 0xffffffffffffffu);
     }
 };
 
-/// All bits that a float can have, in nine words of 32 and their carries (a superaccumulator: Kulisch;
-/// Collange et al. 2015), and a tenth for what is infinite. Error: half an ulp, the sum is rounded once. The
-/// same bits in any order, for up to 2^31 values; infinities and NaN add up as in IEEE 754.
+/// A superaccumulator (Kulisch; Collange et al. 2015): nine words of 32 bits and their carries for
+/// all bits that a float can have, and a tenth word for infinities. Error: half an ulp; the sum is
+/// rounded once. The result has the same bits for any order of up to 2^31 additions. Infinities and
+/// NaN add up as in IEEE 754.
 struct exact {
     static constexpr auto axis = warpagg::axis::accumulate;
     /// See the namespace.
@@ -242,7 +244,7 @@ struct exact {
         const std::int64_t low = static_cast<std::int64_t>(wide & 0xffffffffu),
                            high = static_cast<std::int64_t>(wide >> 32);
         const int first = static_cast<int>(p.bit / 32);
-        for (int i = 0; i + 1 < limbs; ++i) {  // without an index known at run time: in registers
+        for (int i = 0; i + 1 < limbs; ++i) {  // a run-time index would put the array into memory
             const std::int64_t part = !p.finite ? 0 : i == first ? low : i == first + 1 ? high : 0;
             to[i] = p.negative ? -part : part;
         }
@@ -268,10 +270,11 @@ struct exact {
     /// @endcond
 };
 
-/// Float while a warp adds up what its lanes have, as `native`; in memory what A is, which takes each warp's
-/// sum apart. Error: 5 u k and A's, of as many values as there are warps with an active lane. The order of
-/// warps shows where A's does; which values a warp has shows. Cost: of one taking apart a warp and component
-/// instead of one a lane and component, and native's shuffles. `warp_reduce_atomic` only.
+/// Reduces within the warp in float, as `native`; only the warp's result is accumulated in `A`.
+/// Error: 5 u k plus the error of `A` for one value per warp with an active lane. The result
+/// depends on which values a warp holds, and on the order of warps if that of `A` does. Cost: the
+/// shuffles of `native` and one decomposition per warp and component, instead of one per lane and
+/// component. `warp_reduce_atomic` only.
 ///
 /// @snippet accumulate.cpp between_warps
 template <class A>

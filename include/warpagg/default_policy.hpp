@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// What a policy leaves open, chosen from measurement: docs/policies.md has the table.
+/// The defaults of a policy, from measurements: docs/policies.md has the table.
 
 #include "policy.hpp"
 
@@ -11,11 +11,11 @@ namespace warpagg {
 
 namespace detail {
 
-/// The reduction that was fastest for N values of T, and with how few active lanes plain atomics were faster
-/// still. Measured on compute capability 9.0; 8.0 takes the same, without `packed`.
+/// The fastest reduction for N values of T, and the number of active lanes from which it was faster
+/// than plain atomics. Measured on compute capability 9.0; 8.0 uses the same, without `packed`.
 template <class T, int N>
 struct measured {
-    // Pairs of halves, and whatever else 32 bits hold.
+    // Pairs of halves, and other types of 32 bits.
     using reduce = std::conditional_t<N == 1, warpagg::reduce::shfl_down, warpagg::reduce::scatter>;
     using gate = std::conditional_t<(N > 1 && N <= 4), gate::at_least<2>, gate::always>;
 };
@@ -38,7 +38,7 @@ requires(sizeof(T) == 8 && std::is_arithmetic_v<T>) struct measured<T, N> : meas
     using gate = std::conditional_t<N <= 16, gate::at_least<N == 1 ? 4 : N <= 4 ? 3 : 2>, gate::always>;
 };
 
-/// A reduction whose results are where the commit takes them from.
+/// The measured reduction, or a similar one if the commit cannot take its results.
 template <class Commit, class Measured>
 struct reduce_for {
     using type = Measured;
@@ -60,14 +60,14 @@ struct reduce_for<commit::contiguous, Measured> {
                                     reduce::scatter, Measured>;
 };
 
-/// The commit whose instructions are fewest where a reduction leaves its results.
+/// The commit with the fewest instructions for the placement of the results.
 template <class Reduce>
 using commit_after = std::conditional_t<Reduce::placement == reduce::result_placement::spread ||
                                             Reduce::placement == reduce::result_placement::every_lane,
                                         commit::contiguous, commit::scalar>;
 
-/// A policy with a tag on every axis: the caller's tags, and the measured defaults for the other axes. A
-/// reduction that the caller names is gated only if the caller names a gate, too.
+/// A policy with a tag on every axis: the caller's tags, and the measured defaults for the other
+/// axes. A reduction that the caller names is gated only if the caller names a gate, too.
 template <class T, int N, class Policy>
 struct resolved_policy {
     static_assert(
@@ -93,7 +93,7 @@ struct resolved_policy {
 
 }  // namespace detail
 
-/// What `warp_reduce_atomic` does with N values of T where no policy is given, spelt out.
+/// The policy that `warp_reduce_atomic` uses for N values of T by default.
 template <class T, int N, class Resolved = detail::resolved_policy<T, N, policy<>>>
 using default_policy = policy<typename Resolved::reduce, typename Resolved::commit, typename Resolved::idle,
                               typename Resolved::gate>;

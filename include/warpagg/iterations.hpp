@@ -7,13 +7,13 @@
 namespace warpagg {
 
 /// The numbers from 0 to n - 1, for a loop in which the lanes of a warp meet: `for (unsigned i :
-/// iterations(w, n))`. The unit-test machine then knows which iteration a lane is in, and says so when lanes
-/// meet in different ones, as they do after a `continue` that not all of them take. Elsewhere it is an
-/// ordinary loop. `n` may differ from lane to lane.
+/// iterations(w, n))`. `emulator::checked` then diagnoses lanes that meet in different iterations,
+/// as happens after a `continue` that only some lanes take. On other models it is an ordinary loop.
+/// `n` may differ from lane to lane.
 template <class W>
 class iterations {
   public:
-    /// `n`: how many; `at` is given by its default.
+    /// Counts to `n`. Leave `at` to its default.
     WARPAGG_EXEC_CHECK_DISABLE
     WARPAGG_HD iterations(const W& w, unsigned n, call_site at = call_site::here("iterations"))
         : w_(w), n_(n) {
@@ -26,11 +26,11 @@ class iterations {
         if constexpr (requires { w_.leave_loop(); }) w_.leave_loop();
     }
 
-    /// What a range-based `for` goes by.
+    /// The iterator of a range-based `for`.
     class iterator {
       public:
         /// @{
-        /// As of any iterator.
+        /// As for any iterator.
         WARPAGG_HD iterator(const W& w, unsigned i) : w_(w), i_(i) {}
         WARPAGG_HD unsigned operator*() const { return i_; }
         WARPAGG_EXEC_CHECK_DISABLE

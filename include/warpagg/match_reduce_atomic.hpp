@@ -3,14 +3,15 @@
 #pragma once
 
 /// @file
-/// For lanes whose destinations differ: histograms, graph scatter, particle deposit.
+/// For lanes with different destinations: `warp_match_reduce_atomic`, for histograms, graph
+/// scatter, particle deposit.
 
 #include "reduce_atomic.hpp"
 
 namespace warpagg {
 namespace detail {
 
-/// Component i of the record that a key names, as an accessor by key.
+/// Component i of the record of each key, as an accessor by key.
 template <class Base, int N>
 struct component_by_key {
     Base base;
@@ -32,9 +33,10 @@ struct component_of_key {
     WARPAGG_HD auto operator()(unsigned i) const { return base(key, i); }
 };
 
-/// Combines the values of lanes with equal keys, in a tree over each key's lanes in their order; the first of
-/// them ends with the result. `peers`: the active lanes with this lane's key, none for an inactive lane.
-/// Cost: for the largest group of g lanes, ceil(log2 g) times N shuffles and two votes.
+/// Combines the values of lanes with equal keys, in a tree over the lanes of each key in their
+/// order; the first of them ends with the result. `peers` are the active lanes with this lane's
+/// key, none for an inactive lane. Cost: for the largest group of g lanes, ceil(log2 g) times N
+/// shuffles and two votes.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class V, int N>
 WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint32_t>& peers) {
@@ -43,20 +45,21 @@ WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint3
     using math::select;
     using bits = value_t<W, std::uint32_t>;
     const bits beyond_me = bits(0xfffffffeu) << w.lane();
-    bits next = peers & beyond_me;  // of the lanes that still hold a part of the result
+    bits next = peers & beyond_me;  // the lanes that still hold a part of the result
     bits place = popcount(peers & (beyond_me ^ bits(0xffffffffu))) - bits(1u);
     while (w.any(next != 0u)) {
         const auto has_next = next != 0u;
         const auto from = countr_zero(next);
         WARPAGG_UNROLL
         for (int i = 0; i < N; ++i) v[i] = select(has_next, Op::combine(v[i], w.shfl(v[i], from)), v[i]);
-        next &= bits(w.ballot((place & 1u) == 0u));  // those at odd places have handed theirs on
+        next &= bits(w.ballot((place & 1u) == 0u));  // those at odd places have passed theirs on
         place = place >> 1u;
     }
 }
 
-/// Whether the active lanes' keys rise from lane to lane, and so all differ. A match costs several times what
-/// this does, and more than plain atomics to neighbouring addresses, which rising keys often are.
+/// Whether the keys of the active lanes rise from lane to lane, and so all differ. This costs a
+/// fraction of a match. Rising keys are often neighboring addresses, for which a match costs more
+/// than plain atomics.
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W>
 WARPAGG_HD bool keys_rise(const W& w, const value_t<W, unsigned>& key, const mask_t<W>& active,
@@ -68,14 +71,14 @@ WARPAGG_HD bool keys_rise(const W& w, const value_t<W, unsigned>& key, const mas
     return !w.any(active && after_me != 0u && key >= next);
 }
 
-/// By what instructions the records of keys are committed: as the policy says, else by the largest groups
-/// that keep all records aligned.
+/// The commit of the records of keys: that of the policy, or else the largest groups that keep all
+/// records aligned.
 template <class Resolved, class Policy, int N>
 using commit_of_keys = std::conditional_t<std::is_same_v<typename Resolved::reduce, reduce::per_lane> ||
                                               !std::is_same_v<typename Policy::commit, unset>,
                                           typename Resolved::commit, commit::packed<N % 4 == 0 ? 4 : 2>>;
 
-/// Every active lane commits its own values to its key's record.
+/// Every active lane commits its own values to the record of its key.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, class Commit, warp W, class Base, class V, int N>
 WARPAGG_HD void commit_by_key(const W& w, Base base, const value_t<W, unsigned>& key, const V (&v)[N],
@@ -94,7 +97,7 @@ WARPAGG_HD void commit_by_key(const W& w, Base base, const value_t<W, unsigned>&
         w.atomic(Op{}, component_by_key<Base, N>{base, static_cast<unsigned>(i)}, key, v[i], active);
 }
 
-/// The record of a key that is the same in all lanes, as a destination.
+/// The record of a key, the same in all lanes, as a destination.
 template <int N, class T>
 WARPAGG_HD commit::contiguous_record<T> record_of_key(T* base, unsigned key) {
     return {base + std::size_t{key} * N};
@@ -128,7 +131,7 @@ WARPAGG_HD auto base_of_limbs(Base base) {
 }
 /// @}
 
-/// `warp_match_reduce_atomic` of values as they are.
+/// `warp_match_reduce_atomic` with the accumulator `native`.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Policy, warp W, class Base, class V, int N>
 WARPAGG_HD void match_and_commit(const W& w, Base base, const value_t<W, unsigned>& key, const V (&values)[N],
@@ -185,28 +188,31 @@ WARPAGG_HD void match_and_commit(const W& w, Base base, const value_t<W, unsigne
 
 }  // namespace detail
 
-/// Adds the values of each active lane to the record that its key names, equal keys first among themselves:
-/// for each i in [0, N), `base[key * N + i] += values[i]`, atomically and relaxed, component by component.
+/// Adds the values of each active lane to the record that its key names, equal keys first among
+/// themselves: for each i in [0, N), `base[key * N + i] += values[i]`, atomically and relaxed,
+/// component by component.
 ///
 /// @snippet warp_match_reduce_atomic.cpp warp_match_reduce_atomic
 ///
 /// @param w       a model of `warp`; all of its lanes call this together
 /// @param base    `T*` to the record of key 0, or an accessor `base(key, i) -> T*`
-/// @param key     this lane's record, a number of 32 bits; any for an inactive lane
+/// @param key     index of this lane's record, 32 bits; ignored for an inactive lane
 /// @param values  N values per lane; those of inactive lanes are ignored, NaN or not
 /// @param active  whether this lane has something to add
-/// @param at      where the call stands, by its default
-/// @param how     see policy.hpp. `reduce` and `commit` say what happens where all active lanes have one key,
-///                `commit` how else each key's record is committed, `per_lane` that nothing is combined, the
-///                gate from how many active lanes on keys are compared
+/// @param how     a policy. `reduce` and `commit` apply where all active lanes have one key; `commit`
+///                also selects how the record of each key is committed. `per_lane` combines nothing.
+///                The gate sets the number of active lanes from which keys are compared
+/// @param at      the place of the call; leave it to its default
 ///
-/// @pre All lanes of the warp call this, with the same `base`, which holds N values of T for each key in use.
+/// @pre All lanes of the warp call this with the same `base`, which holds N values of T for each key
+/// in use.
 ///
-/// Lanes of one key combine in a fixed tree in the order of their numbers. Cost: one shuffle, two votes, and
-/// one atomic per key and component where the active lanes' keys rise from lane to lane; one `match` and two
-/// votes more where they do not; and for the most frequent key's g lanes ceil(log2 g) times N shuffles and
-/// two votes. With one key for all: as `warp_reduce_atomic`. Where `base` is a pointer to float, aligned to
-/// 16 bytes if N is a multiple of 4, or to 8 if it is even, records go to memory as `packed` says.
+/// Lanes of one key combine in a fixed tree in the order of their lane numbers. Cost if the keys of
+/// the active lanes rise from lane to lane: one shuffle, two votes, and one atomic per key and
+/// component. Otherwise: one `match` and two votes more, and ceil(log2 g) times N shuffles and two
+/// votes for the g lanes of the most frequent key. With one key for all lanes: as
+/// `warp_reduce_atomic`. If `base` is a pointer to float that is aligned to 16 bytes for N a
+/// multiple of 4, or to 8 bytes for N even, records are committed by `packed`.
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Base, class V, int N, class Policy = policy<>>
 WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W, unsigned>& key,
@@ -219,7 +225,7 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
                   "between_warps goes with warp_reduce_atomic: here take what it is of");
     if constexpr (detail::is_accumulated<accumulation>) {
         static_assert(std::is_same_v<scalar_t<V>, float>,
-                      "only sums of float are kept otherwise than as they are");
+                      "accumulators other than native take values of float");
         value_t<W, typename accumulation::limb> limbs[N * accumulation::limbs];
         {
             const detail::library_call<W> call(w, at);
@@ -244,7 +250,7 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, R* base, const value_t<W, u
                              how, at);
 }
 
-/// Does not compile: a key has 32 bits, and of a wider one the rest would be lost.
+/// Does not compile: a key has 32 bits, and a wider one would lose the others.
 template <warp W, class Base, class Key, class V, int N, class... More>
 requires(std::is_integral_v<Key> && sizeof(Key) > sizeof(unsigned)) void warp_match_reduce_atomic(
     const W&, Base, const Key&, const V (&)[N], const mask_t<W>&, More...) = delete;

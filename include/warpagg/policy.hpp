@@ -3,8 +3,9 @@
 #pragma once
 
 /// @file
-/// How `warp_reduce_atomic` works: one tag per axis, in any order, e.g. `policy{shfl_down, skip}`. What no
-/// tag names is chosen for the values' type and number: see default_policy.hpp.
+/// Selects how `warp_reduce_atomic` works by at most one tag per axis, in any order, as in
+/// `policy{shfl_down, skip}`. The defaults of the other axes depend on type and number of the
+/// values: see default_policy.hpp.
 
 #include "accumulator.hpp"
 #include "core/axis.hpp"
@@ -18,7 +19,7 @@ namespace detail {
 /// Stands for the tag of an axis on which a policy has none.
 struct unset {};
 
-/// The tag among Tags that is of axis A.
+/// The tag on axis A, or `unset`.
 template <axis A, class... Tags>
 struct named {
     using type = unset;
@@ -30,7 +31,7 @@ struct named<A, Tag, Tags...> {
 template <axis A, class... Tags>
 using named_t = typename named<A, Tags...>::type;
 
-/// The object among tags that is of axis A.
+/// The object of the tag on axis A.
 template <axis A>
 WARPAGG_HD constexpr unset object_of() {
     return {};
@@ -90,13 +91,13 @@ inline constexpr bool is_gated = Gate::lanes > 0;
 template <>
 inline constexpr bool is_gated<unset> = false;
 
-/// Whether sums are kept otherwise than in the values' own type.
+/// Whether the accumulator is not `native`.
 template <class Accumulate>
 inline constexpr bool is_accumulated = requires {
     typename Accumulate::limb;
 };
 
-/// Whether a warp's own sum is native all the same.
+/// Whether the warp reduces in the type of the values, and only its result goes to the accumulator.
 template <class Accumulate>
 inline constexpr bool is_between_warps = requires {
     typename Accumulate::storage;
@@ -109,13 +110,13 @@ concept is_policy = requires {
 };
 }  // namespace detail
 
-/// A set of tags, at most one per axis, in any order. Two of one axis, or a pair that cannot work, does not
-/// compile.
+/// A set of tags, at most one per axis, in any order. Two tags of one axis, or a pair that cannot
+/// work, do not compile.
 ///
 /// @snippet warp_reduce_atomic.cpp policy
 template <class... Tags>
 struct policy : detail::optional_member<detail::named_t<axis::accumulate, Tags...>> {
-    /// How many of the tags are of axis A.
+    /// The number of tags on axis A.
     template <axis A>
     static constexpr int count = (0 + ... + (Tags::axis == A ? 1 : 0));
     static_assert(count<axis::operation> <= 1,
@@ -130,7 +131,7 @@ struct policy : detail::optional_member<detail::named_t<axis::accumulate, Tags..
     static_assert(count<axis::idle> <= 1, "a policy takes one idle tag: skip, assume_busy or add_zeros");
     static_assert(count<axis::gate> <= 1, "a policy takes one gate tag: always or at_least<K>");
 
-    /// The tag of this axis; a type of no meaning where none is named.
+    /// The tag on this axis; a placeholder if there is none.
     /// @{
     using operation = detail::named_t<axis::operation, Tags...>;
     using reduce = detail::named_t<axis::reduce, Tags...>;

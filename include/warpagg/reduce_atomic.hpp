@@ -18,8 +18,9 @@
 
 namespace warpagg {
 
-/// True if no lane of the warp is active, in every lane alike; so that a whole warp can `continue` together.
-/// All lanes call it. Cost: one vote, no memory. Source: the paper, Figure 8, lines 18 to 22.
+/// Returns whether no lane of the warp is active, the same in every lane, so that the whole warp
+/// can `continue` together. All lanes call it. Cost: one vote, no memory. Source: the paper, Figure
+/// 8, lines 18 to 22.
 ///
 /// @snippet warp_reduce_atomic.cpp skip_if_warp_idle
 WARPAGG_EXEC_CHECK_DISABLE
@@ -32,7 +33,7 @@ WARPAGG_HD bool skip_if_warp_idle(const W& w, const mask_t<W>& active,
 
 namespace detail {
 
-/// The flag, as something that the compiler cannot split a loop on.
+/// The flag, hidden from the compiler, so that it does not split a loop on it.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class W>
 WARPAGG_HD mask_t<W> opaque(const W& w, const mask_t<W>& flag) {
@@ -43,7 +44,8 @@ WARPAGG_HD mask_t<W> opaque(const W& w, const mask_t<W>& flag) {
     }
 }
 
-/// The values of active lanes, and what changes no result from the others: a NaN ends here.
+/// The values of active lanes, and the identity of the operation for other lanes, whatever they
+/// hold.
 template <class Op, class V, class Mask>
 struct active_values {
     const V* values;
@@ -65,7 +67,7 @@ WARPAGG_HD void reduce_and_commit(const W& w, Record record, const V (&values)[N
     commit::results<op, reduction, typename Resolved::commit>(w, record, results);
 }
 
-/// `warp_reduce_atomic`, once its destination is an accessor and its policy is complete.
+/// `warp_reduce_atomic` for an accessor and a resolved policy.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Resolved, warp W, class Record, class V, int N>
 WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
@@ -81,7 +83,7 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
         const unsigned least =
             commit::is_packed<op, ungated, V>(w, record) ? gate::lanes_if_packed : gate::lanes;
         if (math::popcount(w.ballot(active)) < least) [[unlikely]] {
-            V own[N];  // what is indexed by lanes lies in memory, where the values themselves need not
+            V own[N];  // a copy, since indexing by lanes would force the values themselves into memory
             WARPAGG_UNROLL
             for (int i = 0; i < N; ++i) own[i] = values[i];
             commit::each_lane<op, ungated>(w, record, own, active);
@@ -99,7 +101,8 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
 }  // namespace detail
 
 /// Adds the values of the warp's active lanes to one record in memory: for each i in [0, N),
-/// `dst[i] += sum over the active lanes of values[i]`, atomically and relaxed, component by component.
+/// `dst[i] += sum over the active lanes of values[i]`, atomically and relaxed, component by
+/// component.
 ///
 /// @snippet warp_reduce_atomic.cpp warp_reduce_atomic
 ///
@@ -110,31 +113,32 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
 /// @snippet warp_reduce_atomic.cpp structure of arrays
 /// @snippet warp_reduce_atomic.cpp accessor
 ///
-/// With sums that are kept otherwise than in T, here ones that are rounded once and the same in any order:
+/// With another accumulator; here the sum is rounded once and does not depend on the order of
+/// additions:
 ///
 /// @snippet accumulate.cpp exact
 ///
 /// @param w       a model of `warp`; all of its lanes call this together
-/// @param dst     `T*`, a span, an accessor `dst(i) -> T*`, or with `policy{staged}` a record of a `stage`;
-/// the
-///                same record for every lane
+/// @param dst     `T*`, a span, an accessor `dst(i) -> T*`, or a record of a `stage` with
+///                `policy{staged}`; the same record for every lane
 /// @param values  N values per lane; those of inactive lanes are ignored, NaN or not
 /// @param active  whether this lane has something to add
-/// @param at      where the call stands, by its default
-/// @param how     see policy.hpp; it may name another operation than the sum, or in what sums of float are
-/// kept:
-///                see accumulator.hpp
+/// @param how     a policy; it may also name another operation than the sum, or an accumulator: see
+///                accumulator.hpp
+/// @param at      the place of the call; leave it to its default
 ///
-/// @pre All lanes of the warp call this, with the same `dst`, which holds N values of T, aligned as T.
+/// @pre All lanes of the warp call this with the same `dst`, which holds N values of T, aligned as
+/// T.
 ///
-/// Sums that are not native: values are decomposed in idle warps, too (ask
-/// `skip_if_warp_idle` first where many are); a `fixed` that is to tell of faults takes a vote more.
+/// @note Accumulators other than `native` decompose values even in idle warps; call
+/// `skip_if_warp_idle` first if many warps are idle. `fixed` with a `fault` takes one more vote.
 ///
-/// The order in which warps add is not fixed. Inside a warp the tree is, the same for every reduction but
-/// `per_lane`; lanes that the gate leaves to themselves add in any order. Error of a float sum with all lanes
-/// active: (n/32 + 5) u k for n updates of condition k, u = 2^-24; with few of them, up to n u k. Cost by
-/// default, on 32 lanes: one vote, N - 1 + log2(32/N) shuffles (N `redux` instructions for integers of 32
-/// bits), one atomic instruction per 32 components.
+/// The order in which warps add is unspecified. Within a warp the tree of additions is fixed, and
+/// the same for every reduction but `per_lane`; lanes that the gate keeps from reducing add in any
+/// order. Error of a float sum with all lanes active: (n/32 + 5) u k for n updates of condition k,
+/// u = 2^-24; with few active lanes, up to n u k. Cost by default, on 32 lanes: one vote, N - 1 +
+/// log2(32/N) shuffles (N `redux` instructions for 32-bit integers), and one atomic instruction per
+/// 32 components.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class T, int N, warp W, class Dst, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&values)[N],
@@ -145,7 +149,7 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
     using accumulation = typename Policy::accumulate;
     using resolved_policy = detail::resolved_policy<T, N, Policy>;
     static_assert(!detail::is_accumulated<accumulation> || std::is_same_v<T, float>,
-                  "only sums of float are kept otherwise than as they are");
+                  "accumulators other than native take values of float");
     if constexpr (detail::is_accumulated<accumulation> && !detail::is_between_warps<accumulation>) {
         using limb = typename accumulation::limb;
         value_t<W, limb> limbs[N * accumulation::limbs];
@@ -182,7 +186,7 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const V (&values)[N], co
 }
 
 /// The same for an aggregate, a type of yours: see aggregate.hpp. On models whose lane values are
-/// scalars, not on `emulator::lanes`.
+/// scalars, so not on `emulator::lanes`.
 ///
 /// @snippet warp_reduce_atomic.cpp a type of yours
 WARPAGG_EXEC_CHECK_DISABLE

@@ -8,17 +8,17 @@
 
 namespace warpagg {
 
-/// A record within a stage, the destination that `policy{staged}` takes.
+/// A record within a stage: the destination for `policy{staged}`.
 template <class T>
 struct staged_record {
-    T* copy;  ///< of component 0, in shared memory
+    T* copy;  ///< component 0, in shared memory
     /// The record as an accessor.
     WARPAGG_HD commit::contiguous_record<T> in_stage() const { return {copy}; }
 };
 
-/// A block's own copy of a small destination in shared memory. Warps of the block add there, where atomics
-/// are near, and each value that is not zero is added to memory once, at the end: for a few thousand values
-/// to which each block adds many times.
+/// A block's copy of a small destination in shared memory. Warps of the block add to the copy,
+/// where atomics are cheap; at the end `flush` adds each value that is not zero to memory once. Use
+/// it for up to a few thousand values to which each block adds many times.
 ///
 /// @snippet stage.cpp stage
 ///
@@ -27,12 +27,12 @@ template <class T>
 class stage {
   public:
     /// @param memory  `size` values in global memory
-    /// @param copy    as many in the block's shared memory
-    /// @param size    how many
+    /// @param copy    `size` values in the block's shared memory
+    /// @param size    number of values
     WARPAGG_HD stage(T* memory, T* copy, unsigned size) : memory_(memory), copy_(copy), size_(size) {}
 
-    /// Sets the copy to zero; a barrier of the block must follow. All `warps` of the block call it, each with
-    /// its number.
+    /// Sets the copy to zero; a barrier of the block must follow. All `warps` warps of the block
+    /// call it, each with its index `warp`.
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void clear(const W& w, unsigned warp, unsigned warps) const {
@@ -40,10 +40,10 @@ class stage {
             w.store_row(copy_, static_cast<std::ptrdiff_t>(row), value_t<W, T>(T{}), w.lane() + row < size_);
     }
 
-    /// The record whose first component is `memory[first]`; all of it must lie within the stage.
+    /// The record that begins at `memory[first]`. Precondition: it lies within the stage.
     WARPAGG_HD staged_record<T> record(unsigned first) const { return {copy_ + first}; }
 
-    /// Adds the copy to memory; a barrier of the block must have gone before. Called as `clear`.
+    /// Adds the copy to memory; a barrier of the block must precede it. Call it as `clear`.
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void flush(const W& w, unsigned warp, unsigned warps) const {
@@ -63,7 +63,7 @@ class stage {
 
 namespace commit {
 
-/// Where `Commit` takes component i of a record to, as an accessor.
+/// The destination of `Commit`, as an accessor.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Commit, class Dst>
 WARPAGG_HD auto record_of(Dst dst) {

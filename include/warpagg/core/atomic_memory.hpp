@@ -8,7 +8,7 @@
 
 namespace warpagg::emulator::detail {
 
-/// What the emulators' atomics do to memory, relaxed: warps may run on several threads.
+/// An atomic of the emulators: relaxed, because warps may run on several threads.
 template <class Op, class T>
 inline void atomic(Op, T* to, T v) {
     std::atomic_ref<T> memory(*to);

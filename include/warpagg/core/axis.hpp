@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// What a policy's tags have in common: each names the axis that it chooses on.
+/// The axes of a policy. Each tag has a member `axis`, the axis on which it selects.
 
-/// Before an object of a tag: it is a constant that host and device code may name.
+/// Declares the object of a tag: a constant for host and device code.
 #if defined(__CUDA_ARCH__)
 #define WARPAGG_TAG static __device__ constexpr
 #else
@@ -14,14 +14,14 @@
 
 namespace warpagg {
 
-/// What a policy chooses: one tag at most on each axis.
+/// What a policy selects, with at most one tag per axis.
 enum class axis {
-    operation,   ///< what values are combined by
+    operation,   ///< how two values combine
     reduce,      ///< how the lanes' values become one
-    accumulate,  ///< in what a sum is kept
+    accumulate,  ///< how a sum is kept
     commit,      ///< how the results reach memory
-    idle,        ///< what happens when no lane is active
-    gate,        ///< from how many active lanes on the reduction is worth it
+    idle,        ///< what an idle warp does
+    gate,        ///< how many active lanes a reduction needs
 };
 
 }  // namespace warpagg

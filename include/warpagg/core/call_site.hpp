@@ -6,14 +6,14 @@
 
 namespace warpagg {
 
-/// Which function of the library was called, and where, for the emulator's diagnoses. On other models nobody
-/// reads it and it costs nothing.
+/// The called function of the library and the line of the call, for the diagnoses of
+/// `emulator::checked`. Other models do not read it, and it costs nothing there.
 struct call_site {
-    const char* function;  ///< of the library
-    const char* file;      ///< where it was called
-    unsigned line;         ///< where it was called
+    const char* function;  ///< the called function
+    const char* file;      ///< of the call
+    unsigned line;         ///< of the call
 
-    /// The place of the call in whose default argument this stands.
+    /// In a default argument: the place of the call.
     static constexpr WARPAGG_HD call_site here(const char* function, const char* file = __builtin_FILE(),
                                                unsigned line = __builtin_LINE()) {
         return {function, file, line};
@@ -22,7 +22,8 @@ struct call_site {
 
 namespace detail {
 
-/// As long as it lives, the model knows, if it wants to, on whose behalf the library works.
+/// While it lives, a model that has `enter` and `leave` attributes operations to the library call
+/// at `at`.
 template <class W>
 class library_call {
   public:

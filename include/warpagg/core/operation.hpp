@@ -3,19 +3,19 @@
 #pragma once
 
 /// @file
-/// What values are combined by: the associative operations that memory has an atomic for. The default is
-/// `operation::sum`; the others are tags of a policy, e.g. `policy{maximum}`.
+/// The operations that combine values: associative, with an atomic in memory. The default is
+/// `operation::sum`; the others are tags of a policy, as in `policy{maximum}`.
 
 #include "axis.hpp"
 #include "math.hpp"
 
 namespace warpagg {
 
-/// Each has `combine(a, b)`, which works lane by lane too; `identity<T>()`, which an inactive lane
-/// contributes; and `suits<T>`, whether memory has the operation for T.
+/// Each has `combine(a, b)`, for scalars and lane by lane; `identity<T>()`, the contribution of an
+/// inactive lane; and `suits<T>`, whether memory supports the operation for T.
 namespace operation {
 
-/// Addition: of floats, of integers (modulo 2^bits), of pairs of halves.
+/// Addition of floats, of integers (modulo 2^bits) and of pairs of halves.
 struct sum {
     static constexpr auto axis = warpagg::axis::operation;
     template <class T>
@@ -31,17 +31,17 @@ struct sum {
     }
 };
 
-/// Of integers of 32 or 64 bits.
+/// Base of operations on 32-bit and 64-bit integers.
 struct for_integers {
     static constexpr auto axis = warpagg::axis::operation;
     template <class T>
     static constexpr bool suits = std::is_integral_v<T> && sizeof(T) >= 4;
-    /// The sign bit of a signed T alone, zero if T is unsigned: T's least value.
+    /// The smallest T.
     template <class T>
     static constexpr T least = std::is_signed_v<T> ? static_cast<T>(T{1} << (8 * sizeof(T) - 1)) : T{};
 };
 
-/// The least value.
+/// The smallest value.
 struct minimum : for_integers {
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {
@@ -67,7 +67,7 @@ struct maximum : for_integers {
     }
 };
 
-/// The bits that all values have.
+/// Bitwise AND.
 struct bit_and : for_integers {
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {
@@ -79,7 +79,7 @@ struct bit_and : for_integers {
     }
 };
 
-/// The bits that some value has.
+/// Bitwise OR.
 struct bit_or : for_integers {
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {
@@ -91,20 +91,21 @@ struct bit_or : for_integers {
     }
 };
 
-/// A base for operations of your own, on words of 64 bits: `Op` derives from it and has
-/// `combine_words(a, b)`, associative, commutative, and with zero as its neutral element. Memory combines by
-/// compare-and-swap.
+/// A base for operations of your own on 64-bit words. `Op` derives from it and has
+/// `combine_words(a, b)`, associative and commutative, with zero as its identity. Memory combines
+/// by compare-and-swap.
 template <class Op>
 struct on_words {
     static constexpr auto axis = warpagg::axis::operation;
-    static constexpr bool by_exchange = true;  ///< no atomic instruction has it
+    static constexpr bool by_exchange = true;  ///< by compare-and-swap, as no atomic instruction exists
     template <class T>
     static constexpr bool suits = std::is_integral_v<T> && !std::is_signed_v<T> && sizeof(T) == 8;
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {
         if constexpr (requires { typename V::scalar; }) {
             constexpr int size = V::chunks * V::width;
-            typename V::scalar words[size];  // GCC takes a vector that is set lane by lane for uninitialized
+            // Not set lane by lane in a vector, which GCC takes for uninitialized.
+            typename V::scalar words[size];
             for (int lane = 0; lane < size; ++lane) words[lane] = Op::combine_words(a[lane], b[lane]);
             V r;
             std::memcpy(r.part, words, sizeof words);
@@ -119,7 +120,7 @@ struct on_words {
     }
 };
 
-/// The bits that an odd number of values have.
+/// Bitwise XOR.
 struct bit_xor : for_integers {
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {

@@ -11,15 +11,15 @@
 
 namespace warpagg {
 
-/// How the lanes' values become one. W is the warp's width, N the number of values.
+/// How the values of the lanes are reduced. W is the width of the warp, N the number of values.
 namespace reduce {
 
-/// Which lanes have the results afterwards.
+/// Which lanes hold the results of a reduction.
 enum class result_placement {
-    own_lane,    ///< each lane its own values: nothing was combined
-    first_lane,  ///< lane 0 all of them
-    every_lane,  ///< every lane all of them
-    spread,      ///< each lane some of them: see `scattered_index`
+    own_lane,    ///< each lane holds its own values; nothing was combined
+    first_lane,  ///< lane 0 holds all of them
+    every_lane,  ///< every lane holds all of them
+    spread,      ///< each lane holds some of them: see `scattered_index`
 };
 /// @cond deprecated
 using results_in [[deprecated("use result_placement")]] = result_placement;
@@ -30,7 +30,8 @@ struct per_lane {
     static constexpr auto axis = warpagg::axis::reduce;
     static constexpr auto placement = result_placement::own_lane;
 };
-/// Lane 0 ends with the results. The paper's Figure 1. Cost: N log2(W) shuffles (N = 9 on 32 lanes: 45).
+/// Lane 0 ends with the results. The paper's Figure 1. Cost: N log2(W) shuffles (N = 9 on 32 lanes:
+/// 45).
 struct shfl_down {
     static constexpr auto axis = warpagg::axis::reduce;
     static constexpr auto placement = result_placement::first_lane;
@@ -40,15 +41,15 @@ struct butterfly {
     static constexpr auto axis = warpagg::axis::reduce;
     static constexpr auto placement = result_placement::every_lane;
 };
-/// Reduce-scatter: at each of the log2(W) steps a lane hands half of the values it still holds to its
-/// partner, and ends with at most ceil(N / W) results. Cost: about N - 1 + log2(W / N) shuffles (N = 9 on 32
+/// Reduce-scatter: at each of the log2(W) steps a lane sends half of its values to its partner, and
+/// ends with at most ceil(N / W) results. Cost: about N - 1 + log2(W / N) shuffles (N = 9 on 32
 /// lanes: 12).
 struct scatter {
     static constexpr auto axis = warpagg::axis::reduce;
     static constexpr auto placement = result_placement::spread;
 };
-/// The hardware's own reduction, `redux.sync`: one instruction per value, for integers of 32 bits. A model
-/// without it, as the emulators are, takes `butterfly`.
+/// The instruction `redux.sync`: one per value, for 32-bit integers. Models without it, such as the
+/// emulators, use `butterfly`.
 struct redux {
     static constexpr auto axis = warpagg::axis::reduce;
     static constexpr auto placement = result_placement::every_lane;
@@ -59,70 +60,71 @@ struct redux {
 /// How the results reach memory.
 namespace commit {
 
-/// Lane 0 makes them. The paper. Cost: N atomics, one instruction each.
+/// Lane 0 adds all results, as in the paper. Cost: N atomics, one instruction each.
 struct scalar {
     static constexpr auto axis = warpagg::axis::commit;
 };
-/// N lanes make them, at N neighbouring addresses. Cost: N atomics by one instruction, or by ceil(N / W).
+/// N lanes add one result each, at neighboring addresses. Cost: N atomics by ceil(N / W)
+/// instructions.
 struct contiguous {
     static constexpr auto axis = warpagg::axis::commit;
 };
-/// K neighbouring floats by one atomic instruction (`red.global.add.v2.f32`, `.v4.f32`), what is left by
-/// smaller groups. It applies to sums of float in a contiguous record whose first component is aligned to K
-/// floats; below compute capability 9.0 and for all else, each component takes an instruction, as with
-/// `scalar`. The record lies in global memory. Each component is atomic by itself.
+/// One atomic instruction adds K neighboring floats (`red.global.add.v2.f32`, `.v4.f32`); smaller
+/// groups follow for the rest. Applies to sums of float in a contiguous record in global memory
+/// whose first component is aligned to K floats, from compute capability 9.0 on. Otherwise each
+/// component takes one instruction, as with `scalar`. Each component is atomic by itself.
 template <unsigned K>
 struct packed {
     static_assert(K == 2 || K == 4, "packed<K> takes K = 2 or 4 neighbours");
     static constexpr auto axis = warpagg::axis::commit;
-    static constexpr unsigned neighbours = K;  ///< components by one instruction
+    static constexpr unsigned neighbours = K;  ///< components per instruction
 };
-/// Into a block's copy of the destination in shared memory, which is added to memory once: see
-/// commit/stage.hpp. The destination is a stage's record.
+/// Adds to a block's copy of the destination in shared memory, which is added to global memory
+/// once: see stage.hpp. The destination is a record of a `stage`.
 struct staged {
     static constexpr auto axis = warpagg::axis::commit;
 };
 
 }  // namespace commit
 
-/// What happens when no lane is active.
+/// What an idle warp does, one without an active lane.
 namespace idle {
 
-/// Nothing: a vote asks first. The paper's Figure 8. Cost: one vote.
+/// A vote detects an idle warp, which then does nothing (the paper, Figure 8). Cost: one vote.
 struct skip {
     static constexpr auto axis = warpagg::axis::idle;
 };
-/// The caller has asked already. Precondition: there is an active lane; `emulator::checked` verifies it, and
-/// CUDA with WARPAGG_CHECKS. Cost: nothing; a gate votes all the same.
+/// The caller knows that the warp is busy. Precondition: at least one lane is active;
+/// `emulator::checked`, and CUDA with WARPAGG_CHECKS, verify it. Cost: nothing, but a gate votes.
 struct assume_busy {
     static constexpr auto axis = warpagg::axis::idle;
 };
-/// Zeros are reduced and added all the same. The paper's Figure 7, for comparison. Cost: no vote, but an idle
-/// warp pays for shuffles and atomics.
+/// An idle warp reduces and adds zeros (the paper, Figure 7), for comparison. Cost: no vote, but an
+/// idle warp pays for shuffles and atomics.
 struct add_zeros {
     static constexpr auto axis = warpagg::axis::idle;
 };
 
 }  // namespace idle
 
-/// When the reduction is worth it.
+/// How many active lanes a reduction needs.
 namespace gate {
 
-/// Always. Cost: nothing.
+/// Always reduces. Cost: nothing.
 struct always {
     static constexpr auto axis = warpagg::axis::gate;
-    static constexpr unsigned lanes = 0;            ///< the fewest active lanes that reduce
-    static constexpr unsigned lanes_if_packed = 0;  ///< the same where their commit packs
+    static constexpr unsigned lanes = 0;            ///< fewest active lanes that reduce
+    static constexpr unsigned lanes_if_packed = 0;  ///< the same for a commit that packs neighbors
 };
-/// Fewer than K active lanes (fewer than Packed, where their commit packs neighbours) make their own atomics,
-/// by `packed<4>` unless the policy names `packed<2>` or `scalar`. Cost: one vote, in place of that of
-/// `skip`.
+/// Fewer than K active lanes do not reduce; each commits its own values, by `packed<4>` unless the
+/// policy names `packed<2>` or `scalar`. If that commit packs neighbors, the limit is Packed
+/// instead of K. Cost: one vote, which replaces the vote of `skip`.
 template <unsigned K, unsigned Packed = K>
 struct at_least {
     static_assert(K > 0, "at_least<K> takes K > 0: without a gate, say always");
     static constexpr auto axis = warpagg::axis::gate;
-    static constexpr unsigned lanes = K;                 ///< the fewest active lanes that reduce
-    static constexpr unsigned lanes_if_packed = Packed;  ///< the same where their commit packs
+    static constexpr unsigned lanes = K;                 ///< fewest active lanes that reduce
+    static constexpr unsigned lanes_if_packed = Packed;  ///< the same for a commit that packs neighbors
 };
 
 }  // namespace gate

@@ -6,7 +6,7 @@
 
 namespace warpagg::commit {
 
-/// Where component i of a record lies, for a record that is contiguous in memory.
+/// A record that is contiguous in memory, as an accessor.
 template <class T>
 struct contiguous_record {
     T* first;  ///< component 0
@@ -14,22 +14,22 @@ struct contiguous_record {
     WARPAGG_HD T* operator()(unsigned i) const { return first + i; }
 };
 
-/// Any destination as an accessor: a pointer, something with `data()` (a span), or an accessor already,
-/// called with the component's number for its address (structure-of-arrays gradients).
+/// A destination as an accessor, which returns the address of component i. The destination is a
+/// pointer, a span (anything with `data()`), or an accessor already (for a structure of arrays).
 /// @{
 template <class T>
 WARPAGG_HD contiguous_record<T> destination(T* p) {
     return {p};
 }
 template <class S>
-requires requires(const S& s) { *s.data() = *s.data(); }  // not a container's: that would be a copy's
+requires requires(const S& s) { *s.data() = *s.data(); }  // not a container, whose copy this would be
 WARPAGG_HD auto destination(S s) { return destination(s.data()); }
 template <class A>
 requires requires(A a) { *a(0u); }
 WARPAGG_HD A destination(A a) { return a; }
 /// @}
 
-/// Whether it is a destination.
+/// A pointer, a span or an accessor.
 template <class Dst>
 concept is_destination = requires(Dst dst) {
     destination(dst);

@@ -1,4 +1,4 @@
-// expect: only sums of float are kept otherwise than as they are
+// expect: accumulators other than native take values of float
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/atomic.hpp>
