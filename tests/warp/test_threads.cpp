@@ -77,7 +77,7 @@ TEST_CASE_TEMPLATE("warps on many threads add to the same memory", W, warpagg::e
     check_totals<W>(t);
 }
 
-TEST_CASE("each thread launches a unit-test machine of its own") {
+TEST_CASE("each thread launches a simulator of its own") {
     std::vector<totals> of_thread(threads);
     on_each_thread([&of_thread](unsigned thread) {
         const auto report = warpagg::emulator::try_launch({}, [&](const warpagg::emulator::checked& w) {

@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// The unit-test machine: runs a kernel's lanes as fibers on the CPU, in an order that a seed draws, and
-/// diagnoses misuse. For tests; POSIX, GCC 12 or clang 14 and later. To diagnose more uses of undefined
-/// values, include fork_shadow_process.hpp in one source file.
+/// The checked model of `warp`, for unit tests: runs the lanes of a kernel as fibers on the CPU, in
+/// an order drawn from a seed, and diagnoses misuse. POSIX; GCC 12 or clang 14 and later. To
+/// diagnose more uses of undefined values, include fork_shadow_process.hpp in one source file.
 ///
 /// @snippet checked.cpp kernel
 /// @snippet checked.cpp launch

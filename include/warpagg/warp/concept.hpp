@@ -3,11 +3,11 @@
 #pragma once
 
 /// @file
-/// The `warp` concept: what warpagg asks of a machine that runs lanes in step.
+/// The concept `warp`.
 ///
-/// A model `W` names the type that holds one `T` per lane, `value_t<W, T>`: plain `T` where the hardware (or
-/// the emulator) runs the lanes itself, a SIMD vector where one thread of control holds them all. Code that
-/// uses `select` instead of `if` on lane values runs on every model.
+/// `value_t<W, T>` holds one `T` per lane of a model `W`. It is `T` itself if each lane runs as a
+/// thread or a fiber, and a SIMD value if one thread runs all lanes. Code that uses `select`
+/// instead of `if` on lane values runs on every model.
 
 #include "../core/math.hpp"
 #include "../core/operation.hpp"
@@ -31,8 +31,8 @@ using mask_t = value_t<W, bool>;
 /// | `any(p)` | some lane's p; the same in every lane |
 /// | `match(key)` | bit i of lane j's result: lanes i and j hold equal keys |
 /// | `shfl(v, i)` | lane i's v; `i` may differ from lane to lane |
-/// | `shfl_down(v, d)` | v of the lane d further; lanes past the end keep their own |
-/// | `shfl_xor(v, d)` | v of the lane whose number differs in the bits of d |
+/// | `shfl_down(v, d)` | v of lane `lane() + d`; lanes past the end keep their own |
+/// | `shfl_xor(v, d)` | v of lane `lane() ^ d` |
 /// | `load(p, i, active)` | `p[i]` per active lane; inactive lanes read nothing and get T{}; i < 2^31 |
 /// | `load_packed(p, i, v, active)` | `v[k] = p[i + k]`, k < 4 K; `p + i` is aligned to 4 values |
 /// | `store(p, i, v, active)` | `p[i] = v` per active lane |
@@ -40,7 +40,7 @@ using mask_t = value_t<W, bool>;
 /// | `load_row(p, i, active)` | `p[i + lane]` per active lane; `i` is uniform and may be negative |
 /// | `load_row(p, i)` | `p[i + lane]` in every lane |
 /// | `store_row(p, i, v, active)` | `p[i + lane] = v` per active lane |
-/// | `sync()` | what any lane wrote before, every lane reads after |
+/// | `sync()` | writes of any lane before it are visible to every lane after it |
 /// | `atomic(op, dst, i, v, active)` | per active lane, `*dst(i) = op::combine(*dst(i), v)`, relaxed |
 template <class W>
 concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i, mask_t<W> p, float* m,

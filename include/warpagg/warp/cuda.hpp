@@ -9,14 +9,15 @@ namespace warpagg {
 
 namespace detail::cuda_memory {
 
-/// What CUDA's atomics of 64-bit integers are called with; memory adds two's complement all the same.
+/// The parameter type of CUDA's atomics on 64-bit integers; two's complement makes signed sums
+/// right.
 template <class T>
 using bits = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, unsigned long long, T>;
 template <class T>
 using integer = std::conditional_t<sizeof(T) == 8,
                                    std::conditional_t<std::is_signed_v<T>, long long, unsigned long long>, T>;
 
-/// What one instruction loads or stores of 32-bit values, and two of 64-bit ones.
+/// Four values; of 32 bits each, one instruction loads or stores them.
 template <class T>
 struct alignas(16) four {
     T at[4];
@@ -61,12 +62,12 @@ requires Op::by_exchange __device__ __forceinline__ void atomic(Op, T* to, T v) 
 
 }  // namespace detail::cuda_memory
 
-/// The model of the concept `warp` for a GPU: the warp that the calling thread belongs to. Empty; every
-/// operation is one instruction or a few.
+/// The model of the concept `warp` for a GPU: the warp that the calling thread belongs to. Empty;
+/// every operation is one instruction or a few.
 ///
-/// Precondition: all 32 lanes of the warp are launched and call each operation together. A lane takes part or
-/// not by its `active` argument; no mask is taken from `__activemask()`, so results do not depend on how the
-/// compiler converges lanes.
+/// Precondition: all 32 lanes of the warp are launched and call each operation together. A lane
+/// takes part or not by its `active` argument; no mask is taken from `__activemask()`, so results
+/// do not depend on how the compiler converges lanes.
 struct cuda_warp {
     /// The operation of this name of the concept `warp`.
     /// @{
@@ -79,8 +80,8 @@ struct cuda_warp {
         asm("mov.u32 %0, %%laneid;" : "=r"(id));
         return id;
     }
-    /// `lane() & Distance`, said so that it takes one instruction: the compiler would shift the bit down
-    /// first.
+    /// Whether `lane() & Distance` is set, by one instruction; the compiler would shift the bit
+    /// down first.
     template <unsigned Distance>
     __device__ __forceinline__ bool is_upper() const {
         unsigned bit;
@@ -149,14 +150,14 @@ struct cuda_warp {
     }
     /// @}
 
-    /// Compiles to RED, which returns nothing. Sums of float, double, integers of 32 and 64 bits, `__half2`,
-    /// `__nv_bfloat162`; the other operations of integers.
+    /// Compiles to RED, which returns nothing. Sums of float, double, integers of 32 and 64 bits,
+    /// `__half2`, `__nv_bfloat162`; the other operations of integers.
     template <class Op, class Dst, class T>
     __device__ __forceinline__ void atomic(Op op, Dst dst, unsigned index, T v, bool active) const {
         if (active) detail::cuda_memory::atomic(op, dst(index), v);
     }
-    /// Whether `atomic_add_packed<K>` may add to to[0..K): in global memory, aligned, and on a compute
-    /// capability of 9.0 or more.
+    /// Whether `atomic_add_packed<K>` may add to to[0..K): in global memory, aligned, and on a
+    /// compute capability of 9.0 or more.
     template <unsigned K>
     __device__ __forceinline__ bool packs(const float* to) const {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
@@ -216,8 +217,8 @@ struct cuda_warp {
     /// @}
 #endif
 
-    /// The same flag, of which the compiler knows nothing. It would else split a loop on a flag that does not
-    /// change in it, and a warp with flags of both kinds would run both halves, waiting at every shuffle.
+    /// The flag, hidden from the compiler. Otherwise it splits a loop on a flag that is constant in
+    /// it; a warp with both flags would then run both halves and wait at every shuffle.
     __device__ __forceinline__ bool opaque(bool flag) const {
         unsigned known = flag;
         asm volatile("" : "+r"(known));
@@ -225,7 +226,7 @@ struct cuda_warp {
     }
 
 #if defined(WARPAGG_CHECKS)
-    /// With WARPAGG_CHECKS, a kernel that breaks a rule says so and traps.
+    /// With WARPAGG_CHECKS, a kernel that breaks a rule prints a sentence and traps.
     __device__ void require_uniform(const void* destination) const {
         int same = 0;
         __match_all_sync(all, reinterpret_cast<unsigned long long>(destination), &same);
@@ -240,7 +241,7 @@ struct cuda_warp {
 #if defined(WARPAGG_CHECKS)
     __device__ void stop(const char* sentence) const {
         if (lane() == 0) printf("warpagg: block %u, thread %u: %s\n", blockIdx.x, threadIdx.x, sentence);
-        __syncwarp();  // not before it has been said
+        __syncwarp();  // after the sentence is printed
         __trap();
     }
 #endif
@@ -250,8 +251,9 @@ struct cuda_warp {
 static_assert(warp<cuda_warp>);
 
 #if defined(WARPAGG_OLD_CUDA_NAME)
-/// The former place of `cuda_warp`. Without the macro this namespace does not exist: beside `using namespace
-/// warpagg` it would make `cuda::` ambiguous, since the CUDA toolkit has a namespace of that name.
+/// The former place of `cuda_warp`. Without the macro this namespace does not exist: beside `using
+/// namespace warpagg` it would make `cuda::` ambiguous, since the CUDA toolkit has a namespace of
+/// that name.
 namespace cuda {
 using warp [[deprecated("use warpagg::cuda_warp")]] = cuda_warp;
 }  // namespace cuda

@@ -8,7 +8,7 @@
 /// Models of the concept `warp` for a CPU.
 namespace warpagg::emulator {
 
-/// A warp of one lane: the oracle. What a kernel computes on it has no lanes to get wrong.
+/// A warp of one lane: the reference for the results of other models.
 struct serial {
     /// The operation of this name of the concept `warp`.
     /// @{

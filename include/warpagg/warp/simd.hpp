@@ -13,19 +13,19 @@ namespace warpagg::emulator {
 
 /// Counts nothing and costs nothing.
 struct uncounted {
-    static constexpr bool counts = false;  ///< whether there is something to add to
+    static constexpr bool counts = false;  ///< whether operations are counted
 };
 
-/// Adds what the warp does to `*to`. One thread at a time.
+/// Counts the operations of the warp in `*to`. Not thread-safe.
 struct counted {
-    static constexpr bool counts = true;  ///< whether there is something to add to
-    counters* to;                         ///< what is added to
+    static constexpr bool counts = true;  ///< whether operations are counted
+    counters* to;                         ///< the counters
 };
 
-/// The fast emulator: one thread runs a warp of `Size` lanes, 8, 16 or 32, all of them in SIMD registers.
-/// Lane values are `warpagg::simd_value<T, Size>`, so kernels are masked (`select`, uniform branches). Lanes
-/// commit in order of their number. With 8 lanes a value takes one register, where with 32, a GPU's number, a
-/// kernel of more than a few values has most of them in memory.
+/// The fast emulator: one thread runs a warp of 8, 16 or 32 lanes in SIMD registers. Lane values
+/// are `warpagg::simd_value<T, Size>`, so kernels are masked (`select`, uniform branches). Lanes
+/// commit in the order of their lane numbers. A value takes one register with 8 lanes; with 32
+/// lanes, as on a GPU, a kernel of more than a few values keeps most of them in memory.
 template <class Counting, unsigned Size = 32>
 struct basic_lanes : Counting {
     /// The operation of this name of the concept `warp`.
@@ -292,7 +292,8 @@ struct basic_lanes : Counting {
         for (; who != 0; who &= who - 1) f(std::countr_zero(who));
     }
 
-    /// f(i, records) for each chunk i of 8 lanes: where the record of each lies, or that of inactive ones.
+    /// f(i, records) for each chunk i of 8 lanes: where the record of each lies, or that of
+    /// inactive ones.
     template <class T, class U, class F>
     static WARPAGG_HD void for_each_chunk(T* first, U* of_inactive, const value<unsigned>& index,
                                           const mask& active, const F& f) {
@@ -379,9 +380,9 @@ struct basic_lanes : Counting {
     }
 };
 
-/// The fast emulator, for work.
+/// The fast emulator with 32 lanes.
 using lanes = basic_lanes<uncounted>;
-/// The same, which counts what it does: `counted_lanes{{&counters}}`.
+/// The same with counters: `counted_lanes{{&counters}}`.
 using counted_lanes = basic_lanes<counted>;
 /// A warp of fewer lanes: 8 or 16.
 template <unsigned Size>

@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// `simd_value<T, L>`: L values of T in SIMD registers. It uses the vector extension of GCC and Clang in
-/// chunks of 256 bits, because compilers do not vectorize plain arrays reliably. Not for nvcc, which rejects
-/// vector types in host-device templates: keep such code in `.cpp` files.
+/// `simd_value<T, L>`: L values of T in SIMD registers. It uses the vector extension of GCC and
+/// Clang in chunks of 256 bits, because compilers do not vectorize plain arrays reliably. Not for
+/// nvcc, which rejects vector types in host-device templates: keep such code in `.cpp` files.
 
 #if defined(__AVX__)
 #include <immintrin.h>
@@ -44,9 +44,9 @@ using chunk_t = typename chunk<T>::type;
 
 }  // namespace detail
 
-/// L values of T, one per lane: `float`, `double`, integers of 32 and 64 bits, `bool`. Has T's arithmetic and
-/// bitwise operators, and comparisons, which give `simd_value<bool, L>`; all work lane by lane, and a plain T
-/// stands for the same value in every lane.
+/// L values of T, one per lane: `float`, `double`, integers of 32 and 64 bits, `bool`. Has T's
+/// arithmetic and bitwise operators, and comparisons, which give `simd_value<bool, L>`; all work
+/// lane by lane, and a plain T stands for the same value in every lane.
 template <class T, int L>
 struct simd_value {
     /// What a lane holds, and how chunks of lanes are laid out.
@@ -54,7 +54,7 @@ struct simd_value {
     using scalar = T;
     using element = detail::element_t<T>;
     using chunk = detail::chunk_t<T>;
-    static constexpr int width = detail::chunk_bytes / static_cast<int>(sizeof(element));  // lanes a chunk
+    static constexpr int width = detail::chunk_bytes / static_cast<int>(sizeof(element));  // lanes per chunk
     static constexpr int chunks = L / width;
     static constexpr bool has_order = !std::is_same_v<T, bool>;
     static_assert(L % width == 0);
@@ -62,7 +62,7 @@ struct simd_value {
     chunk part[chunks];
     /// @}
 
-    /// Of no particular value.
+    /// Uninitialized.
     simd_value() = default;
     /// The same value in every lane.
     WARPAGG_HD simd_value(T value) {  // NOLINT: implicit, so that uniform values mix with lane values
@@ -76,7 +76,7 @@ struct simd_value {
         for (auto& p : part) p = e - chunk{};
     }
 
-    /// The value of one lane, as it is stored: of a flag, -1 or 0.
+    /// The stored value of one lane; a flag is stored as -1 or 0.
     WARPAGG_HD element raw(int lane) const { return part[lane / width][lane % width]; }
     /// The value of one lane, 0 <= lane < L.
     WARPAGG_HD T operator[](int lane) const {
@@ -86,7 +86,7 @@ struct simd_value {
             return raw(lane);
         }
     }
-    /// Gives one lane a value.
+    /// Sets the value of one lane.
     WARPAGG_HD void set(int lane, T value) {
         if constexpr (std::is_same_v<T, bool>) {
             part[lane / width][lane % width] = value ? -1 : 0;
@@ -116,7 +116,7 @@ struct simd_value {
     WARPAGG_LANES_OPERATOR(>>)
 #undef WARPAGG_LANES_OPERATOR
 
-    /// Lane by lane; flags are all looked at, without short-circuit.
+    /// Lane by lane, without short-circuit.
     /// @{
     friend WARPAGG_HD simd_value operator-(const simd_value& a) {
         simd_value r;
@@ -180,7 +180,7 @@ struct simd_value {
     }
 };
 
-/// What `math` has for scalars, lane by lane.
+/// The functions of `math`, lane by lane.
 /// @{
 template <class T, int L>
 WARPAGG_HD simd_value<T, L> select(const simd_value<bool, L>& mask, const simd_value<T, L>& yes,
@@ -211,7 +211,7 @@ requires(!std::is_same_v<T, bool>)
     WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
 #if defined(__AVX__)
-        if constexpr (std::is_same_v<T, float>) {  // of a constant GCC would make a comparison and a blend
+        if constexpr (std::is_same_v<T, float>) {  // GCC would compile a constant to a comparison and a blend
             r.part[i] = reinterpret_cast<typename simd_value<T, L>::chunk>(
                 _mm256_min_ps(reinterpret_cast<__m256>(b.part[i]), reinterpret_cast<__m256>(a.part[i])));
             continue;
@@ -228,7 +228,7 @@ requires(!std::is_same_v<T, bool>)
     WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
 #if defined(__AVX__)
-        if constexpr (std::is_same_v<T, float>) {  // of a constant GCC would make a comparison and a blend
+        if constexpr (std::is_same_v<T, float>) {  // GCC would compile a constant to a comparison and a blend
             r.part[i] = reinterpret_cast<typename simd_value<T, L>::chunk>(
                 _mm256_max_ps(reinterpret_cast<__m256>(b.part[i]), reinterpret_cast<__m256>(a.part[i])));
             continue;
@@ -318,9 +318,9 @@ WARPAGG_HD simd_value<To, L> convert(const simd_value<From, L>& a) {
     return r;
 }
 
-/// 2^a, within 1 ulp for a in [-126, 128); beyond, the nearest of these counts, as no caller needs denormals
-/// and they make x86 several times slower. 2^a = 2^n 2^f with n = round(a), f in [-1/2, 1/2]; 2^f by the
-/// polynomial of degree 6 with p(0) = 1 and least relative error, 2e-9.
+/// 2^a, within 1 ulp for a in [-126, 128); beyond, the nearest of these counts, as no caller needs
+/// denormals and they make x86 several times slower. 2^a = 2^n 2^f with n = round(a), f in [-1/2,
+/// 1/2]; 2^f by the polynomial of degree 6 with p(0) = 1 and least relative error, 2e-9.
 template <int L>
 WARPAGG_HD simd_value<float, L> exp2(const simd_value<float, L>& x) {
     using real = simd_value<float, L>;
@@ -352,9 +352,9 @@ WARPAGG_HD simd_value<double, L> exp2(const simd_value<double, L>& a) {
     return r;
 }
 
-/// log2 of a, within 3 ulp for normal a > 0; -127 for zero, and of no meaning for all others. With a = 2^n m
-/// and m in [sqrt(1/2), sqrt(2)), log2(m) is 2 / ln 2 artanh(s) of s = (m - 1) / (m + 1), whose series ends
-/// at s^11, where the rest is 2e-11 of it.
+/// log2 of a, within 3 ulp for normal a > 0; -127 for zero, and of no meaning for all others. With
+/// a = 2^n m and m in [sqrt(1/2), sqrt(2)), log2(m) is 2 / ln 2 artanh(s) of s = (m - 1) / (m + 1),
+/// whose series ends at s^11, where the rest is 2e-11 of it.
 template <int L>
 WARPAGG_HD simd_value<float, L> log2(const simd_value<float, L>& a) {
     using real = simd_value<float, L>;
@@ -421,8 +421,8 @@ WARPAGG_HD T uniform(const simd_value<T, L>& a) {
 }
 /// @}
 
-/// Beside the scalar ones, for masked code that names them in full. Unqualified calls find them by their
-/// arguments.
+/// For masked code that names them in full; unqualified calls find them by argument-dependent
+/// lookup.
 namespace math {
 using warpagg::abs;
 using warpagg::convert;

@@ -3,9 +3,10 @@
 #pragma once
 
 /// @file
-/// One stack of execution, and how to go from one to another: by a few instructions on x86-64; elsewhere, and
-/// with WARPAGG_UCONTEXT, by ucontext, which asks the system for the signal mask at every switch. Both
-/// sanitizers that follow stacks are told. Floating-point modes are the thread's, not the fiber's.
+/// Contexts of execution and switches between them: a few instructions on x86-64; on other
+/// machines, and with WARPAGG_UCONTEXT, ucontext, which asks the system for the signal mask at
+/// every switch. AddressSanitizer and ThreadSanitizer are informed. Floating-point modes belong to
+/// the thread, not to the fiber.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +22,7 @@
 namespace warpagg::emulator::detail {
 
 #if defined(WARPAGG_FIBER_SWITCH_X86_64)
-/// Pushes what the ABI asks a function to keep, leaves the stack pointer in *from and goes on from `to`.
+/// Pushes the callee-saved registers, stores the stack pointer in *from and continues at `to`.
 __attribute__((naked, noinline)) WARPAGG_NO_SANITIZE inline void switch_stack(void** /*from*/, void* /*to*/) {
     asm volatile(
         "pushq %rbp\n pushq %rbx\n pushq %r12\n pushq %r13\n pushq %r14\n pushq %r15\n"
@@ -38,8 +39,8 @@ class context {
     context& operator=(const context&) = delete;
     ~context() { forget_fiber(); }
 
-    /// The next switch to this context calls `entry` on the given stack, whose former content is lost.
-    /// `entry` must not return.
+    /// The next switch to this context calls `entry` on the given stack, whose former content is
+    /// lost. `entry` must not return.
     void start_at(char* stack, std::size_t size, void (*entry)()) {
         forget_fiber();
         bottom_ = stack;
@@ -50,7 +51,7 @@ class context {
 #if defined(WARPAGG_FIBER_SWITCH_X86_64)
         constexpr std::size_t kept = 6;
         auto** top = reinterpret_cast<void**>((reinterpret_cast<std::uintptr_t>(stack) + size) / 16 * 16);
-        *--top = nullptr;  // who unwinds stops here
+        *--top = nullptr;  // unwinding stops here
         *--top = reinterpret_cast<void*>(entry);
         for (std::size_t i = 0; i < kept; ++i) *--top = nullptr;
         pointer_ = top;
@@ -63,8 +64,8 @@ class context {
 #endif
     }
 
-    /// Leaves this context, which must be the running one, for `to`, and comes back when somebody switches
-    /// here.
+    /// Switches from this context, which must be the running one, to `to`. Returns when another
+    /// context switches back.
     void switch_to(context& to) {
         if (tsan_fiber_ == nullptr) tsan_fiber_ = sanitizers::current_fiber();
         to.came_from_ = this;
@@ -78,7 +79,7 @@ class context {
         arrived(fake_stack);
     }
 
-    /// To be called first of all by an `entry`, on its own context.
+    /// An `entry` calls this first, on its own context.
     void arrived(void* fake_stack = nullptr) {
         const void* bottom = nullptr;
         std::size_t size = 0;

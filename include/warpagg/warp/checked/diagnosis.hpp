@@ -11,7 +11,7 @@
 
 namespace warpagg::emulator {
 
-/// What a kernel did wrong; docs/unit_testing.md tells each with an example.
+/// The rule that a kernel violated; docs/unit_testing.md shows an example of each.
 enum class diagnosis {
     none,                     ///< nothing
     lane_not_in_mask,         ///< a lane calls a masked operation with a mask that lacks its own bit
@@ -23,7 +23,7 @@ enum class diagnosis {
     inactive_lane_read,       ///< memory depends on a value read from a lane that took no part
     idle_warp,                ///< `assume_busy`, but no lane is active
     mixed_access,             ///< atomic and plain accesses to one address, not ordered by a barrier or sync
-    data_race,                ///< a plain write and another plain access to one address, not ordered either
+    data_race,                ///< a plain write and another plain access to one address, not ordered
     barrier_not_reached,      ///< a thread has returned, and others wait for it at the barrier
 };
 
@@ -44,20 +44,20 @@ inline const char* name(diagnosis what) {
     return names[static_cast<unsigned>(what)];
 }
 
-/// How a launch went.
+/// The result of a launch.
 struct report {
-    diagnosis what = diagnosis::none;  ///< the rule that was broken
-    call_site at{};                    ///< where: a call of the kernel's, in the library or of the warp
-    call_site other{};                 ///< the other place that has a part in it; no file if there is none
-    std::uint32_t lanes = 0;           ///< bit i: lane i has done it
-    unsigned block = 0;                ///< where it was broken
-    unsigned warp = 0;                 ///< where it was broken, within the block
-    std::string sentence;              ///< for people
+    diagnosis what = diagnosis::none;  ///< the violated rule
+    call_site at{};                    ///< the call in the kernel
+    call_site other{};                 ///< the other call involved; `file` is null if there is none
+    std::uint32_t lanes = 0;           ///< bit i: lane i violated the rule
+    unsigned block = 0;                ///< of these lanes
+    unsigned warp = 0;                 ///< of these lanes, within the block
+    std::string sentence;              ///< a description
     std::uint64_t seed = 0;            ///< of the schedule, whether or not there was a diagnosis
 
-    /// Whether no rule was broken.
+    /// Whether no rule was violated.
     bool ok() const { return what == diagnosis::none; }
-    /// Everything, in lines for people; nothing if ok.
+    /// The whole report as text; empty if ok.
     std::string text() const;
 };
 

@@ -41,7 +41,7 @@ inline violation out_of_step(const call_site& at, std::uint32_t lanes, std::uint
                 " in different iterations of a loop."};
 }
 
-/// No lane of the warp can go on, and some wait for others.
+/// No lane of the warp can continue, and some wait for others.
 inline violation stuck(const warp_state& w) {
     const lane_state& first = w.lane[first_of(w.waiting)];
     std::uint32_t here = 0;
@@ -124,7 +124,7 @@ inline violation conflict(const access& before, const access& now) {
                                            : ", and nothing orders blocks of one launch.")};
 }
 
-/// `at` writes what it had from `read`.
+/// The write at `at` depends on the value of `read`.
 inline violation inactive_lane_read(const undefined_read& read, const call_site& at) {
     const unsigned lane = read.thread % warp_state::size;
     return {diagnosis::inactive_lane_read, at, read.at, 1u << lane,

@@ -15,15 +15,15 @@
 
 namespace warpagg::emulator::detail {
 
-/// A context with a stack of its own. A page below the stack belongs to nobody, so that a lane that overflows
-/// its stack crashes there.
+/// A context with its own stack. The page below the stack is not accessible, so that a stack
+/// overflow crashes.
 class fiber {
   public:
-    /// Memory is taken from the system only as far as a lane uses it.
+    /// The system provides memory only for the part of the stack that a lane uses.
     static constexpr std::size_t stack_size = 256 * 1024;
 
-    /// Fibers that do the same lie at different offsets in their stacks, by `number`: at the same one, all of
-    /// them would share a cache set.
+    /// `number` shifts the frames of a fiber within its stack; otherwise the same frames of all
+    /// fibers would share a cache set.
     explicit fiber(std::size_t number) : size_(stack_size - number % 32 * (17 * 64)) {
         void* memory = mmap(nullptr, page() + stack_size, PROT_READ | PROT_WRITE,
                             MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -40,13 +40,12 @@ class fiber {
         munmap(mapping_, page() + stack_size);
     }
 
-    /// Makes sure that the next switch to its context runs `loop` from its beginning, or on from where it has
-    /// said `park`.
+    /// The next switch to the context starts `loop`, or continues it after `park`.
     void prepare(void (*loop)()) {
         if (!parked_) context_.start_at(stack(), size_, loop);
         parked_ = false;
     }
-    /// Its loop is about to leave, and can go round again.
+    /// Called by the loop before it switches away at the end of a round.
     void park() { parked_ = true; }
 
     context& own_context() { return context_; }
@@ -68,7 +67,7 @@ class fiber {
     bool parked_ = false;
 };
 
-/// The fibers that a thread's launches use, kept from one launch to the next.
+/// The fibers of a thread, reused by its launches.
 class fiber_pool {
   public:
     static fiber_pool& of_this_thread() {

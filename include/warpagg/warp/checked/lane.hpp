@@ -21,13 +21,13 @@ void for_each_lane(std::uint32_t lanes, F f) {
     for (; lanes != 0; lanes &= lanes - 1) f(first_of(lanes));
 }
 
-/// A lane at a collective: what it waits for, and its part in it.
+/// A lane that waits at a collective.
 struct arrival {
-    std::uint32_t mask;   ///< the lanes that are to meet
-    bool all_lanes;       ///< whether lanes of the mask that have returned are missed
-    unsigned value_size;  ///< of the type in question
-    call_site at;         ///< in the library, if the library does it
-    void* operands;       ///< this lane's, of whatever type `complete` knows
+    std::uint32_t mask;   ///< the lanes that meet
+    bool all_lanes;       ///< whether a lane of the mask that has returned is an error
+    unsigned value_size;  ///< size of the operand type
+    call_site at;         ///< in the library, if the library calls the collective
+    void* operands;       ///< the operands of this lane, of a type that `complete` knows
     void (*complete)(simulator&, unsigned warp, std::uint32_t lanes);  ///< null for activemask
 };
 
@@ -39,10 +39,10 @@ struct loop_frame {
 struct lane_state {
     bool waiting = false, returned = false;
     arrival at{};
-    std::vector<call_site> calls;   ///< of the library, outermost first
-    std::vector<loop_frame> loops;  ///< those over `iterations` that the lane is in, outermost first
+    std::vector<call_site> calls;   ///< active calls of the library, outermost first
+    std::vector<loop_frame> loops;  ///< active loops over `iterations`, outermost first
 
-    /// The kernel's own line, whatever the library does there.
+    /// The line in the kernel, also for calls within the library.
     const call_site& kernel_site(const call_site& here) const { return calls.empty() ? here : calls.front(); }
     const call_site& site() const { return kernel_site(at.at); }
 
@@ -68,8 +68,7 @@ struct warp_state {
     std::uint32_t returned = 0;  ///< from the kernel
     std::uint32_t in_barrier = 0;
 
-    /// known[a][b]: how far lane a knows what lane b did, counted in synchronizations of b; its own come
-    /// first.
+    /// Vector clocks: known[a][b] is the number of synchronizations of lane b that lane a has seen.
     std::array<std::array<std::uint32_t, size>, size> known{};
 
     warp_state() {
@@ -78,7 +77,7 @@ struct warp_state {
 
     bool stands() const { return (waiting | returned | in_barrier) == ~std::uint32_t{0}; }
 
-    /// Whatever these lanes have done is before whatever they will do.
+    /// Orders all earlier accesses of these lanes before all their later ones.
     void synchronize(std::uint32_t lanes) {
         std::array<std::uint32_t, size> all{};
         for_each_lane(lanes, [&](unsigned a) {

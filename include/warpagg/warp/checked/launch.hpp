@@ -12,21 +12,21 @@
 
 namespace warpagg::emulator {
 
-/// What a kernel is launched with.
+/// The parameters of a launch.
 struct grid {
-    unsigned blocks = 1;                  ///< how many
-    unsigned threads = 32;                ///< in a block: a multiple of 32, up to 1024
-    std::optional<std::uint64_t> seed{};  ///< of the schedule; else WARPAGG_SEED of the environment, else 1
-    counters* count = nullptr;  ///< to what the warps add what they do, as `counted_lanes` does; or null
+    unsigned blocks = 1;                  ///< number of blocks
+    unsigned threads = 32;                ///< per block: a multiple of 32, up to 1024
+    std::optional<std::uint64_t> seed{};  ///< of the schedule; default: $WARPAGG_SEED, or 1
+    counters* count = nullptr;            ///< counts the operations of all warps; or null
 };
 
-/// Runs `kernel(const checked& w)` once per thread: the blocks one after the other, in an order that the seed
-/// draws; within a block all threads side by side, taking turns as the seed draws. Returns how it went; after
-/// a diagnosis no lane goes on, and the destructors of what lives in their stacks do not run. An exception
-/// that leaves the kernel leaves `try_launch` too.
+/// Runs `kernel(const checked& w)` once per thread. Blocks run one after the other, in an order
+/// drawn from the seed; the threads of a block take turns, as drawn from the seed. After a
+/// diagnosis the launch ends: lanes do not continue, and destructors of objects on their stacks do
+/// not run. An exception that leaves the kernel leaves `try_launch`, too.
 ///
-/// Cost: a switch of fibers for each operation of each lane: slow, but it is for tests. One launch uses
-/// one thread of the process; several threads may launch at the same time.
+/// Cost: one switch of fibers per operation of each lane, which is slow, but fit for tests. A
+/// launch uses one thread of the process; several threads may launch at the same time.
 template <class Kernel>
 report try_launch(const grid& g, const Kernel& kernel) {
     if (g.threads == 0 || g.threads > 1024 || g.threads % 32 != 0) {
@@ -40,7 +40,7 @@ report try_launch(const grid& g, const Kernel& kernel) {
     });
 }
 
-/// The same, but a diagnosis is printed on stderr and ends the program.
+/// The same, but prints a diagnosis on stderr and aborts the program.
 template <class Kernel>
 void launch(const grid& g, const Kernel& kernel) {
     const report r = try_launch(g, kernel);

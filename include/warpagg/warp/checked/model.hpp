@@ -12,16 +12,16 @@
 
 namespace warpagg::emulator {
 
-/// A warp of the unit-test machine, as one of its lanes sees it: each lane is a fiber that runs the kernel by
-/// itself, so kernels are ordinary scalar code (`if`, loops, early returns), `value_t<checked, T>` is `T`,
-/// and whatever breaks a rule is diagnosed. `try_launch` makes them; docs/unit_testing.md tells how to use
-/// it.
+/// The checked model of `warp`, as one lane sees it. Each lane is a fiber that runs the kernel by
+/// itself, so kernels are ordinary scalar code (`if`, loops, early returns), and `value_t<checked,
+/// T>` is `T`. Violations of the rules are diagnosed. `try_launch` creates the lanes;
+/// docs/unit_testing.md shows how to use it.
 ///
-/// The operations of the concept, `sync()` and `barrier()` are for all lanes, and a lane that has returned is
-/// missed. Those that end in `_sync`, and `sync(mask)`, are CUDA's: for the lanes of the mask that have not
-/// returned. `load`, `store` and the like are a lane's own and may stand in branches. As on CUDA, only `sync`
-/// and `barrier` order accesses to memory. The last argument of each is the place of the call; nobody gives
-/// it.
+/// All lanes call the operations of the concept, `sync()` and `barrier()`; a lane that has returned
+/// is an error. The operations that end in `_sync`, and `sync(mask)`, are those of CUDA, for the
+/// lanes of the mask that have not returned. A single lane may call `load`, `store` and the like,
+/// also in branches. As on CUDA, only `sync` and `barrier` order memory accesses. The last
+/// parameter of each operation is the place of the call; leave it to its default.
 class checked {
   public:
     /// The operation of this name of the concept `warp`.
@@ -31,7 +31,7 @@ class checked {
     using value = T;
     /// @}
 
-    /// Made by `launch`.
+    /// Called by `launch`.
     explicit checked(detail::simulator& m) : simulator_(&m) {}
 
     unsigned lane() const { return simulator_->lane(); }            ///< in the warp
@@ -40,7 +40,7 @@ class checked {
     unsigned block_index() const { return simulator_->block(); }    ///< in the grid
     unsigned grid_size() const { return simulator_->blocks(); }     ///< in blocks
 
-    // ------------------------------------------------------------------------------ all lanes together
+    // ------------------------------------------------------- for all lanes
 
     /// The operation of this name of the concept `warp`.
     /// @{
@@ -67,8 +67,8 @@ class checked {
 
     /// @}
 
-    /// All lanes come here; the active ones then commit one after the other, in an order that the seed draws,
-    /// and lanes of other warps in between.
+    /// All lanes call this; the active ones commit one after the other, in an order drawn from the
+    /// seed, with lanes of other warps in between.
     template <class Op, class Dst, class T>
     WARPAGG_OUT_OF_LINE void atomic(Op op, Dst dst, unsigned index, T v, bool active,
                                     call_site at = call_site::here("atomic")) const {
@@ -82,15 +82,15 @@ class checked {
         detail::atomic(op, to, v);
     }
 
-    /// `__syncwarp()`: what the lanes did to memory is before what they will do.
+    /// `__syncwarp()`: orders the earlier memory accesses of all lanes before the later ones.
     void sync(call_site at = call_site::here("sync")) const { synchronize(all_lanes, at); }
     /// `__syncthreads()`.
     void barrier(call_site at = call_site::here("barrier")) const { simulator_->barrier(at); }
 
-    // -------------------------------------------------------------------------- the lanes of a mask: CUDA's
+    // ------------------------------------------------------- for the lanes of a mask
 
-    /// CUDA's function of this name, with two underscores before it. All lanes of the mask that have not
-    /// returned call it, with the same mask.
+    /// The CUDA function of this name with two leading underscores. All lanes of the mask that have
+    /// not returned call it with the same mask.
     /// @{
     std::uint32_t ballot_sync(std::uint32_t mask, bool p,
                               call_site at = call_site::here("ballot_sync")) const {
@@ -104,8 +104,8 @@ class checked {
                                  call_site at = call_site::here("match_any_sync")) const {
         return equal({mask}, key, at);
     }
-    /// What is read from a lane that is not in the mask, or has returned, is undefined: memory must not
-    /// depend on it.
+    /// A value read from a lane that is not in the mask, or has returned, is undefined; memory must
+    /// not depend on it.
     template <class T>
     T shfl_sync(std::uint32_t mask, T v, unsigned from, call_site at = call_site::here("shfl_sync")) const {
         return exchange({mask}, v, from % size, at);
@@ -124,15 +124,16 @@ class checked {
     /// `__syncwarp(mask)`.
     void sync(std::uint32_t mask, call_site at = call_site::here("sync")) const { synchronize({mask}, at); }
 
-    /// `__activemask()`: some of the lanes that are here, this one among them. Those that it names get the
-    /// same answer; beyond that it is as the seed draws, for a compiler may take lanes apart as it likes.
+    /// `__activemask()`: some of the lanes that wait at this line, including the caller. The named
+    /// lanes get the same answer. The seed decides the rest, because a compiler may split lanes in
+    /// any way.
     std::uint32_t activemask(call_site at = call_site::here("activemask")) const {
         std::uint32_t mask = 0;
         simulator_->meet({~std::uint32_t{0}, false, 0, at, &mask, nullptr});
         return mask;
     }
 
-    // ------------------------------------------------------------------------------------ a lane's own
+    // ------------------------------------------------------- for a single lane
 
     /// The operation of this name of the concept `warp`.
     /// @{
@@ -171,13 +172,14 @@ class checked {
     }
     /// @}
 
-    /// The block's array of `n` values that this line declares, as `__shared__ T a[n]` does; not initialized.
+    /// An uninitialized array of `n` values that the block shares and that this line declares, as
+    /// `__shared__ T a[n]` does.
     template <class T>
     watched<T> shared(std::size_t n, call_site at = call_site::here("shared")) const {
         return {static_cast<T*>(simulator_->shared().at(at, n * sizeof(T))), n};
     }
 
-    // ------------------------------------------------------------------------- what the library tells
+    // ------------------------------------------------------- for the library
 
     /// Called by the library, not by kernels.
     /// @{
@@ -224,7 +226,7 @@ class checked {
     };
     static constexpr who all_lanes{~std::uint32_t{0}, true};
 
-    /// What the lanes that have met brought.
+    /// The operands of the lanes that have met.
     template <class Operands>
     struct group {
         detail::simulator& m;

@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// What AddressSanitizer and ThreadSanitizer want to know of fibers; nothing without them.
+/// Informs AddressSanitizer and ThreadSanitizer of fibers; empty without them.
 
 #include <cstddef>
 
@@ -34,12 +34,12 @@ void AnnotateIgnoreWritesBegin(const char* file, int line);
 }
 #endif
 
-/// Before a function: no sanitizer looks at what it does.
+/// Excludes a function from all sanitizers.
 #define WARPAGG_NO_SANITIZE __attribute__((no_sanitize("address", "thread", "undefined")))
 
 namespace warpagg::emulator::detail {
 
-/// Forgets what frames a stack had.
+/// Removes the marks of former frames of a stack.
 inline void unpoison([[maybe_unused]] const void* stack, [[maybe_unused]] std::size_t size) {
 #if defined(WARPAGG_ASAN)
     __asan_unpoison_memory_region(stack, size);
@@ -68,14 +68,14 @@ inline void destroy_fiber([[maybe_unused]] void* fiber) {
 #endif
 }
 
-/// To be set in a child process. There ThreadSanitizer sees nothing but races, as it ignores what orders
-/// accesses after a fork, and it takes fibers for threads.
+/// Whether this is a child process after a fork. There ThreadSanitizer reports false races, since
+/// it ignores synchronization after a fork and takes fibers for threads.
 inline bool& forked() {
     static bool yes = false;
     return yes;
 }
 
-/// Right before the switch.
+/// Called right before a switch.
 WARPAGG_NO_SANITIZE inline void start_switch([[maybe_unused]] void** fake_stack,
                                              [[maybe_unused]] const void* bottom,
                                              [[maybe_unused]] std::size_t size,
@@ -87,7 +87,7 @@ WARPAGG_NO_SANITIZE inline void start_switch([[maybe_unused]] void** fake_stack,
     __tsan_switch_to_fiber(fiber, 0);
 #endif
 }
-/// Right after it; tells the stack that was left.
+/// Called right after a switch; returns the stack that was left.
 WARPAGG_NO_SANITIZE inline void finish_switch([[maybe_unused]] void* fake_stack,
                                               [[maybe_unused]] const void** bottom,
                                               [[maybe_unused]] std::size_t* size) {

@@ -11,7 +11,7 @@
 
 namespace warpagg::emulator::detail {
 
-/// Runs the threads of a block, each a fiber, one at a time; which goes on next is drawn at random.
+/// Runs the threads of a block, each a fiber, one at a time, in random order.
 class scheduler {
   public:
     explicit scheduler(random_source& random) : random_(random) {}
@@ -24,8 +24,8 @@ class scheduler {
         }
     }
 
-    /// Each of `threads` fibers runs `loop`, which must call `begin` once and then `finish` after each round.
-    /// Returns when all have finished or one has called `abandon`.
+    /// Each of `threads` fibers runs `loop`, which must call `begin` once and then `finish` after
+    /// each round. Returns when all have finished or one has called `abandon`.
     void run(unsigned threads, void (*loop)()) {
         while (fibers_.size() < threads) fibers_.push_back(fiber_pool::of_this_thread().take());
         runnable_.clear();
@@ -39,7 +39,7 @@ class scheduler {
 
     unsigned current() const { return current_; }
     void begin() { fibers_[current_]->own_context().arrived(); }
-    /// Whether it lies on the running fiber's stack.
+    /// Whether the address lies on the stack of the running fiber.
     bool on_stack(const void* address) const { return fibers_[current_]->has(address); }
 
     /// The running fiber sleeps until it is woken. Another one must be runnable.
@@ -50,13 +50,13 @@ class scheduler {
         if (&next != &me) me.switch_to(next);
     }
     void wake(unsigned thread) { runnable_.push_back(thread); }
-    /// Others may go first.
+    /// Lets other fibers run first.
     void let_others_run() {
         wake(current_);
         sleep();
     }
 
-    /// The running fiber is done with its round; it comes back from here in another one, or another launch.
+    /// Ends the round of the running fiber; returns in the next round or the next launch.
     void finish() {
         fiber& me = *fibers_[current_];
         me.park();
@@ -67,7 +67,7 @@ class scheduler {
             me.own_context().switch_to(fibers_[current_]->own_context());
         }
     }
-    /// Back to the caller of `run`; no fiber goes on.
+    /// Returns to the caller of `run`; no fiber continues.
     [[noreturn]] void abandon() {
         fibers_[current_]->own_context().switch_to(own_);
         __builtin_unreachable();

@@ -10,8 +10,8 @@
 
 namespace warpagg::emulator {
 
-/// The seed in the environment variable WARPAGG_SEED, by which a failure is replayed; none if it is not set.
-/// One that is not a number ends the program.
+/// The seed in the environment variable WARPAGG_SEED, to replay a failure; none if the variable is
+/// not set. Aborts the program if it is not a number.
 inline std::optional<std::uint64_t> seed_in_environment() {
     const char* text = std::getenv("WARPAGG_SEED");
     if (text == nullptr || *text == '\0') return std::nullopt;
@@ -26,7 +26,7 @@ inline std::optional<std::uint64_t> seed_in_environment() {
 
 namespace detail {
 
-/// Says, when it goes by an exception or is told of a failure, which seed was at work.
+/// Prints the seed if it is destroyed by an exception or told of a failure.
 struct seed_on_failure {
     std::uint64_t seed;
     bool passed = false;
@@ -39,13 +39,14 @@ struct seed_on_failure {
 
 }  // namespace detail
 
-/// Calls f(seed) for the seeds 1 to n, or, if WARPAGG_SEED is set, for that one alone. Stops at the first
-/// that fails, by returning false or by an exception, and says on stderr which it was. Returns whether all
-/// passed; an `f` that returns nothing fails by exceptions only.
+/// Calls f(seed) for the seeds 1 to n, or only for WARPAGG_SEED if that is set. Stops at the first
+/// failure, which is an exception or the return value false, and prints its seed on stderr. Returns
+/// whether all passed. An `f` that returns void fails by exceptions only.
 ///
 /// ```cpp
-/// emulator::for_each_seed(200, [](std::uint64_t seed) { return emulator::try_launch({.seed = seed},
-/// kernel).ok(); });
+/// emulator::for_each_seed(200, [](std::uint64_t seed) {
+///     return emulator::try_launch({.seed = seed}, kernel).ok();
+/// });
 /// ```
 template <class F>
 bool for_each_seed(std::uint64_t n, F f) {
@@ -67,7 +68,7 @@ bool for_each_seed(std::uint64_t n, F f) {
 
 namespace detail {
 
-/// Splitmix64: what a seed makes of the schedule.
+/// Splitmix64, the source of random numbers for the schedule.
 class random_source {
   public:
     explicit random_source(std::uint64_t seed) : state_(seed) {}

@@ -16,20 +16,20 @@ namespace warpagg::emulator::detail {
 enum class access_kind : std::uint8_t { read, write, atomic };
 
 struct access {
-    unsigned block, thread;  ///< who; threads count from 0 in each block
-    unsigned phase;          ///< how many barriers the block had passed
-    unsigned clock;          ///< how many times the lane had synchronized with others of its warp
+    unsigned block, thread;  ///< the accessing thread; threads count from 0 in each block
+    unsigned phase;          ///< number of barriers that the block had passed
+    unsigned clock;          ///< number of synchronizations of the lane within its warp
     access_kind kind;
     std::uint8_t bytes;  ///< which bytes of the word
     call_site at;
 };
 
-/// Remembers who has accessed which 4-byte word of memory, up to the last 128 accesses to each that matter.
+/// Remembers the accesses to each 4-byte word of memory, up to the last 128 relevant ones per word.
 class shadow_memory {
   public:
-    /// Takes note of an access to `size` bytes. Returns an earlier one that conflicts with it (another
-    /// thread's, at least one of the two a plain write, or one plain and one atomic) and that
-    /// `ordered(earlier)` does not order before it; null if there is none.
+    /// Records an access to `size` bytes. Returns an earlier access of another thread that
+    /// conflicts with it and for which `ordered(earlier)` is false, or null. Accesses conflict if
+    /// one is a plain write, or if one is plain and one atomic.
     template <class Ordered>
     const access* note(const void* address, std::size_t size, access a, Ordered ordered) {
         const auto first = reinterpret_cast<std::uintptr_t>(address), end = first + size;
@@ -43,7 +43,7 @@ class shadow_memory {
         return nullptr;
     }
 
-    /// What has been is no concern of who comes now.
+    /// Forgets all accesses to these bytes.
     void forget(const void* address, std::size_t size) {
         const auto first = reinterpret_cast<std::uintptr_t>(address);
         for (std::uintptr_t word = first / 4; word * 4 < first + size; ++word) *newest(word) = none;
@@ -69,7 +69,8 @@ class shadow_memory {
         return &(*last_page_)[word % words_per_page];
     }
 
-    /// An earlier access need not be kept if whatever conflicts with it conflicts with `now` as well.
+    /// Whether the earlier access can be dropped, because every conflict with it is also a conflict
+    /// with `now`.
     static bool covered(const access& before, const access& now) {
         return (now.kind == access_kind::write || now.kind == before.kind) &&
                (before.bytes & ~now.bytes) == 0;

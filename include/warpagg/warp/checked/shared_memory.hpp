@@ -12,10 +12,12 @@
 
 namespace warpagg::emulator::detail {
 
-/// A block's shared arrays, each known by the place that declares it, as a `__shared__` array is.
+/// The shared arrays of a block, each identified by the place that declares it, as a `__shared__`
+/// array is.
 class shared_memory {
   public:
-    /// The next block uses the same memory; `forget(first, size)` is told of it.
+    /// Prepares for the next block, which uses the same memory; calls `forget(first, size)` for
+    /// each array.
     template <class F>
     void begin_block(F forget) {
         for (array& a : arrays_) {
@@ -39,7 +41,7 @@ class shared_memory {
         std::size_t size;
         std::unique_ptr<std::byte[]> first;
     };
-    /// What a block finds there is not zero: floats are NaN.
+    /// Fills the array with bits that are not zero; floats are NaN.
     static void spoil(array& a) { std::memset(a.first.get(), 0xff, a.size); }
 
     std::vector<array> arrays_;

@@ -18,13 +18,14 @@
 #include "shared_memory.hpp"
 #include "undefined.hpp"
 
-// The library unrolls its loops over a warp's operations: what each does stays one function, for the
-// compiler's time.
+// The library unrolls its loops over operations of a warp; functions that are not inlined keep
+// compile times short.
 #define WARPAGG_OUT_OF_LINE __attribute__((noinline))
 
 namespace warpagg::emulator::detail {
 
-/// What a launch runs on: the lanes of one block at a time, what they wait for, and what they did to memory.
+/// Runs the lanes of a launch, one block at a time: what the lanes wait for, and their memory
+/// accesses.
 class simulator {
   public:
     simulator(unsigned blocks, unsigned threads, std::uint64_t seed, counters* count)
@@ -34,13 +35,14 @@ class simulator {
     simulator(const simulator&) = delete;
     simulator& operator=(const simulator&) = delete;
 
-    /// The one that the calling lane runs on; null outside of kernels.
+    /// The simulator of the calling lane; null outside of kernels.
     static simulator*& running() {
         static thread_local simulator* m = nullptr;
         return m;
     }
 
-    /// Runs `body` once per thread, block after block in an order drawn at random, until a diagnosis.
+    /// Runs `body` once per thread, block after block in an order drawn at random, until a
+    /// diagnosis.
     template <class F>
     report run(const F& body) {
         body_ = [](simulator& m, const void* f) { (*static_cast<const F*>(f))(m); };
@@ -64,7 +66,7 @@ class simulator {
         return std::move(report_);
     }
 
-    // -------------------------------------------------------------------------- the lane that is running
+    // ------------------------------------------------------- the lane that is running
 
     unsigned blocks() const { return blocks_; }
     unsigned threads() const { return threads_; }
@@ -78,7 +80,7 @@ class simulator {
     counters* count() const { return count_; }
     shared_memory& shared() { return shared_; }
 
-    /// Waits until the lanes of the mask are here too; whoever comes last calls `complete` for all of them.
+    /// Waits for the other lanes of the mask; the last lane calls `complete` for all of them.
     WARPAGG_OUT_OF_LINE void meet(const arrival& a) {
         const std::uint32_t bit = 1u << lane();
         if ((a.mask & bit) == 0) diagnose([&] { return not_in_mask(self(), a, bit); });
@@ -108,7 +110,7 @@ class simulator {
         return undefined_.make<T>(read, random_, is_shadow());
     }
 
-    /// Before an access to memory: others may run first; and the access must not conflict with another.
+    /// Called before a memory access: lets other lanes run first, and diagnoses conflicts.
     WARPAGG_OUT_OF_LINE void access_memory(const void* address, std::size_t size, access_kind kind,
                                            const call_site& here) {
         if (random_.below(8) == 0) scheduler_.let_others_run();
@@ -119,7 +121,7 @@ class simulator {
             shadow_.note(address, size, now, [this](const access& a) { return ordered(a); });
         if (before != nullptr) diagnose([&] { return conflict(*before, now); });
     }
-    /// Before a write, or an atomic whose operand is `value`.
+    /// Called before a write of `value`, or an atomic with the operand `value`.
     template <class T>
     WARPAGG_OUT_OF_LINE void write_memory(const void* address, const T& value, access_kind kind,
                                           const call_site& here) {
@@ -131,8 +133,8 @@ class simulator {
             shadow_process_->note({at, block_, thread(), undefined_.count()}, address, &value, sizeof(T));
     }
 
-    /// Reports what `find()` says of a warp. The lanes stop where they are, so nothing that owns memory may
-    /// live in the caller.
+    /// Reports the violation that `find()` returns, and ends the launch. Lanes do not continue, so
+    /// the caller must not own memory.
     template <class F>
     [[noreturn]] void diagnose(unsigned number, F find) {
         note(number, find());
@@ -155,7 +157,7 @@ class simulator {
         scheduler_.run(threads_, run_threads);
     }
 
-    /// What a fiber does, in this launch and in later ones.
+    /// The loop of a fiber, in this launch and in later ones.
     static void run_threads() {
         running()->scheduler_.begin();
         for (;;) running()->run_thread();
@@ -182,7 +184,7 @@ class simulator {
         const unsigned number = warp_number();
         warp().returned |= 1u << lane();
         ++returned_;
-        // Those who wait for a mask do not wait for lanes that have returned.
+        // Lanes that wait for a mask do not wait for lanes that have returned.
         for_each_lane(warp().waiting, [&](unsigned other) {
             if (warp().lane[other].waiting) try_complete(number, other);
         });
@@ -217,7 +219,7 @@ class simulator {
         });
     }
 
-    /// When no lane of the warp can go on: answers those that asked who is there, or says what is wrong.
+    /// If no lane of the warp can continue: answers the calls of `activemask`, or diagnoses.
     void settle(unsigned number) {
         warp_state& w = warps_[number];
         if (!w.stands() || w.waiting == 0) return;
@@ -238,8 +240,8 @@ class simulator {
         }
     }
 
-    /// Tells these lanes that they are alone with some of each other: what a compiler may make of a divergent
-    /// warp.
+    /// Answers `activemask` for these lanes with random groups of them, as a compiler may split a
+    /// divergent warp.
     void partition(warp_state& w, std::uint32_t lanes) {
         const std::uint32_t parts = 1 + random_.below(3);
         std::uint32_t part[3] = {}, of[warp_state::size] = {};
@@ -249,7 +251,8 @@ class simulator {
         });
     }
 
-    /// When no thread of the block can go on but by the barrier: lets them through, or says what is wrong.
+    /// If all threads of the block wait at the barrier or have returned: lets them pass, or
+    /// diagnoses.
     void check_barrier() {
         if (in_barrier_ == 0 || in_barrier_ + returned_ < threads_) return;
         const call_site* at = nullptr;
@@ -273,7 +276,7 @@ class simulator {
         for (unsigned t = 0; t < threads_; ++t) scheduler_.wake(t);
     }
 
-    /// Whether what was done then is before whatever the running lane does now.
+    /// Whether the access `a` is ordered before any access that the running lane makes now.
     bool ordered(const access& a) {
         if (a.block != block_) return false;
         if (a.thread == thread() || a.phase < phase_) return true;
@@ -313,7 +316,7 @@ class simulator {
     unsigned block_ = 0;
     std::vector<warp_state> warps_;
     unsigned in_barrier_ = 0, returned_ = 0;
-    unsigned phase_ = 0;  // how many barriers the block has passed
+    unsigned phase_ = 0;  // number of barriers that the block has passed
     shared_memory shared_;
 
     shadow_memory shadow_;

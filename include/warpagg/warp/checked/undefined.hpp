@@ -3,8 +3,8 @@
 #pragma once
 
 /// @file
-/// What a lane gets that reads from a lane which takes no part: a NaN that tells where it comes from, if it
-/// is a float or a double, else garbage.
+/// Undefined values, which a lane reads from a lane that takes no part: a NaN that encodes its
+/// origin for float and double, and random bits for other types.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,8 +25,8 @@ struct undefined_read {
 
 class undefined_values {
   public:
-    /// What the reader gets. With `inverted`, other garbage than without, from the same
-    /// random source.
+    /// The undefined value for the reader. `inverted` selects another value from the same random
+    /// numbers.
     template <class T>
     T make(const undefined_read& read, random_source& random, bool inverted) {
         if (reads_.size() < most) reads_.push_back(read);
@@ -51,7 +51,7 @@ class undefined_values {
         return value;
     }
 
-    /// Where `value` comes from, if it is such a NaN or one computed from it; else null.
+    /// The origin of `value` if it is such a NaN or computed from one; null otherwise.
     template <class T>
     const undefined_read* origin(const T& value) const {
         std::uint32_t mantissa = 0;
@@ -72,7 +72,7 @@ class undefined_values {
 
     std::size_t count() const { return reads_.size(); }
     const undefined_read& last() const { return reads_.back(); }
-    /// Of the first `n` reads the last by that thread; else the last by any.
+    /// The last of the first `n` reads by that thread, or by any thread if it made none.
     const undefined_read& last_of(std::size_t n, unsigned block, unsigned thread) const {
         for (std::size_t i = n; i-- > 0;)
             if (reads_[i].block == block && reads_[i].thread == thread) return reads_[i];
@@ -80,8 +80,8 @@ class undefined_values {
     }
 
   private:
-    // A float's mantissa: the bit that makes a NaN quiet, 10 bits of a tag, 12 bits that say which read it
-    // was. A double's begins with the same 23 bits, as conversions keep them.
+    // The mantissa of a float: the quiet bit, a tag of 10 bits, and the index of the read in 12
+    // bits. The mantissa of a double begins with the same 23 bits, which conversions preserve.
     static constexpr std::uint32_t infinity = 0x7f800000, half = 0x400000, quiet_nan = infinity | half;
     static constexpr std::uint32_t tag = 0x2b5u << 12, most = 1u << 12;
 

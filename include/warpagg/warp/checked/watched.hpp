@@ -14,10 +14,10 @@ namespace warpagg::emulator {
 
 namespace detail {
 
-/// An index, and the line where it stands.
+/// An index and the place where it is used.
 struct place {
     template <std::integral I>
-    place(I i, call_site site = call_site::here("[]"))  // NOLINT: implicit, as it is what `a[i]` makes of i
+    place(I i, call_site site = call_site::here("[]"))  // NOLINT: implicit, as `a[i]` converts i to it
         : index(static_cast<std::size_t>(i)), at(site) {}
     std::size_t index;
     call_site at;
@@ -25,10 +25,10 @@ struct place {
 
 }  // namespace detail
 
-/// An array whose accesses the simulator sees, so that ordinary code (`a[i] = b[j]`) is checked for races: in
-/// place of a pointer, which a kernel that is a template over its arrays' types takes on CUDA. `T` is
-/// trivially copyable. Outside of a kernel it is an ordinary span. Does not check bounds; address sanitizer
-/// does.
+/// An array whose accesses the simulator sees, so that ordinary code (`a[i] = b[j]`) is checked for
+/// races: in place of a pointer, which a kernel that is a template over its arrays' types takes on
+/// CUDA. `T` is trivially copyable. Outside of a kernel it is an ordinary span. Does not check
+/// bounds; address sanitizer does.
 template <class T>
 class watched {
   public:
@@ -37,20 +37,20 @@ class watched {
 
     /// `size` elements from `first` on.
     watched(T* first, std::size_t size) : first_(first), size_(size) {}
-    /// All of a vector, an array, a span.
+    /// All elements of a vector, an array or a span.
     template <class Range>
     requires requires(Range& r) {
         { std::data(r) } -> std::convertible_to<T*>;
     }
     explicit watched(Range& range) : watched(std::data(range), std::size(range)) {}
 
-    /// An element: read by conversion, written by assignment, each seen by the simulator.
+    /// An element; the simulator sees its reads (conversions) and writes (assignments).
     class reference {
       public:
         /// @{
-        /// As of a `T&`.
+        /// As for a `T&`.
         reference(T* to, const call_site& at) : to_(to), at_(at) {}
-        operator value_type() const {  // NOLINT: implicit, as of a reference
+        operator value_type() const {  // NOLINT: implicit, as for a reference
             if (auto* m = detail::simulator::running())
                 m->access_memory(to_, sizeof(T), detail::access_kind::read, at_);
             return *to_;
@@ -78,9 +78,9 @@ class watched {
 
     /// Element i, of any integral type; i < size().
     reference operator[](detail::place i) const { return {first_ + i.index, i.at}; }
-    /// The array itself, whose accesses nobody sees.
+    /// The array itself, for accesses that the simulator does not see.
     T* data() const { return first_; }
-    /// How many elements.
+    /// The number of elements.
     std::size_t size() const { return size_; }
 
   private:
