@@ -44,7 +44,7 @@ class Copy:
             copy = shutil.copytree if (repository / part).is_dir() else shutil.copy
             copy(repository / part, self.source / part)
         self.do("cmake", "-S", self.source, "-B", self.build_folder, "-G", "Ninja", "-DWARPAGG_CUDA=OFF",
-                "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -w")
+                "-DWARPAGG_FULL_TESTS=ON", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -w")
 
     def do(self, *command):
         done = subprocess.run(command, capture_output=True, text=True)

@@ -13,6 +13,7 @@ import concurrent.futures
 import os
 import pathlib
 import platform
+import re
 import shutil
 import signal
 import subprocess
@@ -82,8 +83,8 @@ class Sweep:
         build(compiler, *flags, "-c", str(self.tests / "support/main.cpp"), "-o", str(self.main_object))
 
     def failure_of(self, test, headers, folder):
-        """How a test program, named by its path in tests/, fails with these headers; None if it passes."""
-        source = self.tests / test
+        """How a test program, named by its path in tests/ or as "HEADER on BACKEND", fails with these headers; None if it passes."""
+        source = self.instantiation(test, folder) if " on " in test else self.tests / test
         if source.parent.name == "compile_fail":
             return failure(["cmake", f"-DCOMPILER={compiler}", f"-DINCLUDE={headers}", f"-DSOURCE={source}",
                             "-P", str(source.parent / "run.cmake")], folder)
@@ -93,6 +94,17 @@ class Sweep:
         build(compiler, *flags, *definitions, f"-I{headers}", str(source), str(self.main_object),
               "-o", str(folder / "program"))
         return failure([str(folder / "program")], folder)
+
+    def instantiation(self, test, folder):
+        """The source file of "HEADER on BACKEND", as CMake writes it for the first such line of its list."""
+        header, backend = test.split(" on ")
+        lines = (self.tests / "instantiations.cmake").read_text()
+        types = re.search(rf"^instantiate\({re.escape(header)} {backend} \w+ ?(.*)\)$", lines, re.MULTILINE)[1]
+        values = {"tests": str(self.tests), "header": header, "backend": backend, "types": ", ".join(types.split())}
+        source = folder / "instantiation.cpp"
+        text = (self.tests / "support/instantiation.in").read_text()
+        source.write_text(re.sub("@(.*?)@", lambda name: values[name[1]], text))
+        return source
 
     def compile_ptx(self, headers, folder):
         files = []

@@ -6,6 +6,9 @@
 /// types that it names in TEST_VALUES.
 
 #include "checks.hpp"
+#if defined(__CUDACC__)
+#include "../support/half_pairs.hpp"
+#endif
 
 namespace {
 

@@ -305,8 +305,7 @@ TEST_CASE("an inverse depth is drawn to what its map says, and to nothing that i
     for (std::size_t i = 5; i < 15; ++i) CHECK(gradient[i] == 0);
 }
 
-TEST_CASE("with depth maps, few photos with few points make a better scene" *
-          doctest::test_suite("quality")) {
+TEST_CASE("quality: with depth maps, few photos with few points make a better scene") {
     for (const auto make : engines()) {
         double gain = 0;
         for (const std::uint64_t seed : {0, 1, 2, 3}) {

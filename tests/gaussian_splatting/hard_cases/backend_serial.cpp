@@ -7,23 +7,8 @@
 
 namespace hard_cases {
 
-using one_lane = gs::device::basic_cpu<warpagg::emulator::serial>;
-
-backend serial_backend() { return make_backend<one_lane, float>("serial"); }
-
-const backend& reference() {
-    static const backend b = make_backend<one_lane, double>("double");
-    return b;
-}
-
-const std::vector<backend>& backends() {
-    static const std::vector<backend> all {
-        lanes_backend(), lanes_32_backend(), serial_backend(),
-#if defined(WARPAGG_TEST_CUDA)
-            cuda_backend(),
-#endif
-    };
-    return all;
+backend serial_backend() {
+    return make_backend<gs::device::basic_cpu<warpagg::emulator::serial>, float>("serial");
 }
 
 }  // namespace hard_cases

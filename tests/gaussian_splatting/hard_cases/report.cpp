@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -48,21 +49,18 @@ struct named_row {
     const row* found;
 };
 
-/// The rows in the order of the cases, others after them; with those that did not run if all were to.
-std::vector<named_row> sorted_rows(bool all_were_to) {
+/// The rows in the order of the cases, others after them. A case without any test is a row that fails.
+std::vector<named_row> sorted_rows() {
     static const row none;
     const results& r = all_results();
     std::vector<named_row> sorted;
     std::set<std::string> taken;
     for (int n = 1; n <= case_count; ++n) {
         const std::string prefix = "case " + std::to_string(n) + ":";
-        bool found = false;
+        const auto is_of_case = [&](const std::string& test) { return test.starts_with(prefix); };
         for (const std::string& test : r.order)
-            if (test.starts_with(prefix) && taken.insert(test).second) {
-                sorted.push_back({test, &r.rows.at(test)});
-                found = true;
-            }
-        if (!found && all_were_to) sorted.push_back({prefix + " did not run", &none});
+            if (is_of_case(test) && taken.insert(test).second) sorted.push_back({test, &r.rows.at(test)});
+        if (std::ranges::none_of(r.known, is_of_case)) sorted.push_back({prefix + " has no test", &none});
     }
     for (const std::string& test : r.order)
         if (!r.rows.at(test).cells.empty() && taken.insert(test).second)
@@ -107,8 +105,8 @@ ordered_json as_json(const std::vector<named_row>& rows, const std::vector<colum
 
 }  // namespace
 
-bool report(bool all_were_to) {
-    const std::vector<named_row> rows = sorted_rows(all_were_to);
+bool report() {
+    const std::vector<named_row> rows = sorted_rows();
     const std::vector<column> columns = all_columns();
     print(rows, columns);
     if (const char* file = std::getenv("WARPAGG_CASES_JSON")) {

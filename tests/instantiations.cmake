@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: 2026 The warpagg authors
+# SPDX-License-Identifier: MIT
+#
+# The test cases of the library that run on several models of a warp. Each line compiles one header of
+# test cases for one backend of support/backends/ and, if the header needs them, for some value types:
+#   instantiate(HEADER BACKEND SET [TYPE...])
+# SET is
+#   quick  for every build of the tests: each header once on SIMD lanes and once on checked;
+#   full   for WARPAGG_FULL_TESTS only: the other backends and value types;
+#   plain  like full, but not under a sanitizer, for which types of one size, a warp of one lane, and
+#          warps of 8 and 32 lanes are all alike.
+
+instantiate(accumulators/accumulators.hpp checked quick)
+# On 32 lanes they take four times as long.
+instantiate(accumulators/accumulators.hpp narrow_lanes quick)
+instantiate(accumulators/accumulators.hpp lanes full)
+instantiate(accumulators/accumulators.hpp serial full)
+instantiate(accumulators/accumulators.hpp cuda quick)
+
+instantiate(match_reduce_atomic/match_reduce_atomic.hpp checked quick float std::uint32_t)
+instantiate(match_reduce_atomic/match_reduce_atomic.hpp lanes quick float std::int32_t)
+instantiate(match_reduce_atomic/match_reduce_atomic.hpp narrow_lanes plain float)
+instantiate(match_reduce_atomic/match_reduce_atomic.hpp serial full float std::int32_t)
+instantiate(match_reduce_atomic/match_reduce_atomic.hpp cuda quick float double std::int32_t std::uint64_t)
+
+# lanes holds numbers only, so it has no aggregates.
+instantiate(reduce_atomic/aggregates.hpp checked quick)
+instantiate(reduce_atomic/aggregates.hpp serial full)
+instantiate(reduce_atomic/aggregates.hpp cuda quick)
+
+instantiate(reduce_atomic/commits.hpp checked quick float std::uint32_t)
+instantiate(reduce_atomic/commits.hpp lanes quick float std::uint64_t)
+instantiate(reduce_atomic/commits.hpp serial full float double std::int32_t)
+instantiate(reduce_atomic/commits.hpp cuda quick float double std::int32_t)
+
+instantiate(reduce_atomic/operations.hpp checked quick std::uint32_t std::int64_t)
+instantiate(reduce_atomic/operations.hpp lanes quick std::int32_t std::uint32_t)
+instantiate(reduce_atomic/operations.hpp lanes full std::int64_t std::uint64_t)
+instantiate(reduce_atomic/operations.hpp serial full std::int32_t std::uint64_t)
+instantiate(reduce_atomic/operations.hpp cuda quick std::int32_t std::uint32_t)
+instantiate(reduce_atomic/operations.hpp cuda full std::int64_t std::uint64_t)
+
+instantiate(reduce_atomic/sums.hpp checked quick float)
+instantiate(reduce_atomic/sums.hpp checked plain double)
+instantiate(reduce_atomic/sums.hpp checked plain std::int32_t)
+instantiate(reduce_atomic/sums.hpp checked plain std::uint32_t)
+instantiate(reduce_atomic/sums.hpp lanes quick float)
+instantiate(reduce_atomic/sums.hpp lanes plain double)
+instantiate(reduce_atomic/sums.hpp lanes plain std::int32_t)
+instantiate(reduce_atomic/sums.hpp lanes plain std::uint32_t)
+instantiate(reduce_atomic/sums.hpp lanes full std::int64_t)
+instantiate(reduce_atomic/sums.hpp narrow_lanes plain float)
+instantiate(reduce_atomic/sums.hpp serial full float double)
+instantiate(reduce_atomic/sums.hpp serial plain std::int32_t std::uint32_t)
+instantiate(reduce_atomic/sums.hpp cuda quick float)
+instantiate(reduce_atomic/sums.hpp cuda full double)
+instantiate(reduce_atomic/sums.hpp cuda full std::int32_t)
+instantiate(reduce_atomic/sums.hpp cuda full std::uint32_t)
+instantiate(reduce_atomic/sums.hpp cuda full std::int64_t "long long" std::uint64_t)
+instantiate(reduce_atomic/sums.hpp cuda full __half2 __nv_bfloat162)
+
+instantiate(segmented_sum/segmented_sum.hpp checked quick)
+instantiate(segmented_sum/segmented_sum.hpp lanes quick)
+instantiate(segmented_sum/segmented_sum.hpp narrow_lanes plain)
+instantiate(segmented_sum/segmented_sum.hpp serial full)
+instantiate(segmented_sum/segmented_sum.hpp cuda quick)
+
+instantiate(warp/records.hpp checked quick)
+instantiate(warp/records.hpp lanes quick)
+instantiate(warp/records.hpp serial full)
+instantiate(warp/records.hpp cuda quick)

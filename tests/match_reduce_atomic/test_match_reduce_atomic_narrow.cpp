@@ -1,6 +1,0 @@
-// SPDX-FileCopyrightText: 2026 The warpagg authors
-// SPDX-License-Identifier: MIT
-#include "../support/backends/narrow_lanes.hpp"
-
-#define TEST_VALUES float
-#include "match_reduce_atomic.hpp"

@@ -1,6 +1,0 @@
-// SPDX-FileCopyrightText: 2026 The warpagg authors
-// SPDX-License-Identifier: MIT
-#include "../support/backends/cuda.hpp"
-
-#define TEST_VALUES std::int32_t
-#include "sums.hpp"

@@ -1,6 +1,0 @@
-// SPDX-FileCopyrightText: 2026 The warpagg authors
-// SPDX-License-Identifier: MIT
-#include "../support/backends/lanes.hpp"
-
-#define TEST_VALUES std::uint32_t
-#include "sums.hpp"

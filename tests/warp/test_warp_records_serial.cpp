@@ -1,4 +1,0 @@
-// SPDX-FileCopyrightText: 2026 The warpagg authors
-// SPDX-License-Identifier: MIT
-#include "../support/backends/serial.hpp"
-#include "records.hpp"
