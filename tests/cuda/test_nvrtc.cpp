@@ -174,7 +174,7 @@ TEST_CASE("NVRTC compiles the one include for sm_80 and sm_90") {
         INFO(architecture, "\n", program.log);
         REQUIRE_FALSE(program.ptx.empty());
         CHECK(program.ptx.find("shfl.sync") != std::string::npos);
-        CHECK(program.log.find("warning") == std::string::npos);
+        CHECK(std::string(program.log.c_str()) == "");  // ends with a zero
     }
 }
 
