@@ -36,12 +36,12 @@ constexpr int n = 5;
 
 /// n values for each of 32 lanes, the same for each model: `serial` runs the lanes one after the other.
 template <class T>
-struct question {
+struct input {
     T value[n][32];
     std::uint32_t active;
     T before[n];
 
-    explicit question(std::mt19937& random) : active(static_cast<std::uint32_t>(random())) {
+    explicit input(std::mt19937& random) : active(static_cast<std::uint32_t>(random())) {
         std::uniform_real_distribution<T> draw(T(-8), T(8));
         for (int i = 0; i < n; ++i) {
             before[i] = draw(random);
@@ -66,7 +66,7 @@ struct question {
 };
 
 template <class Policy, class T>
-void add_on(const warpagg::emulator::lanes& w, const question<T>& q, T (&to)[n]) {
+void add_on(const warpagg::emulator::lanes& w, const input<T>& q, T (&to)[n]) {
     simd_value<T, 32> v[n];
     simd_value<bool, 32> active;
     for (int lane = 0; lane < 32; ++lane) {
@@ -76,7 +76,7 @@ void add_on(const warpagg::emulator::lanes& w, const question<T>& q, T (&to)[n])
     warpagg::warp_reduce_atomic(w, to, v, active, Policy{});
 }
 template <class Policy, class T>
-void add_on(const warpagg::emulator::serial& w, const question<T>& q, T (&to)[n]) {
+void add_on(const warpagg::emulator::serial& w, const input<T>& q, T (&to)[n]) {
     for (int lane = 0; lane < 32; ++lane) {
         T v[n];
         for (int i = 0; i < n; ++i) v[i] = q.value[i][lane];
@@ -88,7 +88,7 @@ template <class Policy, class W, class T>
 void check_sums() {
     std::mt19937 random(3);
     for (int time = 0; time < 100; ++time) {
-        question<T> q(random);
+        input<T> q(random);
         if (time == 0) q.active = 0;
         T memory[n];
         std::copy(q.before, q.before + n, memory);

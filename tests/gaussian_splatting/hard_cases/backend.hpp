@@ -21,7 +21,7 @@ namespace hard_cases {
 using gs::accumulator;
 
 /// A picture of a few Gaussians and a photo to compare it with.
-struct question {
+struct render_case {
     int sh_degree = 3;
     gs::effect_set effects;
     std::array<std::vector<double>, gs::parameter_count> parameters;
@@ -46,7 +46,7 @@ struct sighting {
     double gradient = 0, seen = 0;
 };
 
-struct answer {
+struct render_result {
     std::vector<double> picture;  ///< three planes, as all pictures here
     double loss = 0;
     std::array<std::vector<double>, gs::parameter_count> gradients;
@@ -71,7 +71,7 @@ struct flat_splat {
 };
 
 /// Splats to be blended, without Gaussians behind them.
-struct blend_question {
+struct blend_case {
     int width, height;
     std::array<float, 3> background{};
     std::vector<flat_splat> splats;
@@ -80,7 +80,7 @@ struct blend_question {
     accumulator how = accumulator::native;
 };
 
-struct blend_answer {
+struct blend_result {
     std::vector<double> picture, transmittance;
     std::vector<std::uint32_t> last;
     /// By splat: of red, green, blue, of dL/dalpha alpha, and its five moments.
@@ -88,14 +88,14 @@ struct blend_answer {
 };
 
 /// A picture beside a photo, premultiplied RGBA over a background.
-struct compare_question {
+struct compare_case {
     int width, height;
     std::vector<double> picture;
     std::vector<std::uint8_t> rgba;
     std::array<float, 3> background{};
 };
 
-struct compare_answer {
+struct compare_result {
     gs::train::image_quality quality;
     double loss;
     std::vector<double> gradient;  ///< of the training loss, by the picture
@@ -120,11 +120,11 @@ struct backend {
     unsigned lanes;  ///< of a warp
 
     std::string (*device_name)();
-    answer (*ask)(const question&);
-    double (*loss)(const question&);  ///< that of `ask`, without gradients
-    std::vector<projected_splat> (*project)(const question&);
-    blend_answer (*blend)(const blend_question&);
-    compare_answer (*compare)(const compare_question&);
+    render_result (*render)(const render_case&);
+    double (*loss)(const render_case&);  ///< that of `render`, without gradients
+    std::vector<projected_splat> (*project)(const render_case&);
+    blend_result (*blend)(const blend_case&);
+    compare_result (*compare)(const compare_case&);
     /// Values after each step of Adam from 0: `gradients[step][value]`. `takes_part`, alike, is none for all.
     /// The first step's number is `steps_before` + 1.
     std::vector<std::vector<double>> (*descend)(const std::vector<std::vector<double>>& gradients,

@@ -22,7 +22,7 @@ bool same(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 /// The photo over the background, as the loss sees it.
-double photo_at(const question& q, std::size_t channel, std::size_t pixel) {
+double photo_at(const render_case& q, std::size_t channel, std::size_t pixel) {
     const std::uint8_t* p = q.view.pixels.rgba.data() + 4 * pixel;
     return (p[channel] + (255 - p[3]) * static_cast<double>(q.background[channel])) / 255;
 }
@@ -39,13 +39,13 @@ bool all_finite(const std::vector<double>& a) {
     return std::all_of(a.begin(), a.end(), [](double x) { return std::isfinite(x); });
 }
 
-bool all_finite(const answer& a) {
+bool all_finite(const render_result& a) {
     return all_finite(a.picture) && std::isfinite(a.loss) &&
            std::all_of(a.gradients.begin(), a.gradients.end(),
                        [](const std::vector<double>& g) { return all_finite(g); });
 }
 
-bool same(const answer& a, const answer& b) {
+bool same(const render_result& a, const render_result& b) {
     if (!same(a.picture, b.picture) || a.loss != b.loss) return false;
     for (std::size_t p = 0; p < gs::parameter_count; ++p)
         if (!same(a.gradients[p], b.gradients[p])) return false;
@@ -61,7 +61,7 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
     return most;
 }
 
-double distance(const answer& a, const answer& b, const question& q) {
+double distance(const render_result& a, const render_result& b, const render_case& q) {
     if (q.weights.empty()) return distance(a.picture, b.picture);
     std::vector<double> x = a.picture, y = b.picture;
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -98,7 +98,7 @@ agreement compare(const std::vector<double>& got, const std::vector<double>& exp
     return a;
 }
 
-agreement compare(const answer& got, const answer& expected) {
+agreement compare(const render_result& got, const render_result& expected) {
     agreement all;
     for (std::size_t p = 0; p < gs::parameter_count; ++p)
         all += compare(got.gradients[p], expected.gradients[p]);
@@ -115,7 +115,7 @@ std::string excess(const std::vector<double>& got, const std::vector<double>& ex
     return said.str();
 }
 
-std::string excess(const answer& got, const answer& expected) {
+std::string excess(const render_result& got, const render_result& expected) {
     std::string said;
     for (std::size_t p = 0; p < gs::parameter_count; ++p) {
         const std::string here = excess(got.gradients[p], expected.gradients[p]);
@@ -124,7 +124,7 @@ std::string excess(const answer& got, const answer& expected) {
     return said;
 }
 
-std::vector<double> off_thresholds(const question& q, double margin, std::uint32_t depth_margin) {
+std::vector<double> off_thresholds(const render_case& q, double margin, std::uint32_t depth_margin) {
     using namespace gs::raster;
     const int width = q.view.camera.width, height = q.view.camera.height;
     std::vector<double> weights(q.pixels(), 1.0), behind(q.pixels(), 1.0);
@@ -163,7 +163,7 @@ std::vector<double> off_thresholds(const question& q, double margin, std::uint32
                 T = next < least_transmittance ? 0 : next;
             }
     }
-    const std::vector<double> picture = reference().ask(q).picture;
+    const std::vector<double> picture = reference().render(q).picture;
     for (std::size_t i = 0; i < picture.size(); ++i) {
         const double apart = std::abs(picture[i] - photo_at(q, i / q.pixels(), i % q.pixels()));
         // Nothing seen, or nothing but black on black, is the same in every precision.

@@ -20,12 +20,12 @@ struct agreement {
 };
 agreement compare(const std::vector<double>& got, const std::vector<double>& expected);
 /// The worst of the parameters.
-agreement compare(const answer& got, const answer& expected);
+agreement compare(const render_result& got, const render_result& expected);
 
-/// What of an answer in float exceeds the bounds: each gradient that of `agreement`, all of a parameter
+/// What of a result in float exceeds the bounds: each gradient that of `agreement`, all of a parameter
 /// together a cosine of 0.99999 and, if they are 32 or more, a bias of 1e-4. In words; nothing if nothing
 /// does.
-std::string excess(const answer& got, const answer& expected);
+std::string excess(const render_result& got, const render_result& expected);
 
 /// The same for one array.
 std::string excess(const std::vector<double>& got, const std::vector<double>& expected);
@@ -33,24 +33,24 @@ std::string excess(const std::vector<double>& got, const std::vector<double>& ex
 /// The largest distance between elements; infinite where one is not finite or the sizes differ.
 double distance(const std::vector<double>& a, const std::vector<double>& b);
 
-/// The same of two pictures, where the question has weights only in the pixels that have one.
-double distance(const answer& a, const answer& b, const question& q);
+/// The same of two pictures, where the case has weights only in the pixels that have one.
+double distance(const render_result& a, const render_result& b, const render_case& q);
 
 /// The largest |a|.
 double largest(const std::vector<double>& a);
 
 bool all_finite(const std::vector<double>& a);
 /// Picture, loss and gradients.
-bool all_finite(const answer& a);
+bool all_finite(const render_result& a);
 
 /// Bit for bit, but that all NaN are alike.
-bool same(const answer& a, const answer& b);
+bool same(const render_result& a, const render_result& b);
 
 /// Weights of 0 for the pixels in which float and double may decide differently for their rounding: where a
 /// splat's alpha lies within a relative `margin` of the least that is drawn or of the cap, the transmittance
 /// within a hundred times that of the least that goes on, a channel under some splat within a tenth of
 /// `margin` of its photo, where the loss has its kink, or the depths of two splats in a row less than
 /// `depth_margin` ulp apart. 1 elsewhere. The decisions are looked for in double.
-std::vector<double> off_thresholds(const question& q, double margin, std::uint32_t depth_margin = 0);
+std::vector<double> off_thresholds(const render_case& q, double margin, std::uint32_t depth_margin = 0);
 
 }  // namespace hard_cases

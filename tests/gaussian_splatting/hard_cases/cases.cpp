@@ -11,13 +11,13 @@
 
 namespace hard_cases {
 
-void add_backdrop(question& q, unsigned seed) {
+void add_backdrop(render_case& q, unsigned seed) {
     std::mt19937 random(seed);
     q.backdrop.resize(3 * q.pixels());
     for (double& x : q.backdrop) x = static_cast<double>(random() % 1000) / 999;
 }
 
-void take_fisheye(question& q, unsigned seed) {
+void take_fisheye(render_case& q, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
     gs::camera& c = q.view.camera;
@@ -28,7 +28,7 @@ void take_fisheye(question& q, unsigned seed) {
     c.translation = glm::dvec3(0.1, -0.2, 1);
 }
 
-void add_depths(question& q, unsigned seed) {
+void add_depths(render_case& q, unsigned seed) {
     std::mt19937 random(seed);
     q.depth_weights.resize(q.pixels());
     for (double& x : q.depth_weights)
@@ -36,11 +36,11 @@ void add_depths(question& q, unsigned seed) {
                                static_cast<double>(q.pixels()));
 }
 
-question random_question(unsigned seed, std::size_t splats, int width, int height, int sh_degree) {
+render_case random_case(unsigned seed, std::size_t splats, int width, int height, int sh_degree) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> uniform;
-    question q;
+    render_case q;
     q.sh_degree = sh_degree;
     q.background = {static_cast<float>(uniform(random)), static_cast<float>(uniform(random)),
                     static_cast<float>(uniform(random))};
@@ -79,8 +79,8 @@ question random_question(unsigned seed, std::size_t splats, int width, int heigh
     return q;
 }
 
-question empty_question(int width, int height) {
-    question q;
+render_case empty_case(int width, int height) {
+    render_case q;
     q.sh_degree = 0;
     q.view.camera.width = width;
     q.view.camera.height = height;
@@ -94,7 +94,7 @@ question empty_question(int width, int height) {
     return q;
 }
 
-void add(question& q, const gaussian& g) {
+void add(render_case& q, const gaussian& g) {
     const auto append = [&](gs::parameter p, const auto& values, int n) {
         for (int k = 0; k < n; ++k) {
             const double x = values[static_cast<std::size_t>(k)];
@@ -111,8 +111,8 @@ void add(question& q, const gaussian& g) {
     append(gs::parameter::sh0, array((g.colour - 0.5) / first_harmonic[0]), 3);
 }
 
-question without(const question& q, std::size_t index) {
-    question rest = q;
+render_case without(const render_case& q, std::size_t index) {
+    render_case rest = q;
     for (std::size_t p = 0; p < gs::parameter_count; ++p) {
         if (rest.parameters[p].empty()) continue;
         const auto width = static_cast<std::size_t>(gs::parameter_width[p]);
@@ -122,7 +122,7 @@ question without(const question& q, std::size_t index) {
     return rest;
 }
 
-std::size_t move_off_black(question& q) {
+std::size_t move_off_black(render_case& q) {
     std::size_t moved = 0;
     const glm::dvec3 centre = q.view.camera.centre();
     for (std::size_t i = 0; i < q.count(); ++i) {

@@ -9,23 +9,23 @@
 
 namespace hard_cases {
 
-/// Parameters are floats, as the trainer's are: every device is asked about the same numbers.
+/// Parameters are floats, as the trainer's are: every device takes the same numbers.
 
 /// A crowd of Gaussians before a camera, some of them half out of the picture, with a random photo behind.
-question random_question(unsigned seed, std::size_t splats, int width, int height, int sh_degree);
+render_case random_case(unsigned seed, std::size_t splats, int width, int height, int sh_degree);
 
 /// Random colours, one a pixel, behind all.
-void add_backdrop(question& q, unsigned seed);
+void add_backdrop(render_case& q, unsigned seed);
 
 /// The camera gets a fisheye lens of 160 degrees across and stands between the Gaussians.
-void take_fisheye(question& q, unsigned seed);
+void take_fisheye(render_case& q, unsigned seed);
 
 /// Inverse depths in the loss, by random weights of either sign.
-void add_depths(question& q, unsigned seed);
+void add_depths(render_case& q, unsigned seed);
 
 /// No Gaussians yet, degree 0, black background and photo, before a camera at the origin that looks along z,
 /// with the focal length of the picture's width and its axis through the middle of the picture.
-question empty_question(int width, int height);
+render_case empty_case(int width, int height);
 
 /// A Gaussian of degree 0. The quaternion is w x y z.
 struct gaussian {
@@ -35,14 +35,14 @@ struct gaussian {
     double opacity = 0;  ///< logit
     glm::dvec3 colour{1};
 };
-void add(question& q, const gaussian& g);
+void add(render_case& q, const gaussian& g);
 
-/// The question without one of its Gaussians.
-question without(const question& q, std::size_t index);
+/// The case without one of its Gaussians.
+render_case without(const render_case& q, std::size_t index);
 
 /// Moves the colours that lie within 1e-5 of black, where float and double may hold them or not, a thousandth
 /// away. Returns how many.
-std::size_t move_off_black(question& q);
+std::size_t move_off_black(render_case& q);
 
 /// The logit of an opacity, in double.
 double logit_of(double opacity);

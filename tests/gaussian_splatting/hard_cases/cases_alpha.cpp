@@ -14,7 +14,7 @@ namespace {
 
 /// Pixel by pixel in the channels of a tile: `use(tile, channel, pixel)` for each that the gradient looks at.
 template <class F>
-void for_each_look(const blend_question& q, const F& use) {
+void for_each_look(const blend_case& q, const F& use) {
     const auto pixels = static_cast<std::size_t>(q.width * q.height);
     const auto across = static_cast<std::size_t>((q.width + 15) / 16);
     for (std::size_t i = 0; i < q.gradient.size(); ++i) {
@@ -32,11 +32,11 @@ TEST_CASE("case 1: forward and backward see the same alpha, to the bit") {
     constexpr auto pixels = std::size_t{side} * side;
     // A splat a tile: its alpha is the picture, and times the recovered T of exactly 1 the red, green and
     // blue sums.
-    std::vector<blend_question> single, lists;
+    std::vector<blend_case> single, lists;
     for (unsigned seed = 0; seed < 4; ++seed) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> uniform;
-        blend_question q = empty_list(side, side);
+        blend_case q = empty_list(side, side);
         for (std::uint32_t t = 0; t < tiles; ++t) {
             flat_splat s = random_splat(random, 16, 16, 0.01 + 0.99 * uniform(random));
             s.x += t % (side / 16) * 16;
@@ -52,7 +52,7 @@ TEST_CASE("case 1: forward and backward see the same alpha, to the bit") {
     for (unsigned seed = 10; seed < 12; ++seed) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> uniform;
-        blend_question q = empty_list(64, 64);
+        blend_case q = empty_list(64, 64);
         for (std::size_t t = 0; t < 16; ++t) {
             q.lists.emplace_back();
             const double opaque = std::exp(-4 * uniform(random));
@@ -73,9 +73,9 @@ TEST_CASE("case 1: forward and backward see the same alpha, to the bit") {
 
     on_each_variant([&](const backend& b, accumulator how) {
         std::size_t seen = 0, other = 0;
-        for (blend_question q : single) {
+        for (blend_case q : single) {
             q.how = how;
-            const blend_answer a = b.blend(q);
+            const blend_result a = b.blend(q);
             for_each_look(q, [&](std::size_t tile, std::size_t channel, std::size_t pixel) {
                 const double alpha = a.picture[channel * pixels + pixel];
                 seen += alpha > 0 ? 1 : 0;
@@ -86,9 +86,9 @@ TEST_CASE("case 1: forward and backward see the same alpha, to the bit") {
         CHECK(other == 0);
 
         double least = 2, most = 0;
-        for (blend_question q : lists) {
+        for (blend_case q : lists) {
             q.how = how;
-            const blend_answer a = b.blend(q);
+            const blend_result a = b.blend(q);
             for_each_look(q, [&](std::size_t tile, std::size_t channel, std::size_t pixel) {
                 const double T =
                     recovered(a, q.lists[tile][0], channel, a.picture[channel * 64 * 64 + pixel]);
@@ -107,14 +107,14 @@ TEST_CASE("case 2: the cap of alpha is the same in both passes") {
          {std::vector{0.3, 0.9999}, {0.9999, 0.5}, {0.2, 0.9999, 0.7, 0.1}, {0.9999}}) {
         CAPTURE(opacities.size());
         std::mt19937 random(2);
-        blend_question q = empty_list(16, 16);
+        blend_case q = empty_list(16, 16);
         for (const double o : opacities) q.splats.push_back(round_splat(8, 8, 3000, o));
         q.splats[0].colour = {1, 1, 1};
         q.gradient = one_pixel_a_tile(random, 16, 16);
-        const blend_answer expected = reference().blend(q);
+        const blend_result expected = reference().blend(q);
         on_each_variant([&](const backend& b, accumulator how) {
             q.how = how;
-            const blend_answer a = b.blend(q);
+            const blend_result a = b.blend(q);
             for_each_look(q, [&](std::size_t, std::size_t channel, std::size_t pixel) {
                 CHECK(std::abs(recovered(a, 0, channel, a.picture[channel * 256 + pixel]) - 1) <= 1e-4);
                 CHECK(a.transmittance[pixel] == doctest::Approx(expected.transmittance[pixel]).epsilon(1e-5));
@@ -125,7 +125,7 @@ TEST_CASE("case 2: the cap of alpha is the same in both passes") {
 
 TEST_CASE("case 3: no gradient flows through a capped alpha, but to its colour") {
     // In the middle of a list, each of whose others is free.
-    blend_question q = empty_list(16, 16);
+    blend_case q = empty_list(16, 16);
     for (const double o : {0.3, 1.0, 0.5, 0.2}) {
         q.splats.push_back(round_splat(8, 8, 3000, o));
         q.splats.back().colour = {0.1 * static_cast<double>(q.splats.size()), 0.5, 0.9};
@@ -133,7 +133,7 @@ TEST_CASE("case 3: no gradient flows through a capped alpha, but to its colour")
     std::mt19937 random(3);
     for (int i = 0; i < 3 * 256; ++i) q.gradient.push_back(static_cast<double>(random() % 100) / 100);
     // All of one Gaussian is capped, its degree is 0: nothing but its colour moves the picture.
-    question whole = random_question(3, 0, 8, 4, 0);
+    render_case whole = random_case(3, 0, 8, 4, 0);
     gaussian g;
     g.log_scale = {6, 6.5, 7};
     g.quaternion = {0.9, 0.3, -0.2, 0.1};
@@ -141,13 +141,13 @@ TEST_CASE("case 3: no gradient flows through a capped alpha, but to its colour")
     whole.view.camera.rotation = glm::dmat3(1);
     whole.view.camera.translation = glm::dvec3(0);
     add(whole, g);
-    const blend_answer expected = reference().blend(q);
-    const answer expected_whole = reference().ask(whole);
+    const blend_result expected = reference().blend(q);
+    const render_result expected_whole = reference().render(whole);
     REQUIRE(largest(expected_whole.gradients[4]) > 0.01);
 
     on_each_variant([&](const backend& b, accumulator how) {
         q.how = whole.how = how;
-        const blend_answer a = b.blend(q);
+        const blend_result a = b.blend(q);
         for (std::size_t k = 0; k < 9; ++k) {
             CAPTURE(k);
             for (std::size_t i = 0; i < q.splats.size(); ++i) {
@@ -156,7 +156,7 @@ TEST_CASE("case 3: no gradient flows through a capped alpha, but to its colour")
             }
             if (k >= 3) CHECK(a.sums[1][k] == 0);
         }
-        const answer by_parameter = b.ask(whole);
+        const render_result by_parameter = b.render(whole);
         for (std::size_t p = 0; p < 4; ++p) {
             CAPTURE(parameter_names[p]);
             CHECK(largest(by_parameter.gradients[p]) == 0);
@@ -168,13 +168,13 @@ TEST_CASE("case 3: no gradient flows through a capped alpha, but to its colour")
 TEST_CASE("case 4: alpha near 1") {
     for (const std::size_t splats : {1, 2, 4, 8, 16}) {
         CAPTURE(splats);
-        question q = random_question(40 + static_cast<unsigned>(splats), splats, 24, 20, 1);
+        render_case q = random_case(40 + static_cast<unsigned>(splats), splats, 24, 20, 1);
         for (double& o : q.parameters[3]) o = 20;
         q.weights = off_thresholds(q, 1e-4);
-        const answer expected = reference().ask(q);
+        const render_result expected = reference().render(q);
         on_each_variant([&](const backend& b, accumulator how) {
             q.how = how;
-            const answer a = b.ask(q);
+            const render_result a = b.render(q);
             CHECK(all_finite(a));
             CHECK(distance(a, expected, q) <= 1e-3);
             CHECK(excess(a, expected) == "");
@@ -183,7 +183,7 @@ TEST_CASE("case 4: alpha near 1") {
 }
 
 TEST_CASE("case 5: the transmittance of saturated pixels before a background of 1000") {
-    blend_question q = empty_list(64, 64);
+    blend_case q = empty_list(64, 64);
     q.background = {1000, 1000, 1000};
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform;
@@ -205,7 +205,7 @@ TEST_CASE("case 5: the transmittance of saturated pixels before a background of 
         append(1 - end / T);
     }
     for (std::size_t i = 0; i < 3 * 64 * 64; ++i) q.gradient.push_back(0.5 + 0.5 * uniform(random));
-    const blend_answer expected = reference().blend(q);
+    const blend_result expected = reference().blend(q);
     for (const double T : expected.transmittance) REQUIRE((T > 1e-4 && T < 1e-3));
 
     const auto check_close = [](const std::vector<double>& got, const std::vector<double>& wanted) {
@@ -216,7 +216,7 @@ TEST_CASE("case 5: the transmittance of saturated pixels before a background of 
     };
     on_each_variant([&](const backend& b, accumulator how) {
         q.how = how;
-        const blend_answer a = b.blend(q);
+        const blend_result a = b.blend(q);
         check_close(a.transmittance, expected.transmittance);
         check_close(a.picture, expected.picture);
         std::vector<double> sums, wanted;

@@ -25,7 +25,7 @@ TEST_CASE("case 8: far outside the picture, where the Jacobian of the projection
          {std::pair{2.0, 0.02}, {-2.0, 0.02}, {0.05, 2.0}, {0.05, -2.0}, {2.0, -2.0}}) {
         CAPTURE(side_x);
         CAPTURE(side_y);
-        question q = random_question(8, 1, 16, 16, 0);
+        render_case q = random_case(8, 1, 16, 16, 0);
         q.view.camera.rotation = glm::dmat3(1);
         q.view.camera.translation = glm::dvec3(0);
         // Twice the bound on either side: the picture and 15 % of it.
@@ -36,7 +36,7 @@ TEST_CASE("case 8: far outside the picture, where the Jacobian of the projection
         q.parameters[1] = {0.3, 0.1, -0.2};
         q.parameters[3] = {2};
         for (double& x : q.parameters[0]) x = static_cast<float>(x);
-        const answer exact = reference().ask(q);
+        const render_result exact = reference().render(q);
         REQUIRE(std::abs(exact.gradients[0][0]) > 1e-6);
         const verdict v = check_by_differences(q, {0}, 8);
         CHECK_MESSAGE(v.wrong == 0, v.first_wrong);
@@ -63,7 +63,7 @@ TEST_CASE("case 9: needles, flat ones, and what is not a number") {
                 CAPTURE(scale.x);
                 CAPTURE(scale.z);
                 CAPTURE(angle);
-                question q = empty_question(64, 48);
+                render_case q = empty_case(64, 48);
                 paint_photo(q, 9);
                 gaussian g;
                 g.mean = {0.13, -0.21, 4};
@@ -75,7 +75,7 @@ TEST_CASE("case 9: needles, flat ones, and what is not a number") {
                 check_drawn(q, !needle);
             }
         SUBCASE("and a plane seen from its edge") {
-            question q = empty_question(64, 48);
+            render_case q = empty_case(64, 48);
             paint_photo(q, 10);
             gaussian g;
             g.log_scale = {1, 1, -60};
@@ -85,11 +85,11 @@ TEST_CASE("case 9: needles, flat ones, and what is not a number") {
         }
     }
     SUBCASE("NaN in any parameter: culled, and nobody else changes by a bit") {
-        const question healthy = faint_crowd(9, crowd);
+        const render_case healthy = faint_crowd(9, crowd);
         for (std::size_t p = 0; p < gs::parameter_count; ++p)
             for (const int k : {0, gs::parameter_width[p] - 1}) {
                 CAPTURE(parameter_names[p]);
-                question q = healthy;
+                render_case q = healthy;
                 values_of(q, static_cast<gs::parameter>(p), victim)[k] = not_a_number;
                 check_culled(q);
             }
@@ -99,22 +99,22 @@ TEST_CASE("case 9: needles, flat ones, and what is not a number") {
 TEST_CASE("case 10: a quaternion of no length, and of any") {
     SUBCASE("zero is culled") {
         for (const double zero : {0.0, -0.0}) {
-            question q = faint_crowd(10, crowd);
+            render_case q = faint_crowd(10, crowd);
             for (std::size_t k = 0; k < 4; ++k) values_of(q, gs::parameter::quaternion, victim)[k] = zero;
             check_culled(q);
         }
     }
     SUBCASE("the length changes nothing") {
-        question unit = random_question(11, 5, 24, 20, 1);
+        render_case unit = random_case(11, 5, 24, 20, 1);
         unit.weights = off_thresholds(unit, 1e-4);
-        const answer exact = reference().ask(unit);
+        const render_result exact = reference().render(unit);
         for (const double scale : {1e-36, 1e-20, 0x1p-60, 0x1p60, 1e20, 1e38}) {
             CAPTURE(scale);
-            question q = unit;
+            render_case q = unit;
             for (double& x : q.parameters[2]) x *= scale;
             on_each_variant([&](const backend& b, accumulator how) {
                 q.how = how;
-                answer a = b.ask(q);
+                render_result a = b.render(q);
                 CHECK(distance(a, exact, q) < 1e-5);
                 // Lengths at the ends of the range have gradients beyond it.
                 if (scale > 1e-36 && scale < 1e38)
@@ -128,14 +128,14 @@ TEST_CASE("case 10: a quaternion of no length, and of any") {
 }
 
 TEST_CASE("case 11: huge and tiny scales") {
-    question healthy = faint_crowd(11, crowd);
+    render_case healthy = faint_crowd(11, crowd);
     SUBCASE("from exp(-30) to exp(40), and beyond: drawn") {
         for (const double s :
              {-static_cast<double>(FLT_MAX), -120.0, -30.0, -10.0, 0.0, 10.0, 25.0, 40.0, 50.0})
             for (const bool all : {true, false}) {
                 CAPTURE(s);
                 CAPTURE(all);
-                question q = healthy;
+                render_case q = healthy;
                 double* mean = values_of(q, gs::parameter::mean, victim);
                 for (std::size_t k = 0; k < 3; ++k) mean[k] = 0;  // before the camera
                 double* scale = values_of(q, gs::parameter::log_scale, victim);
@@ -147,7 +147,7 @@ TEST_CASE("case 11: huge and tiny scales") {
     SUBCASE("exp(45) along the picture's rows, or its columns: drawn") {
         for (const int axis : {0, 1}) {
             CAPTURE(axis);
-            question q = empty_question(40, 24);
+            render_case q = empty_case(40, 24);
             gaussian g;
             g.log_scale = glm::dvec3(-3);
             g.log_scale[axis] = 45;
@@ -158,7 +158,7 @@ TEST_CASE("case 11: huge and tiny scales") {
     SUBCASE("exp(120), which no float holds: culled") {
         for (std::size_t k = 0; k < 3; ++k) {
             CAPTURE(k);
-            question q = healthy;
+            render_case q = healthy;
             values_of(q, gs::parameter::log_scale, victim)[k] = 120;
             check_culled(q);
         }
@@ -170,7 +170,7 @@ TEST_CASE("case 12: an infinite scale harms nobody else") {
         for (const bool all : {true, false}) {
             CAPTURE(s);
             CAPTURE(all);
-            question q = faint_crowd(12, crowd);
+            render_case q = faint_crowd(12, crowd);
             for (std::size_t k = 0; k < (all ? 3 : 1); ++k)
                 values_of(q, gs::parameter::log_scale, victim)[k] = s;
             check_culled(q);
@@ -179,7 +179,7 @@ TEST_CASE("case 12: an infinite scale harms nobody else") {
 
 TEST_CASE("case 19: a scale of 1e-4 is drawn through the pixel's filter, but not with antialiasing") {
     for (const double offset : {0.0, 0.03}) {
-        question q = empty_question(16, 12);
+        render_case q = empty_case(16, 12);
         paint_photo(q, 19);
         for (int i = 0; i < 4; ++i) {
             gaussian g;

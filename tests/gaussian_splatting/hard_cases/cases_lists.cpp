@@ -8,8 +8,8 @@
 #include <random>
 
 #include "bounds.hpp"
-#include "device/distribute.hpp"
 #include "cases.hpp"
+#include "device/distribute.hpp"
 #include "table.hpp"
 
 using namespace hard_cases;
@@ -52,13 +52,13 @@ TEST_CASE("case 14: numbers of tiles at powers of two") {
         for (const bool upright : {false, true}) {
             CAPTURE(tiles);
             CAPTURE(upright);
-            question q = empty_question(upright ? 16 : 16 * tiles, upright ? 16 * tiles : 16);
+            render_case q = empty_case(upright ? 16 : 16 * tiles, upright ? 16 * tiles : 16);
             constexpr double focal = 1024;  // a long lens: the last tile looks as the first
             q.view.camera.fx = q.view.camera.fy = focal;
             q.view.camera.cx = q.view.camera.cy = 8;
-            std::vector<question> alone;
+            std::vector<render_case> alone;
             for (int t = 0; t < tiles; ++t) {
-                question one = empty_question(16, 16);
+                render_case one = empty_case(16, 16);
                 one.view.camera = q.view.camera;
                 one.view.camera.width = one.view.camera.height = 16;
                 (upright ? one.view.camera.cy : one.view.camera.cx) -= 16 * t;
@@ -76,10 +76,10 @@ TEST_CASE("case 14: numbers of tiles at powers of two") {
                 alone.push_back(one);
             }
             on_each_backend([&](const backend& b) {
-                const std::vector<double> whole = b.ask(q).picture;
+                const std::vector<double> whole = b.render(q).picture;
                 double apart = 0, seen = 1;
                 for (int t = 0; t < tiles; ++t) {
-                    const std::vector<double> tile = b.ask(alone[static_cast<std::size_t>(t)]).picture;
+                    const std::vector<double> tile = b.render(alone[static_cast<std::size_t>(t)]).picture;
                     seen = std::min(seen, largest(tile));
                     for (std::size_t i = 0; i < tile.size(); ++i) {
                         const std::size_t channel = i / 256, x = i % 16, y = i / 16 % 16,
@@ -97,12 +97,12 @@ TEST_CASE("case 14: numbers of tiles at powers of two") {
 }
 
 TEST_CASE("case 18: 1,000 Gaussians at one depth keep their order") {
-    question q = random_question(18, 1000, 24, 10, 1);
+    render_case q = random_case(18, 1000, 24, 10, 1);
     q.view.camera.rotation = glm::dmat3(1);
     q.view.camera.translation = glm::dvec3(0);
     for (std::size_t i = 0; i < q.count(); ++i) q.parameters[0][3 * i + 2] = 4;
     // The same an ulp behind one another, in this order and against it.
-    question ascending = q, descending = q;
+    render_case ascending = q, descending = q;
     float z = 4;
     for (std::size_t i = 0; i < q.count(); ++i, z = std::nextafter(z, 5.0f)) {
         ascending.parameters[0][3 * i + 2] = z;
@@ -110,13 +110,13 @@ TEST_CASE("case 18: 1,000 Gaussians at one depth keep their order") {
     }
     q.weights = off_thresholds(q, 1e-3);
     on_each_backend([&](const backend& b) {
-        const answer first = b.ask(q);
-        CHECK(distance(b.ask(ascending), first, q) < 1e-3);
-        CHECK(distance(b.ask(descending), first, q) > 0.1);
+        const render_result first = b.render(q);
+        CHECK(distance(b.render(ascending), first, q) < 1e-3);
+        CHECK(distance(b.render(descending), first, q) > 0.1);
         std::size_t other = 0;
         for (int run = 0; run < 50; ++run) {
             omp_set_num_threads(run % 5 == 0 ? 2 + run % 3 : 1);
-            other += b.ask(q).picture == first.picture ? 0 : 1;
+            other += b.render(q).picture == first.picture ? 0 : 1;
         }
         omp_set_num_threads(1);
         CHECK(other == 0);

@@ -11,7 +11,7 @@ using namespace hard_cases;
 
 TEST_CASE("case 6: both passes stop at the same splat, by hand") {
     // T is 0.05, 0.0025, 0.000125; the fourth would bring it below 0.0001 and is left out.
-    blend_question q = empty_list(8, 4);
+    blend_case q = empty_list(8, 4);
     for (int i = 0; i < 8; ++i) {
         q.splats.push_back(round_splat(3.5, 2.5, 0, 0.95));
         q.splats.back().colour = {1, 0.5, 0.25};
@@ -21,7 +21,7 @@ TEST_CASE("case 6: both passes stop at the same splat, by hand") {
     q.gradient[pixel] = 1;
     on_each_variant([&](const backend& b, accumulator how) {
         q.how = how;
-        const blend_answer a = b.blend(q);
+        const blend_result a = b.blend(q);
         CHECK(a.last[pixel] == 3);
         CHECK(a.transmittance[pixel] == doctest::Approx(1.25e-4).epsilon(1e-5));
         CHECK(a.picture[pixel] == doctest::Approx(1 - 1.25e-4).epsilon(1e-6));
@@ -38,14 +38,14 @@ TEST_CASE("case 7: splats that a pixel does not see are not counted") {
     const flat_splat faint = round_splat(5.5, 2.5, 0, 1.2 / 255);
     flat_splat strong = round_splat(3.5, 2.5, 0, 0.5);
     strong.colour = {1, 1, 1};
-    blend_question q = empty_list(8, 4);
+    blend_case q = empty_list(8, 4);
     q.splats = {faint, strong, faint, strong, faint, faint, faint};
     constexpr std::size_t pixel = 2 * 8 + 3;
     q.gradient.assign(3 * 32, 0.0);
     q.gradient[pixel] = 1;
     on_each_variant([&](const backend& b, accumulator how) {
         q.how = how;
-        const blend_answer a = b.blend(q);
+        const blend_result a = b.blend(q);
         CHECK(a.last[pixel] == 4);
         CHECK(a.last[pixel + 2] == 7);  // where the faint ones are
         CHECK(a.transmittance[pixel] == 0.25);
@@ -60,7 +60,7 @@ TEST_CASE("case 26: a list of 100,000 splats of alpha 1/255") {
     std::mt19937 random(26);
     std::uniform_real_distribution<double> uniform;
     // All on one pixel, where T ends after some 2,300; and 20,000 over the pixels of a patch, 600 each.
-    blend_question deep = empty_list(8, 4), wide = empty_list(8, 4);
+    blend_case deep = empty_list(8, 4), wide = empty_list(8, 4);
     constexpr std::size_t pixel = 1 * 8 + 5;
     for (int i = 0; i < 100000; ++i) {
         deep.splats.push_back(round_splat(5.5, 1.5, 0, (1 + 0.01 * uniform(random)) / 255));
@@ -74,20 +74,20 @@ TEST_CASE("case 26: a list of 100,000 splats of alpha 1/255") {
     deep.gradient.assign(3 * 32, 0.0);
     deep.gradient[pixel] = 1;
     wide.gradient.assign(3 * 32, 1.0);
-    const blend_answer expected_wide = reference().blend(wide);
+    const blend_result expected_wide = reference().blend(wide);
     on_each_variant([&](const backend& b, accumulator how) {
         deep.how = wide.how = how;
-        const blend_answer a = b.blend(deep);
+        const blend_result a = b.blend(deep);
         CHECK(a.last[pixel] > 2300);
         CHECK(a.last[pixel] < 2400);
-        blend_question as_far = deep;
+        blend_case as_far = deep;
         as_far.splats.resize(a.last[pixel]);
         as_far.gradient.clear();
         CHECK(a.transmittance[pixel] ==
               doctest::Approx(reference().blend(as_far).transmittance[pixel]).epsilon(1e-4));
         CHECK(recovered(a, 0, 0, a.picture[pixel]) == doctest::Approx(1).epsilon(1e-4));
 
-        const blend_answer w = b.blend(wide);
+        const blend_result w = b.blend(wide);
         double worst = 0;
         for (std::size_t i = 0; i < 32; ++i)
             worst = std::max(worst, std::abs(w.transmittance[i] / expected_wide.transmittance[i] - 1));
@@ -137,7 +137,7 @@ TEST_CASE("case 27: what cancels in the sums of gradients") {
         CHECK(b.sum(exact, how) == 0x1p-3);
 
         // The same through the backward pass: under a capped alpha each pixel adds 0.99 times its gradient.
-        blend_question q = empty_list(16, 16);
+        blend_case q = empty_list(16, 16);
         q.how = how;
         q.splats = {round_splat(8, 8, 3000, 1)};
         std::vector<double> pixels{0x1p-10, 0};

@@ -14,18 +14,18 @@ using namespace hard_cases;
 
 TEST_CASE("case 15: nothing to draw") {
     for (const auto& [width, height] : {std::pair{1, 1}, {16, 16}, {20, 10}, {50, 40}}) {
-        const question crowded = random_question(9, 3, width, height, 1);
-        std::vector<question> empty(4, crowded);
+        const render_case crowded = random_case(9, 3, width, height, 1);
+        std::vector<render_case> empty(4, crowded);
         for (auto& p : empty[0].parameters) p.clear();
         empty[1].view.camera.translation = glm::dvec3(0, 0, -9);                  // behind the camera
         empty[2].parameters[3].assign(3, -20.0);                                  // transparent
         for (std::size_t i = 0; i < 3; ++i) empty[3].parameters[0][3 * i] = 1e4;  // beside the picture
-        for (question& q : empty) {
+        for (render_case& q : empty) {
             CAPTURE(width);
             CAPTURE(&q - empty.data());
             on_each_variant([&](const backend& b, accumulator how) {
                 q.how = how;
-                const answer a = b.ask(q);
+                const render_result a = b.render(q);
                 REQUIRE(a.picture.size() == 3 * q.pixels());
                 std::size_t other = 0;
                 for (std::size_t i = 0; i < a.picture.size(); ++i)
@@ -40,8 +40,8 @@ TEST_CASE("case 15: nothing to draw") {
 
 TEST_CASE("case 16: opacities at the least that is drawn") {
     // In the middle of a pixel, where alpha is the opacity.
-    question q = faint_crowd(16, crowd);
-    q.view.camera = empty_question(8, 4).view.camera;
+    render_case q = faint_crowd(16, crowd);
+    q.view.camera = empty_case(8, 4).view.camera;
     double* mean = values_of(q, gs::parameter::mean, victim);
     mean[0] = mean[1] = 0.25;
     mean[2] = 4;
@@ -56,14 +56,14 @@ TEST_CASE("case 16: opacities at the least that is drawn") {
     }
     logits.push_back(-5.5);
     on_each_variant([&](const backend& b, accumulator how) {
-        question rest = without(q, victim);
+        render_case rest = without(q, victim);
         q.how = rest.how = how;
-        const answer alone = b.ask(rest);
+        const render_result alone = b.render(rest);
         bool was_drawn = false;
         for (const double logit : logits) {
             CAPTURE(logit);
             values_of(q, gs::parameter::opacity, victim)[0] = logit;
-            const answer a = b.ask(q);
+            const render_result a = b.render(q);
             const bool drawn = b.project(q)[victim].drawn;
             was_drawn = drawn;
             CHECK(all_finite(a));
@@ -78,7 +78,7 @@ TEST_CASE("case 16: opacities at the least that is drawn") {
 
 TEST_CASE("case 17: depths of zero and of either sign, and at the near plane") {
     constexpr auto near = static_cast<float>(gs::raster::near_plane);
-    const auto at_depth = [](question& q, double z, double opacity, double red) {
+    const auto at_depth = [](render_case& q, double z, double opacity, double red) {
         gaussian g;
         g.mean = {0, 0, z};
         g.log_scale = glm::dvec3(std::max(std::log(std::abs(z) * 100 + 1e-20), -20.0));
@@ -90,7 +90,7 @@ TEST_CASE("case 17: depths of zero and of either sign, and at the near plane") {
         for (const double z : {-0.0, 0.0, 1e-30, -1e-30, -0.2, -4.0, static_cast<double>(near),
                                static_cast<double>(std::nextafter(near, 0.0f))}) {
             CAPTURE(z);
-            question q = faint_crowd(17, crowd);
+            render_case q = faint_crowd(17, crowd);
             q.view.camera.rotation = glm::dmat3(1);
             q.view.camera.translation = glm::dvec3(0);
             for (std::size_t i = 0; i < crowd; ++i) values_of(q, gs::parameter::mean, i)[2] += 4;
@@ -106,7 +106,7 @@ TEST_CASE("case 17: depths of zero and of either sign, and at the near plane") {
         float z = near;
         for (int i = 0; i < 8; ++i) depths.push_back(z = std::nextafter(z, 1.0f));
         for (const double far : {0.3, 1.0, 1e3, 1e8}) depths.push_back(far);
-        question q = empty_question(8, 4);
+        render_case q = empty_case(8, 4);
         paint_photo(q, 17);
         for (std::size_t i = 0; i < depths.size(); ++i) {
             const std::size_t rank = i * 5 % depths.size();
@@ -119,7 +119,7 @@ TEST_CASE("case 17: depths of zero and of either sign, and at the near plane") {
         }
         on_each_variant([&](const backend& b, accumulator how) {
             q.how = how;
-            const answer a = b.ask(q);
+            const render_result a = b.render(q);
             for (std::size_t i = 0; i < q.pixels(); ++i)
                 CHECK(a.picture[i] == doctest::Approx(red).epsilon(1e-3));
             CHECK(all_finite(a));
@@ -132,7 +132,7 @@ TEST_CASE("case 25: pictures of odd sizes") {
          {std::pair{1, 1}, {1, 17}, {17, 1}, {15, 15}, {16, 16}, {17, 17}, {33, 47}, {257, 257}}) {
         CAPTURE(width);
         CAPTURE(height);
-        question q = random_question(25, 20, width, height, 2);
+        render_case q = random_case(25, 20, width, height, 2);
         // As wide for thin pictures as for others.
         q.view.camera.fx = q.view.camera.fy = std::max(width, height);
         check_drawn(q, true);

@@ -18,9 +18,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A constant picture before a constant photo, which a background makes, of any brightness. A power of two
 /// goes through the photo's bytes as it is.
-compare_question flat_pictures(double picture, float photo, int size) {
+compare_case flat_pictures(double picture, float photo, int size) {
     const auto pixels = static_cast<std::size_t>(size * size);
-    compare_question q{size, size, {}, {}, {photo, photo, photo}};
+    compare_case q{size, size, {}, {}, {photo, photo, photo}};
     q.picture.assign(3 * pixels, static_cast<float>(picture));
     q.rgba.assign(4 * pixels, 0);
     return q;
@@ -37,14 +37,14 @@ TEST_CASE("case 20: the variances of the structural similarity of constant pictu
                 CAPTURE(apart);
                 // In units of the brightness: 1e-7 of it is an ulp or none.
                 const double picture = static_cast<double>(photo) * (1 + apart);
-                compare_question q = flat_pictures(picture, photo, size);
-                compare_question noisy = q;
+                compare_case q = flat_pictures(picture, photo, size);
+                compare_case noisy = q;
                 for (std::size_t i = 0; i < q.picture.size(); i += 3)
                     noisy.picture[i] = std::nextafter(static_cast<float>(q.picture[i]), 1e9f);
-                for (const compare_question* asked : {&q, &noisy}) {
-                    const compare_answer exact = reference().compare(*asked);
+                for (const compare_case* given : {&q, &noisy}) {
+                    const compare_result exact = reference().compare(*given);
                     on_each_backend([&](const backend& b) {
-                        const compare_answer a = b.compare(*asked);
+                        const compare_result a = b.compare(*given);
                         CHECK(std::abs(a.quality.ssim) <= 1);
                         CHECK(a.quality.ssim == doctest::Approx(exact.quality.ssim).epsilon(1e-5));
                         CHECK(all_finite(a.gradient));
@@ -53,7 +53,7 @@ TEST_CASE("case 20: the variances of the structural similarity of constant pictu
                         const double each = 0.8 * std::max(1.0, static_cast<double>(photo)) /
                                             static_cast<double>(q.picture.size());
                         CHECK(distance(a.gradient, exact.gradient) <= 1e-3 * each);
-                        if (asked == &q && apart == 0) {
+                        if (given == &q && apart == 0) {
                             CHECK(a.quality.ssim == 1);
                             CHECK(largest(a.gradient) == 0);
                         }
@@ -78,10 +78,10 @@ TEST_CASE("case 21: the logit of an opacity of 0 and of 1") {
     // And what is drawn of them is finite.
     on_each_variant([&](const backend& b, accumulator how) {
         for (const double logit : logits) {
-            question q = faint_crowd(21, 10);
+            render_case q = faint_crowd(21, 10);
             q.how = how;
             q.parameters[3][5] = logit;
-            CHECK(all_finite(b.ask(q)));
+            CHECK(all_finite(b.render(q)));
         }
     });
 }
@@ -107,9 +107,9 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
     });
     // A gradient of 1e30 by the picture, on its way through the backward pass into the statistics.
     on_each_variant([&](const backend& b, accumulator how) {
-        question q = faint_crowd(22, 10);
+        render_case q = faint_crowd(22, 10);
         // One, bright, whose gradient is larger than floats are.
-        question single = empty_question(1, 1);
+        render_case single = empty_case(1, 1);
         gaussian g;
         g.mean = {0.5, 0.25, 4};
         g.colour = {20, 20, 20};
@@ -123,10 +123,10 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
                 CHECK(std::isfinite(s.seen));
             }
         };
-        check_sound(b.ask(single).sightings);
+        check_sound(b.render(single).sightings);
         // A gradient that is no number is not counted, and neither is the look.
         single.weights = {std::nan("")};
-        for (const sighting& s : b.ask(single).sightings) {
+        for (const sighting& s : b.render(single).sightings) {
             CHECK(s.gradient == 0);
             // Fixed point has no NaN: it leaves such sums out, and says so elsewhere.
             CHECK(s.seen == (how == accumulator::fixed ? 1 : 0));
@@ -134,7 +134,7 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
         for (const double size : {1e30, 1e36, infinity}) {
             CAPTURE(size);
             q.weights.assign(q.pixels(), size);
-            check_sound(b.ask(q).sightings);
+            check_sound(b.render(q).sightings);
         }
     });
 }
@@ -220,7 +220,7 @@ TEST_CASE("Adam moves those that take part as a dense one does all, and touches 
 }
 
 TEST_CASE("case 24: an opacity of 0.01 at 1.4 standard deviations has no gradient, and that is said") {
-    question q = empty_question(8, 4);
+    render_case q = empty_case(8, 4);
     q.background = {0.5f, 0.5f, 0.5f};
     // On the axis and as wide as a pixel: 1.4 of it beside the last column's centre, on a row's centre.
     q.view.camera.cx = 7.5 + 1.4;
@@ -235,16 +235,16 @@ TEST_CASE("case 24: an opacity of 0.01 at 1.4 standard deviations has no gradien
     g.log_scale = glm::dvec3(-20);
     g.opacity = logit_of(0.0085);
     add(q, g);
-    question visible = q;
+    render_case visible = q;
     visible.parameters[3] = {logit_of(0.02), logit_of(0.02)};
     on_each_variant([&](const backend& b, accumulator how) {
         q.how = visible.how = how;
-        const answer a = b.ask(q);
+        const render_result a = b.render(q);
         for (const auto& gradients : a.gradients) CHECK(largest(gradients) == 0);
         // Their tile is theirs to draw in all the same, and that they took no gradient is reported.
         for (const projected_splat& s : b.project(q)) CHECK(s.drawn);
         CHECK(b.judge(a.sightings, q.parameters[3], {}).without_gradient == 2);
-        const answer seen = b.ask(visible);
+        const render_result seen = b.render(visible);
         for (const double by_opacity : seen.gradients[3]) CHECK(by_opacity != 0);
         CHECK(b.judge(seen.sightings, visible.parameters[3], {}).without_gradient == 0);
     });

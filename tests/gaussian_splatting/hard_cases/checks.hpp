@@ -12,19 +12,19 @@ namespace hard_cases {
 inline constexpr std::size_t crowd = 30, victim = 15;
 
 /// The values of one parameter of a Gaussian.
-double* values_of(question& q, gs::parameter p, std::size_t i);
+double* values_of(render_case& q, gs::parameter p, std::size_t i);
 
 /// A photo of noise, for the gradients' sake.
-void paint_photo(question& q, unsigned seed);
+void paint_photo(render_case& q, unsigned seed);
 
 /// The quaternion of a turn about an axis.
 std::array<double, 4> turned(double angle, const glm::dvec3& axis);
 
 /// With each variant on each backend: `victim` must not be drawn, and nobody else may notice.
-void check_culled(const question& q);
+void check_culled(const render_case& q);
 
 /// With each variant on each backend: drawn as the reference draws, finite, and the picture to 1e-3 of the
 /// reference's; the gradients within the bounds if they are asked for.
-void check_drawn(const question& q, bool with_gradients);
+void check_drawn(const render_case& q, bool with_gradients);
 
 }  // namespace hard_cases

@@ -54,10 +54,10 @@ verdict judge(double gradient, const std::function<double(double)>& loss, double
 
 }  // namespace
 
-verdict check_by_differences(const question& asked, const std::vector<std::size_t>& gaussians,
+verdict check_by_differences(const render_case& given, const std::vector<std::size_t>& gaussians,
                              unsigned seed) {
-    question q = asked;
-    const answer a = reference().ask(q);
+    render_case q = given;
+    const render_result a = reference().render(q);
     verdict all;
     for (std::size_t p = 0; p < gs::parameter_count; ++p) {
         if (q.parameters[p].empty()) continue;
@@ -93,7 +93,7 @@ verdict check_by_differences(const question& asked, const std::vector<std::size_
     all += judge(
         along,
         [&](double step) {
-            question moved = q;
+            render_case moved = q;
             for (std::size_t p = 0; p < gs::parameter_count; ++p)
                 for (std::size_t i = 0; i < direction[p].size(); ++i)
                     moved.parameters[p][i] += step * direction[p][i];
@@ -118,8 +118,8 @@ TEST_CASE("the reference's gradients are those of central differences") {
         const auto splats = seed == 0 ? 49 : up_to(1, 49);
         const auto width = static_cast<int>(seed == 0 ? 33 : up_to(8, 33) / (1 + seed % 2));
         const auto height = static_cast<int>(seed == 0 ? 47 : up_to(8, 47) / (1 + seed % 2));
-        question q = random_question(static_cast<unsigned>(seed), splats, std::max(8, width),
-                                     std::max(8, height), seed % 4);
+        render_case q = random_case(static_cast<unsigned>(seed), splats, std::max(8, width),
+                                    std::max(8, height), seed % 4);
         q.effects.antialiasing = seed / 4 % 2 == 1;
         if (seed / 8 % 2 == 1) add_backdrop(q, static_cast<unsigned>(seed));
         if (seed / 16 % 2 == 1) take_fisheye(q, static_cast<unsigned>(seed));
@@ -145,13 +145,13 @@ TEST_CASE("the reference's gradients are those of central differences") {
 TEST_CASE("the loss's gradient by the picture is that of central differences") {
     std::mt19937 random(1);
     for (const auto& [width, height] : {std::pair{8, 8}, {1, 1}, {13, 4}}) {
-        compare_question q{width, height, {}, {}, {0.3f, 0.1f, 0.9f}};
+        compare_case q{width, height, {}, {}, {0.3f, 0.1f, 0.9f}};
         const auto pixels = static_cast<std::size_t>(width * height);
         for (std::size_t i = 0; i < 4 * pixels; ++i)
             q.rgba.push_back(static_cast<std::uint8_t>(i % 4 == 3 ? 200 : random() % 201));
         for (std::size_t i = 0; i < 3 * pixels; ++i)
             q.picture.push_back(static_cast<double>(random() % 1000) / 999);
-        const compare_answer a = reference().compare(q);
+        const compare_result a = reference().compare(q);
         verdict all;
         for (std::size_t i = 0; i < q.picture.size(); ++i) {
             const double at = q.picture[i];

@@ -20,6 +20,6 @@ struct verdict {
 /// Compares the gradients of the loss by these Gaussians' parameters, each alone, and by all parameters along
 /// a random direction, with differences of step 1e-6, to a relative 1e-5 (and, for what rounding of the loss
 /// leaves of a difference, to 5e-10 and 1e-7 of the parameter's largest).
-verdict check_by_differences(const question& q, const std::vector<std::size_t>& gaussians, unsigned seed);
+verdict check_by_differences(const render_case& q, const std::vector<std::size_t>& gaussians, unsigned seed);
 
 }  // namespace hard_cases

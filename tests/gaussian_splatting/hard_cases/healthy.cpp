@@ -9,13 +9,13 @@
 
 namespace hard_cases {
 
-question faint_crowd(unsigned seed, std::size_t count, int width, int height) {
-    question q = random_question(seed, count, width, height, 3);
+render_case faint_crowd(unsigned seed, std::size_t count, int width, int height) {
+    render_case q = random_case(seed, count, width, height, 3);
     for (double& o : q.parameters[3]) o = static_cast<float>(-3.5 + 0.25 * o);
     return q;
 }
 
-std::string harm(const answer& with, const answer& rest, std::size_t index, bool loosely) {
+std::string harm(const render_result& with, const render_result& rest, std::size_t index, bool loosely) {
     std::string said;
     if (with.picture != rest.picture) said += "another picture; ";
     for (std::size_t p = 0; p < gs::parameter_count; ++p) {

@@ -27,8 +27,8 @@ inline flat_splat random_splat(std::mt19937& random, int width, int height, doub
     return s;
 }
 
-inline blend_question empty_list(int width, int height) {
-    blend_question q{};
+inline blend_case empty_list(int width, int height) {
+    blend_case q{};
     q.width = width;
     q.height = height;
     return q;
@@ -52,7 +52,7 @@ inline std::vector<double> one_pixel_a_tile(std::mt19937& random, int width, int
 
 /// T at the first splat of a list as the backward pass recovers it, over what it is, 1. `alpha` is what the
 /// forward pass gave that splat.
-inline double recovered(const blend_answer& a, std::size_t splat, std::size_t channel, double alpha) {
+inline double recovered(const blend_result& a, std::size_t splat, std::size_t channel, double alpha) {
     return a.sums[splat][channel] / alpha;
 }
 

@@ -60,7 +60,7 @@ class lists_on {
     using memory = memory_on<Device, Real>;
 
   public:
-    static blend_answer blend(const blend_question& q) {
+    static blend_result blend(const blend_case& q) {
         using namespace gs::raster;
         Device device;
         memory on(device);
@@ -114,7 +114,7 @@ class lists_on {
             lists,       in_order,           background,  picture.data(), transmittance.data(),
             last.data(), checkpoints.data(), pairs.data()};
         device.for_each_warp(forward.template warps<warp>(tiles.size()), forward);
-        blend_answer a;
+        blend_result a;
         a.picture = on.get(picture.data(), 3 * pixels);
         a.transmittance = on.get(transmittance.data(), pixels);
         a.last = on.get_as_they_are(last.data(), pixels);

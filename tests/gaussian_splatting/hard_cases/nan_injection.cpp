@@ -18,16 +18,16 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double most = FLT_MAX, least = FLT_MIN, denormal = 0x1p-149;
 
-constexpr double poisons[] = {not_a_number, infinity, -infinity, 0.0,  -0.0,  denormal, -denormal, least,
-                              -least,       most,     -most,     1e30, -1e30, 1e20,     -1e20,     1e-30,
-                              1e-20,        -1e-20,   40,        -40,  120,   -120};
-static_assert(std::size(poisons) == 22);
+constexpr double injected_values[] = {
+    not_a_number, infinity, -infinity, 0.0,   -0.0,  denormal, -denormal, least, -least, most, -most,
+    1e30,         -1e30,    1e20,      -1e20, 1e-30, 1e-20,    -1e-20,    40,    -40,    120,  -120};
+static_assert(std::size(injected_values) == 22);
 
 constexpr std::size_t crowd = brief ? 40 : 120, victim = crowd / 2;
 
 /// Whether a Gaussian is none, from the definition: it has parameters that are not finite, no extent that a
 /// float could hold, or no orientation.
-bool is_bad(const question& q, std::size_t i) {
+bool is_bad(const render_case& q, std::size_t i) {
     for (std::size_t p = 0; p < gs::parameter_count; ++p) {
         const auto width = static_cast<std::size_t>(gs::parameter_width[p]);
         for (std::size_t k = i * width; k < (i + 1) * width; ++k)
@@ -41,7 +41,7 @@ bool is_bad(const question& q, std::size_t i) {
 }
 
 /// One value in one parameter of the victim, and what the reference makes of it.
-struct poisoned {
+struct injected {
     std::size_t parameter, element;
     double value;
     bool is_bad = false, is_drawn = false;
@@ -49,7 +49,7 @@ struct poisoned {
 };
 
 /// To a thousandth of the brightest, off the thresholds.
-bool alike(const std::vector<double>& picture, const poisoned& one) {
+bool alike(const std::vector<double>& picture, const injected& one) {
     double apart = 0;
     for (std::size_t i = 0; i < picture.size(); ++i)
         if (one.weights[i % one.weights.size()] != 0)
@@ -57,38 +57,38 @@ bool alike(const std::vector<double>& picture, const poisoned& one) {
     return apart <= 1e-3 * std::max(1.0, largest(one.picture));
 }
 
-/// A crowd, and each poison in each of the first parameters of the victim, as the reference sees them.
-struct poisoned_crowd {
-    question healthy;
-    std::vector<poisoned> all;
+/// A crowd, and each value in each of the first parameters of the victim, as the reference sees them.
+struct injected_crowd {
+    render_case healthy;
+    std::vector<injected> all;
     std::size_t bad = 0, drawn = 0;
 
-    poisoned_crowd(int width, int height, std::size_t parameters)
+    injected_crowd(int width, int height, std::size_t parameters)
         : healthy(faint_crowd(120, crowd, width, height)) {
         for (std::size_t k = 0; k < 3; ++k) healthy.parameters[0][3 * victim + k] *= 0.1;  // in the picture
         REQUIRE(reference().project(healthy)[victim].drawn);
         for (std::size_t p = 0; p < parameters; ++p)
             for (std::size_t k = 0; k < static_cast<std::size_t>(gs::parameter_width[p]); ++k)
-                for (const double poison : poisons) {
+                for (const double value : injected_values) {
                     const std::size_t element = k + victim * static_cast<std::size_t>(gs::parameter_width[p]);
-                    all.push_back(poisoned{p, element, poison});
+                    all.push_back(injected{p, element, value});
                     judge(all.back());
                 }
     }
 
-    question with(const poisoned& one) const {
-        question q = healthy;
+    render_case with(const injected& one) const {
+        render_case q = healthy;
         q.parameters[one.parameter][one.element] = one.value;
         return q;
     }
 
   private:
-    void judge(poisoned& one) {
-        const question q = with(one);
+    void judge(injected& one) {
+        const render_case q = with(one);
         one.is_bad = is_bad(q, victim);
         one.is_drawn = !one.is_bad && reference().project(q)[victim].drawn;
         if (one.is_drawn) one.weights = off_thresholds(q, 1e-3);
-        if (one.is_drawn) one.picture = reference().ask(q).picture;
+        if (one.is_drawn) one.picture = reference().render(q).picture;
         bad += one.is_bad ? 1 : 0;
         drawn += one.is_drawn ? 1 : 0;
     }
@@ -96,7 +96,7 @@ struct poisoned_crowd {
 
 /// What a backend makes otherwise of the projection; `before` is that of the healthy crowd.
 std::string wrong_projection(const std::vector<projected_splat>& found,
-                             const std::vector<projected_splat>& before, const poisoned& one) {
+                             const std::vector<projected_splat>& before, const injected& one) {
     std::string said;
     if (found[victim].drawn != one.is_drawn)
         said += one.is_drawn ? "valid, but culled; " : "to be culled, but drawn; ";
@@ -105,7 +105,7 @@ std::string wrong_projection(const std::vector<projected_splat>& found,
     return said;
 }
 
-void check_nothing(const std::string& said, const poisoned& one) {
+void check_nothing(const std::string& said, const injected& one) {
     if (said.empty()) return;
     CAPTURE(parameter_names[one.parameter]);
     CAPTURE(one.element);
@@ -115,19 +115,19 @@ void check_nothing(const std::string& said, const poisoned& one) {
 
 }  // namespace
 
-TEST_CASE("poison: 22 values in every parameter of one Gaussian of a crowd") {
-    const poisoned_crowd poisoned(8, 4, gs::parameter_count);
-    REQUIRE(poisoned.all.size() == 22 * 59);
+TEST_CASE("NaN injection: 22 values in every parameter of one Gaussian of a crowd") {
+    const injected_crowd injected(8, 4, gs::parameter_count);
+    REQUIRE(injected.all.size() == 22 * 59);
     on_each_variant([&](const backend& b, accumulator how) {
-        question rest = without(poisoned.healthy, victim);
+        render_case rest = without(injected.healthy, victim);
         rest.how = how;
-        const answer alone = b.ask(rest);
-        const std::vector<projected_splat> before = b.project(poisoned.healthy);
-        for (const auto& one : poisoned.all) {
-            question q = poisoned.with(one);
+        const render_result alone = b.render(rest);
+        const std::vector<projected_splat> before = b.project(injected.healthy);
+        for (const auto& one : injected.all) {
+            render_case q = injected.with(one);
             q.how = how;
             std::string said = wrong_projection(b.project(q), before, one);
-            const answer a = b.ask(q);
+            const render_result a = b.render(q);
             if (!all_finite(a)) said += "not finite; ";
             if (!one.is_drawn) said += harm(a, alone, victim, is_loose(b, how));
             if (one.is_drawn && !alike(a.picture, one)) said += "another picture than in double; ";
@@ -136,23 +136,22 @@ TEST_CASE("poison: 22 values in every parameter of one Gaussian of a crowd") {
         CHECK(largest(alone.gradients[0]) > 0);
     });
     // Both kinds are many.
-    CHECK(poisoned.bad * 10 > poisoned.all.size());
-    CHECK(poisoned.drawn * 2 > poisoned.all.size());
-    remark("a crowd of " + std::to_string(crowd) + "; " + std::to_string(poisoned.all.size()) +
-           " questions: " + std::to_string(poisoned.bad) + " of no Gaussian, " +
-           std::to_string(poisoned.drawn) + " drawn");
+    CHECK(injected.bad * 10 > injected.all.size());
+    CHECK(injected.drawn * 2 > injected.all.size());
+    remark("a crowd of " + std::to_string(crowd) + "; " + std::to_string(injected.all.size()) + " cases: " +
+           std::to_string(injected.bad) + " of no Gaussian, " + std::to_string(injected.drawn) + " drawn");
 }
 
-TEST_CASE("poison: 22 values in place, shape and opacity, in a picture of six tiles") {
-    const poisoned_crowd poisoned(40, 24, 4);
-    REQUIRE(poisoned.all.size() == 22 * 11);
+TEST_CASE("NaN injection: 22 values in place, shape and opacity, in a picture of six tiles") {
+    const injected_crowd injected(40, 24, 4);
+    REQUIRE(injected.all.size() == 22 * 11);
     on_each_backend([&](const backend& b) {
-        const answer alone = b.ask(without(poisoned.healthy, victim));
-        const std::vector<projected_splat> before = b.project(poisoned.healthy);
-        for (const auto& one : poisoned.all) {
-            const question q = poisoned.with(one);
+        const render_result alone = b.render(without(injected.healthy, victim));
+        const std::vector<projected_splat> before = b.project(injected.healthy);
+        for (const auto& one : injected.all) {
+            const render_case q = injected.with(one);
             std::string said = wrong_projection(b.project(q), before, one);
-            const answer a = b.ask(q);
+            const render_result a = b.render(q);
             if (!all_finite(a)) said += "not finite; ";
             if (!one.is_drawn && a.picture != alone.picture) said += "another picture; ";
             if (one.is_drawn && !alike(a.picture, one)) said += "another picture than in double; ";

@@ -17,7 +17,7 @@ backend make_backend(const char* name) {
     return {name,
             Device::warp::size,
             [] { return Device().name(); },
-            pictures::ask,
+            pictures::render,
             pictures::loss,
             pictures::project,
             lists::blend,

@@ -44,7 +44,7 @@ class pictures_on {
         buffer<Real> backdrop, by_depths;
         double depth_loss = 0;
 
-        void draw(const question& q) {
+        void draw(const render_case& q) {
             for (std::size_t p = 0; p < gs::parameter_count; ++p) {
                 put(on, values[p], q, p);
                 gradients[p].resize(values[p].size());
@@ -64,7 +64,7 @@ class pictures_on {
             loss.set_target({photo.data(), camera.width, camera.height, q.background});
         }
 
-        void draw_depths(const question& q) {
+        void draw_depths(const render_case& q) {
             renderer.blend_depths();
             const std::vector<double> inverse = on.get(renderer.picture(), q.pixels());
             std::vector<double> weights = q.depth_weights;
@@ -79,12 +79,12 @@ class pictures_on {
     };
 
     /// Of a pixel, by picture and inverse depth.
-    static float largest_gradient(const question& q) {
+    static float largest_gradient(const render_case& q) {
         return (q.weights.empty() ? 1 : largest_of(q.weights)) / static_cast<float>(q.pixels());
     }
 
   public:
-    static answer ask(const question& q) {
+    static render_result render(const render_case& q) {
         session s;
         s.draw(q);
         const std::size_t values = 3 * q.pixels();
@@ -106,7 +106,7 @@ class pictures_on {
         s.renderer.backward(by_picture, largest_gradient(q), q.how, q.sh_degree,
                             gs::raster::store_gradients<Real>{write(s.gradients)}, seen.data());
 
-        answer a;
+        render_result a;
         a.picture = s.on.get(s.renderer.picture(), values);
         a.loss = s.loss.take().loss + s.depth_loss;
         for (std::size_t p = 0; p < gs::parameter_count; ++p)
@@ -119,14 +119,14 @@ class pictures_on {
         return a;
     }
 
-    static double loss(const question& q) {
+    static double loss(const render_case& q) {
         session s;
         s.draw(q);
         s.loss.gradient(s.renderer.picture(), {});
         return s.loss.take().loss + s.depth_loss;
     }
 
-    static std::vector<projected_splat> project(const question& q) {
+    static std::vector<projected_splat> project(const render_case& q) {
         Device device;
         memory on(device);
         parameters values;
@@ -179,12 +179,13 @@ class pictures_on {
     }
 
   private:
-    /// One parameter of all Gaussians, or its gradients; none where the question has none.
-    static void put(memory& on, buffer<Real>& to, const question& q, std::size_t p) {
+    /// One parameter of all Gaussians, or its gradients; none where the case has none.
+    static void put(memory& on, buffer<Real>& to, const render_case& q, std::size_t p) {
         const std::size_t width = gs::width_of(static_cast<gs::parameter>(p));
         on.put(to, gs::to_blocks(q.parameters[p].data(), q.parameters[p].size() / width, width, width));
     }
-    static std::vector<double> get(memory& on, const buffer<Real>& from, const question& q, std::size_t p) {
+    static std::vector<double> get(memory& on, const buffer<Real>& from, const render_case& q,
+                                   std::size_t p) {
         const std::size_t width = gs::width_of(static_cast<gs::parameter>(p));
         std::vector<double> rows(q.parameters[p].size());
         const std::vector<double> blocks = on.get(from.data(), from.size());

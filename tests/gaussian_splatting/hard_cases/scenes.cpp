@@ -8,11 +8,11 @@
 #include <functional>
 #include <random>
 
-#include "readers/load_scene.hpp"
 #include "bounds.hpp"
 #include "budget.hpp"
 #include "cases.hpp"
 #include "lab/accumulator_set.hpp"
+#include "readers/load_scene.hpp"
 #include "table.hpp"
 #include "training/initialise.hpp"
 #include "training/training.hpp"
@@ -32,9 +32,9 @@ constexpr double margin = 2e-5;
 
 /// What a backend's gradients are measured by, over the pixels off the thresholds.
 struct measured {
-    question q;
+    render_case q;
     std::size_t moved;  ///< colours that were
-    answer expected;
+    render_result expected;
 };
 
 double share_left_out(const std::vector<measured>& all) {
@@ -49,46 +49,46 @@ double share_left_out(const std::vector<measured>& all) {
 /// In dark regions the similarity's gradient changes by 2 / C1 = 2e4 times what the picture does: there the
 /// millionth by which pictures in float and double differ would be all that is seen. With `one_picture` the
 /// loss's gradient is taken at the same picture by all.
-std::vector<measured> measure(const std::vector<question>& questions, bool one_picture) {
-    std::vector<measured> all(questions.size());
+std::vector<measured> measure(const std::vector<render_case>& cases, bool one_picture) {
+    std::vector<measured> all(cases.size());
     in_parallel(all.size(), [&](std::size_t i) {
-        all[i].q = questions[i];
+        all[i].q = cases[i];
         all[i].moved = move_off_black(all[i].q);
         all[i].q.weights = off_thresholds(all[i].q, margin, 8);
         if (one_picture) {
-            all[i].q.gradient_at = reference().ask(all[i].q).picture;
+            all[i].q.gradient_at = reference().render(all[i].q).picture;
             for (double& x : all[i].q.gradient_at) x = static_cast<float>(x);
         }
-        all[i].expected = reference().ask(all[i].q);
+        all[i].expected = reference().render(all[i].q);
     });
     return all;
 }
 
-/// Each answer within the bounds, and all of a parameter's gradients in all answers together without a bias.
+/// Each result within the bounds, all gradients of a parameter together without a bias.
 void check_all(const std::vector<measured>& all, const backend& b, accumulator how) {
-    std::vector<answer> answers(all.size());
+    std::vector<render_result> renders(all.size());
     std::vector<std::string> said(all.size());
     in_parallel(all.size(), [&](std::size_t i) {
-        question q = all[i].q;
+        render_case q = all[i].q;
         // A way that knows no skies is not asked for one.
         q.how = q.backdrop.empty() || gs::lab::lab_accumulators::supports_backdrop(how) ? how
                                                                                         : accumulator::native;
-        answers[i] = b.ask(q);
-        said[i] = excess(answers[i], all[i].expected);
-        if (distance(answers[i], all[i].expected, q) > 1e-4) said[i] += "the picture";
+        renders[i] = b.render(q);
+        said[i] = excess(renders[i], all[i].expected);
+        if (distance(renders[i], all[i].expected, q) > 1e-4) said[i] += "the picture";
     });
     agreement worst;
     for (std::size_t i = 0; i < all.size(); ++i) {
         CAPTURE(i);
         CHECK(said[i] == "");
-        const agreement one = compare(answers[i], all[i].expected);
+        const agreement one = compare(renders[i], all[i].expected);
         worst += {one.error_over_bound, one.cosine, 0};
     }
     for (std::size_t p = 0; p < gs::parameter_count; ++p) {
         CAPTURE(parameter_names[p]);
         std::vector<double> got, expected;
         for (std::size_t i = 0; i < all.size(); ++i) {
-            const auto &g = answers[i].gradients[p], &e = all[i].expected.gradients[p];
+            const auto &g = renders[i].gradients[p], &e = all[i].expected.gradients[p];
             got.insert(got.end(), g.begin(), g.end());
             expected.insert(expected.end(), e.begin(), e.end());
         }
@@ -106,8 +106,8 @@ std::filesystem::path lego() {
            "lego";
 }
 
-/// A model after a short training, as a question about each of some of its views.
-std::vector<question> trained(gs::train::engine& engine, const gs::scene& scene, int iterations) {
+/// A model after a short training, a case for each of some of its views.
+std::vector<render_case> trained(gs::train::engine& engine, const gs::scene& scene, int iterations) {
     gs::train::train_options o;
     engine.set_views(scene.train, scene.test, o.schedule.num_downscales);
     engine.set_model(gs::from_points(gs::random_points(scene, 5000, 1), 3, 5000, 1));
@@ -120,9 +120,9 @@ std::vector<question> trained(gs::train::engine& engine, const gs::scene& scene,
     events.save = events.test = [](int) {};
     gs::train::train(engine, scene, o, events);
     const gs::gaussians model = engine.get_model();
-    std::vector<question> questions;
+    std::vector<render_case> cases;
     for (std::size_t v = 0; v < scene.train.size(); v += scene.train.size() / (brief ? 1 : 3)) {
-        question q;
+        render_case q;
         q.view = scene.train[v];
         const auto put = [&](gs::parameter p, const std::vector<float>& values) {
             q.parameters[static_cast<std::size_t>(p)].assign(values.begin(), values.end());
@@ -137,26 +137,26 @@ std::vector<question> trained(gs::train::engine& engine, const gs::scene& scene,
             for (std::size_t p = 5, at = i * width; p < gs::parameter_count; ++p)
                 for (int k = 0; k < gs::parameter_width[p]; ++k)
                     q.parameters[p].push_back(static_cast<double>(model.sh_rest[at++]));
-        questions.push_back(q);
+        cases.push_back(q);
     }
-    return questions;
+    return cases;
 }
 
 }  // namespace
 
 TEST_CASE("100 random scenes: gradients in float against double") {
-    std::vector<question> questions;
+    std::vector<render_case> cases;
     for (unsigned seed = 100; seed < 200; ++seed) {
         std::mt19937 random(seed);
         const int width = 8 + static_cast<int>(random() % 26), height = 8 + static_cast<int>(random() % 40);
-        questions.push_back(random_question(seed, 1 + random() % 49, seed == 100 ? 33 : width,
-                                            seed == 100 ? 47 : height, static_cast<int>(seed % 4)));
-        questions.back().effects.antialiasing = seed / 4 % 2 == 1;
-        if (seed / 8 % 2 == 1) add_backdrop(questions.back(), seed);
-        if (seed / 16 % 2 == 1) take_fisheye(questions.back(), seed);
-        if (seed / 32 % 2 == 1) add_depths(questions.back(), seed);
+        cases.push_back(random_case(seed, 1 + random() % 49, seed == 100 ? 33 : width,
+                                    seed == 100 ? 47 : height, static_cast<int>(seed % 4)));
+        cases.back().effects.antialiasing = seed / 4 % 2 == 1;
+        if (seed / 8 % 2 == 1) add_backdrop(cases.back(), seed);
+        if (seed / 16 % 2 == 1) take_fisheye(cases.back(), seed);
+        if (seed / 32 % 2 == 1) add_depths(cases.back(), seed);
     }
-    const std::vector<measured> all = measure(questions, false);
+    const std::vector<measured> all = measure(cases, false);
     CHECK(share_left_out(all) < 0.02);
     on_each_variant([&](const backend& b, accumulator how) { check_all(all, b, how); });
 }
@@ -190,12 +190,12 @@ TEST_CASE("a trained scene: gradients in float against double") {
 }
 
 TEST_CASE("the variants' gradients agree to 1e-5") {
-    question q = random_question(7, 300, 64, 48, 3);
+    render_case q = random_case(7, 300, 64, 48, 3);
     on_each_variant([&](const backend& b, accumulator how) {
         q.how = accumulator::native;
-        const answer ours = b.ask(q);
+        const render_result ours = b.render(q);
         q.how = how;
-        const answer theirs = b.ask(q);
+        const render_result theirs = b.render(q);
         for (std::size_t p = 0; p < gs::parameter_count; ++p) {
             CAPTURE(parameter_names[p]);
             double apart = 0, mass = 0;

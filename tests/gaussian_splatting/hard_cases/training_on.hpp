@@ -40,7 +40,7 @@ class training_on {
     using memory = memory_on<Device, Real>;
 
   public:
-    static compare_answer compare(const compare_question& q) {
+    static compare_result compare(const compare_case& q) {
         Device device;
         memory on(device);
         gs::train::l1_ssim<Device, Real> loss(device);
@@ -53,7 +53,7 @@ class training_on {
         loss.set_target(target);
         comparison.set_target(target);
         comparison.compare(picture.data());
-        compare_answer a;
+        compare_result a;
         a.gradient = on.get(loss.gradient(picture.data(), {}), q.picture.size());
         a.loss = loss.take().loss;
         a.quality = comparison.take();
