@@ -10,24 +10,26 @@
 
 namespace gs {
 
-/// Writes a file through `fill`, aside under another name, and renames it when it is whole: a reader sees the
-/// old file or the new one. Throws `error` naming the file when it cannot be written.
-inline void write_aside(const std::filesystem::path& file, const std::function<void(std::ostream&)>& fill) {
-    const std::filesystem::path aside = file.string() + ".part";
+/// Replaces a file by what `fill` writes. `fill` writes to a temporary file beside it, which is renamed in
+/// the end, so that others see the old file or the complete new one. Throws `error` naming the file if it
+/// cannot be written; what `fill` throws passes through. The old file stays then.
+inline void atomic_file_write(const std::filesystem::path& file,
+                              const std::function<void(std::ostream&)>& fill) {
+    const std::filesystem::path temporary = file.string() + ".part";
     std::error_code ignored;
     try {
-        std::ofstream out(aside, std::ios::binary);
+        std::ofstream out(temporary, std::ios::binary);
         if (out) fill(out);
         out.close();
         if (!out) throw error("cannot write " + file.string());
     } catch (...) {
-        std::filesystem::remove(aside, ignored);
+        std::filesystem::remove(temporary, ignored);
         throw;
     }
     std::error_code failed;
-    std::filesystem::rename(aside, file, failed);
+    std::filesystem::rename(temporary, file, failed);
     if (failed) {
-        std::filesystem::remove(aside, ignored);
+        std::filesystem::remove(temporary, ignored);
         throw error("cannot write " + file.string() + ": " + failed.message());
     }
 }

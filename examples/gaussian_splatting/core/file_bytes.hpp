@@ -11,7 +11,8 @@
 
 namespace gs {
 
-/// A file that is open for reading, and its size in bytes. Throws `error` naming it where it cannot be read.
+/// A file that is open for reading, and its size in bytes. Throws `error` naming the file if it cannot be
+/// read.
 struct opened_file {
     explicit opened_file(const std::filesystem::path& file) : name(file.string()) {
         std::error_code failed;
@@ -26,7 +27,7 @@ struct opened_file {
     std::ifstream in;
 };
 
-/// A whole file. Throws `error` naming it where it cannot be read.
+/// Reads a whole file. Throws `error` naming the file if it cannot be read.
 inline std::string file_bytes(const std::filesystem::path& file) {
     opened_file opened(file);
     std::string bytes(opened.size, '\0');

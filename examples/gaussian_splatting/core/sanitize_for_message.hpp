@@ -8,9 +8,9 @@
 
 namespace gs {
 
-/// A piece of a file as a message shows it: one that is longer than a name can be is cut, and what would end
-/// the line or steer a terminal becomes a question mark.
-inline std::string clipped(std::string_view text) {
+/// Makes text from a file fit for a message: cuts it after 255 bytes, and replaces control characters, which
+/// could end the line or steer a terminal, by question marks.
+inline std::string sanitize_for_message(std::string_view text) {
     constexpr std::size_t longest = 255;
     std::string shown(text.substr(0, longest));
     for (char& c : shown)

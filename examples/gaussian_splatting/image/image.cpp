@@ -19,8 +19,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "../core/error.hpp"
 #include "../core/atomic_file_write.hpp"
+#include "../core/error.hpp"
 
 // jpeglib.h leaves it to its user to have declared FILE and size_t.
 #include <jpeglib.h>
@@ -434,7 +434,7 @@ void write_png(const std::filesystem::path& file, int width, int height, const s
         for (std::size_t channel = 0; channel < 3; ++channel)
             rgb[3 * i + channel] = to_byte(planes[channel * plane + i]);
     auto rows = row_pointers(rgb.data(), 3 * columns, lines);
-    write_aside(file, [&](std::ostream& out) {
+    atomic_file_write(file, [&](std::ostream& out) {
         png_writer writer;
         if (!writer.ready()) throw std::bad_alloc();
         if (!writer.write_rgb(out, width, height, rows.data()))

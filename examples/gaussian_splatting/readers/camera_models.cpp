@@ -40,7 +40,8 @@ const camera_model& camera_model_with_id(int id, const std::string& where) {
 }
 
 const camera_model& camera_model_named(std::string_view name, const std::string& where) {
-    return find_model([&](const camera_model& model) { return model.name == name; }, clipped(name), where);
+    return find_model([&](const camera_model& model) { return model.name == name; },
+                      sanitize_for_message(name), where);
 }
 
 }  // namespace gs

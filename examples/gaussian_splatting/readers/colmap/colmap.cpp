@@ -47,7 +47,7 @@ void sort_by_id(std::vector<colmap_camera>& cameras, const std::filesystem::path
 const colmap_camera& camera_of(const colmap_image& taken, const colmap_model& model) {
     const auto found = std::ranges::lower_bound(model.cameras, taken.camera_id, {}, &colmap_camera::id);
     if (found == model.cameras.end() || found->id != taken.camera_id)
-        throw error(model.images_file.string() + ": the image " + clipped(model.name(taken)) +
+        throw error(model.images_file.string() + ": the image " + sanitize_for_message(model.name(taken)) +
                     " refers to camera " + std::to_string(taken.camera_id) + ", which is not there");
     return *found;
 }
@@ -61,7 +61,7 @@ std::vector<image_record> image_records(const colmap_model& model, const std::fi
         const colmap_camera& by = camera_of(taken, model);
         const std::string_view name = model.name(taken);
         if (name.size() > longest_path)
-            throw error(model.images_file.string() + ": the name of the image " + clipped(name) +
+            throw error(model.images_file.string() + ": the name of the image " + sanitize_for_message(name) +
                         " is too long");
         image_record one;
         one.name = name;
@@ -78,7 +78,8 @@ std::vector<image_record> image_records(const colmap_model& model, const std::fi
     std::ranges::sort(records, {}, &image_record::name);
     const auto twice = std::ranges::adjacent_find(records, {}, &image_record::name);
     if (twice != records.end())
-        throw error(model.images_file.string() + " lists the image " + clipped(twice->name) + " twice");
+        throw error(model.images_file.string() + " lists the image " + sanitize_for_message(twice->name) +
+                    " twice");
     return records;
 }
 

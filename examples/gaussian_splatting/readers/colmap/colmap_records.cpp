@@ -43,14 +43,16 @@ void add_image(colmap_model& model, const std::array<double, 4>& quaternion,
     const auto& [w, x, y, z] = quaternion;
     const double norm = std::hypot(std::hypot(w, x), std::hypot(y, z));
     if (!std::isfinite(norm) || norm < 1e-12)
-        throw error(where + ": the rotation of the image " + clipped(name) + " is zero or not finite");
+        throw error(where + ": the rotation of the image " + sanitize_for_message(name) +
+                    " is zero or not finite");
     colmap_image added;
     added.camera_id = camera_id;
     added.name_begins = model.names.size();
     added.rotation = glm::dquat(w / norm, x / norm, y / norm, z / norm);
     added.translation = {translation[0], translation[1], translation[2]};
     if (!is_valid_position(added.translation))
-        throw error(where + ": the translation of the image " + clipped(name) + invalid_position);
+        throw error(where + ": the translation of the image " + sanitize_for_message(name) +
+                    invalid_position);
     model.names.resize(added.name_begins + name.size() + 1);
     std::ranges::copy(name, model.names.data() + added.name_begins);
     model.images.push_back(added);

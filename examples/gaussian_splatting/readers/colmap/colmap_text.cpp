@@ -77,7 +77,7 @@ class text_reader {
         T value{};
         const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
         if (problem != std::errc() || end != text.data() + text.size())
-            malformed(std::string(what) + " cannot be '" + clipped(text) + "'");
+            malformed(std::string(what) + " cannot be '" + sanitize_for_message(text) + "'");
         return value;
     }
 

@@ -77,7 +77,8 @@ std::filesystem::path find_mask(const std::filesystem::path& data, const transfo
     if (all.frames[index].mask.empty()) return {};
     auto file = data / all.frames[index].mask;
     if (!std::filesystem::is_regular_file(file))
-        throw error(all.where_is(index) + ": the mask " + clipped(file.string()) + " is no file");
+        throw error(all.where_is(index) + ": the mask " + sanitize_for_message(file.string()) +
+                    " is no file");
     return file;
 }
 

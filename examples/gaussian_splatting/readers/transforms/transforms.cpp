@@ -236,7 +236,8 @@ std::optional<double> find_in(const std::vector<said_number>& numbers, transform
 
 std::string transforms::where_is(std::size_t index) const {
     const std::string& path = frames[index].path;
-    return where + " frame " + std::to_string(index) + (path.empty() ? "" : " (" + clipped(path) + ")");
+    return where + " frame " + std::to_string(index) +
+           (path.empty() ? "" : " (" + sanitize_for_message(path) + ")");
 }
 
 std::optional<double> transforms::number(std::size_t index, transforms_number which) const {

@@ -250,7 +250,7 @@ class reader {
             float value = 0;
             const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
             if (problem != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-                fail("its sky has '" + clipped(word) + "', which is no finite number");
+                fail("its sky has '" + sanitize_for_message(word) + "', which is no finite number");
             if (sky_.size() == sky_width)
                 fail("its sky has more than " + std::to_string(sky_width) + " numbers");
             sky_.push_back(value);
@@ -273,7 +273,8 @@ class reader {
         for (line l = next_line(); l.words[0] != "end_header"; l = next_line()) {
             if (l.words[0] == "format" && l.count == 3) {
                 if (l.words[1] != "binary_little_endian") {
-                    fail("its format is " + clipped(l.words[1]) + ", but only binary_little_endian is read");
+                    fail("its format is " + sanitize_for_message(l.words[1]) +
+                         ", but only binary_little_endian is read");
                 }
                 format_said = true;
             } else if (l.words[0] == "element" && l.count == 3) {
@@ -318,13 +319,13 @@ class reader {
         const char* const end = count_text.data() + count_text.size();
         const auto parsed = std::from_chars(count_text.data(), end, count);
         if (parsed.ec != std::errc{} || parsed.ptr != end) {
-            fail("the count of its element '" + clipped(name) + "' is '" + clipped(count_text) +
-                 "', which is no count");
+            fail("the count of its element '" + sanitize_for_message(name) + "' is '" +
+                 sanitize_for_message(count_text) + "', which is no count");
         }
         if (name == "vertex") {
             h.count = count;
         } else if (count != 0) {
-            fail("it has the element '" + clipped(name) + "', but only 'vertex' is read");
+            fail("it has the element '" + sanitize_for_message(name) + "', but only 'vertex' is read");
         }
     }
 
@@ -332,10 +333,10 @@ class reader {
         const std::string_view name = l.last;
         const std::optional<scalar_type> type = scalar_type_called(l.words[1]);
         if (!type || l.count != 3) {
-            fail("its property '" + clipped(name) + "' has the type '" + clipped(l.words[1]) +
-                 "', which is no scalar type");
+            fail("its property '" + sanitize_for_message(name) + "' has the type '" +
+                 sanitize_for_message(l.words[1]) + "', which is no scalar type");
         }
-        if (h.find(name) != nullptr) fail("it has the property '" + clipped(name) + "' twice");
+        if (h.find(name) != nullptr) fail("it has the property '" + sanitize_for_message(name) + "' twice");
         h.properties.push_back({name, *type, h.stride});
         h.stride += size_of(*type);
     }
@@ -430,7 +431,7 @@ void write_ply(const std::filesystem::path& file, const gaussians& model, const 
         fields_of_degree(std::min(model.sh_degree, options.max_sh_degree), model.rest_width());
     if (!std::ranges::all_of(model.sky, [](float x) { return std::isfinite(x); }))
         throw error("cannot write " + file.string() + ": its sky is not finite");
-    write_aside(file, [&](std::ostream& out) {
+    atomic_file_write(file, [&](std::ostream& out) {
         out << header_of(fields, model);
         std::vector<float> row(fields.size() + normals, 0.0F);
         for (std::size_t i = 0; i < model.count(); ++i) {
