@@ -27,7 +27,7 @@ std::optional<double> psnr_after_fit(const std::vector<float>& picture, const im
             for (int x = from; x < to; ++x) {
                 const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                                           static_cast<std::size_t>(x);
-                if (!shot.leaves_out(pixel)) f(pixel);
+                if (!shot.is_masked(pixel)) f(pixel);
             }
     };
     // A little towards no change, where the half has too few colours to tell.

@@ -13,7 +13,7 @@
 namespace gs {
 namespace {
 
-/// What pixel o of `output` covers of a side of `input` pixels, and how much of each.
+/// The pixels that pixel o of `output` covers on a side of `input` pixels, and how much of each.
 struct covered {
     std::size_t first;
     std::vector<double> lengths;

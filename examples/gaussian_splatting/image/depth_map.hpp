@@ -8,29 +8,28 @@
 
 namespace gs {
 
-/// What a photo's depth map says, by pixel, rows from the top: the inverse of the depth, see
-/// `camera::image_point`, up to a factor and an offset that each map has for itself, as networks estimate it
-/// from one photo. What is nearer has more.
+/// Inverse depths of a photo, as networks estimate them: a `depth_fit`, which each map has for itself, turns
+/// a value into 1 / depth, see `camera::image_point`. Nearer points have larger values.
 struct depth_map {
     int width = 0;
     int height = 0;
-    std::vector<std::uint16_t> values;  ///< 0: not known. Empty: there is no map
+    std::vector<std::uint16_t> values;  ///< row by row from the top; 0: unknown. Empty: no map
 
     bool is_there() const { return !values.empty(); }
 };
 
-/// What makes inverse depths of a map's values. A scale of zero: nobody knows what does.
+/// Inverse depth = scale * value + offset. A scale of zero means that the fit is unknown.
 struct depth_fit {
     float scale = 0, offset = 0;
 };
 
-/// Reads a PNG of one channel, of 8 or 16 bit, and brings it to the size of its photo. Throws `error` naming
-/// the file where it is none, or of another shape by more than 3 %: networks round sides to multiples of
-/// theirs.
+/// Reads a depth map from a PNG with one channel, and scales it to the size of its photo. Throws `error` with
+/// the file if it is not such a PNG, or if its aspect ratio differs by more than 3 %. (Networks round sides
+/// to multiples of their patch size.)
 depth_map read_depth_map(const std::filesystem::path& file, int width, int height);
 
-/// Each pixel is the mean of what it covers and is known, fractions of pixels included; not known where that
-/// is less than half.
+/// Scales a depth map: each pixel is the mean of the known values that it covers, including fractions of
+/// pixels, or unknown if they cover less than half of it.
 depth_map resized(const depth_map& source, int width, int height);
 
 }  // namespace gs

@@ -62,11 +62,12 @@ image average(const image& source, int width, int height) {
     return result;
 }
 
-/// The average of what is not left out: that of all of it, the rest being zero, over its share.
+/// The average of the pixels that are not masked: the average with zeros for masked pixels, divided by the
+/// share of the others.
 image masked_average(const image& source, int width, int height) {
     image kept = source, share = source;
     for (std::size_t i = 0; i < source.rgba.size() / 4; ++i) {
-        const bool out = source.leaves_out(i);
+        const bool out = source.is_masked(i);
         for (std::size_t channel = 0; channel < 4; ++channel) {
             if (out) kept.rgba[4 * i + channel] = 0;
             share.rgba[4 * i + channel] = out ? 0 : 255;
@@ -77,7 +78,7 @@ image masked_average(const image& source, int width, int height) {
     for (std::size_t i = 0; i < result.rgba.size(); i += 4) {
         const unsigned of = share.rgba[i];
         if (of < 128) {
-            result.leave_out(i / 4);
+            result.mask_pixel(i / 4);
         } else {
             for (std::size_t channel = 0; channel < 4; ++channel)
                 result.rgba[i + channel] = static_cast<std::uint8_t>(
@@ -89,7 +90,7 @@ image masked_average(const image& source, int width, int height) {
 
 }  // namespace
 
-image shrink(const image& source, int width, int height) {
+image downsample(const image& source, int width, int height) {
     if (width == source.width && height == source.height) return source;
     image result = (source.has_mask ? masked_average : average)(source, width, height);
     result.has_alpha = result.has_transparent_pixel();

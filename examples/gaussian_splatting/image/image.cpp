@@ -442,22 +442,22 @@ void write_png(const std::filesystem::path& file, int width, int height, const s
     });
 }
 
-void image::leave_out(std::size_t pixel) {
+void image::mask_pixel(std::size_t pixel) {
     const auto at = rgba.begin() + static_cast<std::ptrdiff_t>(4 * pixel);
     std::fill(at, at + 3, std::uint8_t{255});
     at[3] = 0;
     has_mask = true;
 }
 
-bool image::leaves_all_out() const {
+bool image::is_all_masked() const {
     std::size_t i = 0;
-    while (i < rgba.size() / 4 && leaves_out(i)) ++i;
+    while (i < rgba.size() / 4 && is_masked(i)) ++i;
     return i == rgba.size() / 4;
 }
 
 bool image::has_transparent_pixel() const {
     for (std::size_t i = 0; i < rgba.size() / 4; ++i)
-        if (rgba[4 * i + 3] != 255 && !leaves_out(i)) return true;
+        if (rgba[4 * i + 3] != 255 && !is_masked(i)) return true;
     return false;
 }
 
@@ -465,7 +465,7 @@ std::vector<float> over_background(const image& source, const float background[3
     const std::size_t plane = source.rgba.size() / 4;
     std::vector<float> planes(3 * plane);
     for (std::size_t i = 0; i < plane; ++i) {
-        if (source.leaves_out(i)) {
+        if (source.is_masked(i)) {
             for (std::size_t channel = 0; channel < 3; ++channel)
                 planes[channel * plane + i] = background[channel];
             continue;

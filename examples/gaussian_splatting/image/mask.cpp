@@ -30,18 +30,18 @@ image read_mask(const std::filesystem::path& file, const image& photo) {
         std::fill_n(&mask.rgba[i], 3, counts ? std::uint8_t{255} : std::uint8_t{0});
         mask.rgba[i + 3] = 255;
     }
-    return shrink(mask, photo.width, photo.height);
+    return downsample(mask, photo.width, photo.height);
 }
 
 void apply_mask(const image& mask, image& photo) {
     for (std::size_t i = 0; i < mask.rgba.size() / 4; ++i)
-        if (mask.rgba[4 * i] < 128) photo.leave_out(i);
+        if (mask.rgba[4 * i] < 128) photo.mask_pixel(i);
     photo.has_alpha = photo.has_transparent_pixel();
 }
 
-void forget_left_out(const image& photo, depth_map& depths) {
+void clear_masked_depths(const image& photo, depth_map& depths) {
     for (std::size_t i = 0; i < depths.values.size(); ++i)
-        if (photo.leaves_out(i)) depths.values[i] = 0;
+        if (photo.is_masked(i)) depths.values[i] = 0;
 }
 
 }  // namespace gs

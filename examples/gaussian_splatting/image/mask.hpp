@@ -10,18 +10,19 @@
 
 namespace gs {
 
-/// What a folder has of a photo, its mask or its depth map, a PNG: `NAME.png`, as COLMAP names masks, or the
-/// photo's name with `.png` in place of its ending. Empty if neither is there, or not in the folder.
+/// The PNG in `folder` that belongs to a photo, such as its mask or depth map: `NAME.png`, as COLMAP names
+/// masks, or the photo's name with the ending `.png`. Empty if neither exists inside the folder.
 std::filesystem::path beside_photo(const std::filesystem::path& folder, const std::string& photo);
 
-/// A mask, black where it leaves out and else white: what is black in the file, as COLMAP has it, or mostly
-/// so where it is larger than its photo. Errors as `read_image`, and where it is smaller or of another shape.
+/// Reads a mask, scaled to the size of its photo: black pixels exclude the photo's pixels, and all others
+/// become white. Throws `error` as `read_image` does, and if the mask is smaller than the photo or has
+/// another aspect ratio.
 image read_mask(const std::filesystem::path& file, const image& photo);
 
-/// Leaves out of the photo where the mask, which has its size, is darker than half.
+/// Masks the pixels of the photo at which the mask is darker than half. Precondition: equal sizes.
 void apply_mask(const image& mask, image& photo);
 
-/// Depths are not known where a photo, which has the map's size, is left out; nor is anything without a map.
-void forget_left_out(const image& photo, depth_map& depths);
+/// Marks depths as unknown at masked pixels of the photo. Precondition: equal sizes, or an empty depth map.
+void clear_masked_depths(const image& photo, depth_map& depths);
 
 }  // namespace gs

@@ -6,8 +6,8 @@
 
 namespace gs {
 
-/// A pixel that a mask leaves out, as a little-endian word of RGBA: white and transparent, which no
-/// premultiplied colour is.
-inline constexpr std::uint32_t left_out = 0x00ffffff;
+/// A pixel that a mask excludes, as a little-endian word of RGBA. White and transparent is not a
+/// premultiplied color, so no other pixel has this value.
+inline constexpr std::uint32_t masked_pixel = 0x00ffffff;
 
 }  // namespace gs

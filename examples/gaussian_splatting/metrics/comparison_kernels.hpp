@@ -38,7 +38,7 @@ struct comparison_maps {
 template <class W>
 WARPAGG_HD mask_t<W> is_masked(const W& w, const std::uint32_t* target, std::ptrdiff_t pixel,
                                const mask_t<W>& inside) {
-    return w.load_row(target, pixel, inside) == value_t<W, unsigned>(left_out);
+    return w.load_row(target, pixel, inside) == value_t<W, unsigned>(masked_pixel);
 }
 
 /// First pass: writes the sum and the difference of the render and the target in front of its
@@ -95,7 +95,7 @@ struct sum_and_difference {
         const auto plane = static_cast<std::ptrdiff_t>(planes.width) * planes.height;
         const real x = w.load_row(render, channel * plane + pixel, inside);
         mask_t<W> counts = inside;
-        if constexpr (Masked) counts = counts && rgba != value_t<W, unsigned>(left_out);
+        if constexpr (Masked) counts = counts && rgba != value_t<W, unsigned>(masked_pixel);
         w.store_row(maps.sum, to, select(counts, x + y, zero), true);
         w.store_row(maps.difference, to, select(counts, x - y, zero), true);
     }

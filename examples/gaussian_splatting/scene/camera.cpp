@@ -28,7 +28,7 @@ double bisect(double from, double to, const Condition& holds) {
 }  // namespace
 
 fisheye::fisheye(const std::array<double, 4>& k) : k_(k), end_(widest) {
-    constexpr int steps = 300;  // between two of them no sound lens turns back and forth
+    constexpr int steps = 300;  // between two of them no valid lens turns back and forth
     const auto grows = [&](double t) { return slope(k, t) > 0; };
     for (int i = 1; i <= steps && end_ == widest; ++i)
         if (!grows(widest * i / steps)) end_ = bisect(widest * (i - 1) / steps, widest * i / steps, grows);
@@ -74,6 +74,19 @@ glm::dvec3 camera::ray(double x, double y) const {
         in_camera = {(out > 0 ? std::sin(angle) / out : 1) * place, std::cos(angle)};
     }
     return glm::normalize(glm::transpose(rotation) * in_camera);
+}
+
+camera camera::resized(int new_width, int new_height) const {
+    const double x = static_cast<double>(new_width) / width;
+    const double y = static_cast<double>(new_height) / height;
+    camera result = *this;
+    result.width = new_width;
+    result.height = new_height;
+    result.fx *= x;
+    result.cx *= x;
+    result.fy *= y;
+    result.cy *= y;
+    return result;
 }
 
 }  // namespace gs

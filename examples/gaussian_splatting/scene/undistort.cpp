@@ -14,12 +14,12 @@ glm::dvec2 to_ray(const camera& pinhole, glm::dvec2 pixel) {
 }
 
 glm::dvec2 to_photo(const camera& taken_with, const lens& distortion, glm::dvec2 ray) {
-    const glm::dvec2 bent = distortion.distort(ray);
-    return {taken_with.fx * bent.x + taken_with.cx, taken_with.fy * bent.y + taken_with.cy};
+    const glm::dvec2 distorted = distortion.distort(ray);
+    return {taken_with.fx * distorted.x + taken_with.cx, taken_with.fy * distorted.y + taken_with.cy};
 }
 
-/// Rays through centres of pixels along the border, the four nearest to the camera's axis among them: there
-/// and in the corners the border of a bent photo reaches farthest in and out.
+/// Rays through the centers of pixels along the border, including the four that are nearest to the camera's
+/// axis. There and in the corners the border of a distorted photo reaches farthest inwards and outwards.
 std::vector<glm::dvec2> border_rays(const camera& pinhole) {
     constexpr int steps = 64;
     const double left = 0.5, top = 0.5, right = pinhole.width - 0.5, bottom = pinhole.height - 0.5;
@@ -47,20 +47,20 @@ bool lies_inside(const camera& taken_with, glm::dvec2 pixel) {
            pixel.y >= 0.5 - rounding && pixel.y <= taken_with.height - 0.5 + rounding;
 }
 
-/// Whether all that lies between the axis and these rays is in the photo, and not folded over.
+/// Whether everything between the axis and these rays is inside the photo, and not folded over.
 bool photo_covers(const camera& taken_with, const lens& distortion, const std::vector<glm::dvec2>& rays,
                   double zoom) {
     constexpr int steps = 16;
     for (const glm::dvec2& ray : rays)
         for (int i = 1; i <= steps; ++i) {
             const glm::dvec2 inner = ray * (i / (steps * zoom));
-            if (distortion.stretch(inner) <= 0) return false;
+            if (distortion.area_scale(inner) <= 0) return false;
             if (!lies_inside(taken_with, to_photo(taken_with, distortion, inner))) return false;
         }
     return true;
 }
 
-/// Into 0 to `last`; NaN too, which std::clamp would let pass.
+/// Clamps to 0 to `last`. NaN becomes a number, too, unlike with std::clamp.
 double into_range(double value, double last) { return std::fmin(std::fmax(value, 0.0), last); }
 
 void sample(const image& photo, glm::dvec2 position, std::uint8_t* result) {
@@ -90,7 +90,7 @@ glm::dvec2 lens::distort(glm::dvec2 ray) const {
             v * radial + 2 * p2 * u * v + p1 * (r2 + 2 * v * v)};
 }
 
-double lens::stretch(glm::dvec2 ray) const {
+double lens::area_scale(glm::dvec2 ray) const {
     const double u = ray.x, v = ray.y, r2 = u * u + v * v;
     const double radial = 1 + r2 * (k1 + r2 * k2);
     const double slope = k1 + 2 * k2 * r2;  // of `radial`, by r2
@@ -100,8 +100,8 @@ double lens::stretch(glm::dvec2 ray) const {
     return u_by_u * v_by_v - across * across;
 }
 
-std::optional<camera> straightened(const camera& taken_with, const lens& distortion) {
-    if (distortion.is_straight()) return taken_with;
+std::optional<camera> undistorted_camera(const camera& taken_with, const lens& distortion) {
+    if (distortion.is_none()) return taken_with;
     const std::vector<glm::dvec2> rays = border_rays(taken_with);
     const auto fits = [&](double zoom) { return photo_covers(taken_with, distortion, rays, zoom); };
     double too_wide = 0.5, wide_enough = 5;  // COLMAP's limits, 2 and 0.2, of a size's growth

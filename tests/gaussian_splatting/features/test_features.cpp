@@ -512,12 +512,12 @@ TEST_CASE("a fit finds what an exposure did, on pixels that it is not measured b
     gs::image spoilt = photo, masked = photo;
     for (std::size_t i = 0; i < width * height; i += 2) {
         for (std::size_t c = 0; c < 3; ++c) spoilt.rgba[4 * i + c] = 128;
-        masked.leave_out(i);
+        masked.mask_pixel(i);
     }
     CHECK(psnr(spoilt) < 20);
     CHECK(psnr(masked) == doctest::Approx(by_rounding).epsilon(0.02));
     for (std::size_t i = 0; i < width * height; ++i)
-        if (i % width >= width / 2) masked.leave_out(i);
+        if (i % width >= width / 2) masked.mask_pixel(i);
     CHECK_FALSE(gs::evaluate::psnr_after_fit(picture, masked, {}));
     // Without a left half nothing changes.
     CHECK(*gs::evaluate::psnr_after_fit({0.5f, 0.5f, 0.5f}, gs::image{1, 1, {153, 128, 128, 255}}, {}) ==

@@ -12,10 +12,10 @@
 #include <random>
 #include <utility>
 
+#include "../../support/temporary_folder.hpp"
 #include "image/image.hpp"
 #include "image/mask.hpp"
-#include "readers/load_views.hpp"
-#include "../../support/temporary_folder.hpp"
+#include "scene/downsample.hpp"
 
 // jpeglib.h leaves it to its user to have declared FILE and size_t.
 #include <jpeglib.h>
@@ -535,7 +535,7 @@ TEST_CASE("shrink is the exact area average, rounded to nearest") {
         const int width = size.first, height = size.second;
         CAPTURE(width);
         CAPTURE(height);
-        const image small = gs::shrink(source, width, height);
+        const image small = gs::downsample(source, width, height);
         REQUIRE(small.width == width);
         REQUIRE(small.height == height);
         // Cut each input pixel into width x height cells: an output pixel covers 14 x 9 whole ones.
@@ -559,7 +559,7 @@ TEST_CASE("a transparent pixel's hidden colour does not bleed into the average")
     const image read = gs::read_image(folder / "a.png");
     CHECK(pixel_at(read, 1, 0) == pixel{0, 0, 0, 0});
     CHECK(read.has_alpha);
-    const image mean = gs::shrink(read, 1, 1);
+    const image mean = gs::downsample(read, 1, 1);
     CHECK(pixel_at(mean, 0, 0) == pixel{128, 0, 0, 128});
     CHECK(mean.has_alpha);
 }
@@ -568,7 +568,7 @@ TEST_CASE("shrinking an opaque image keeps it opaque") {
     image opaque = random_image(10, 10, 5);
     for (std::size_t i = 3; i < opaque.rgba.size(); i += 4) opaque.rgba[i] = 255;
     opaque.has_alpha = false;
-    const image small = gs::shrink(opaque, 3, 7);
+    const image small = gs::downsample(opaque, 3, 7);
     CHECK_FALSE(small.has_alpha);
     for (std::size_t i = 3; i < small.rgba.size(); i += 4) REQUIRE(small.rgba[i] == 255);
 }
@@ -584,7 +584,7 @@ TEST_CASE("a shrunk view has the camera of its photo") {
     full.camera.cx = 10.5;
     full.camera.cy = 4.5;
     full.camera.translation = {1, 2, 3};
-    const gs::view half = gs::shrunk(full, 2);
+    const gs::view half = gs::downsampled(full, 2);
     CHECK(half.name == "a.png");
     CHECK(half.camera.width == 18);
     CHECK(half.camera.height == 5);
@@ -593,9 +593,9 @@ TEST_CASE("a shrunk view has the camera of its photo") {
     CHECK(half.camera.cx == doctest::Approx(10.5 * 18 / 35));
     CHECK(half.camera.cy == doctest::Approx(2.5));
     CHECK(half.camera.translation == full.camera.translation);
-    CHECK(half.pixels.rgba == gs::shrink(full.pixels, 18, 5).rgba);
-    CHECK(gs::shrunk(full, 64).camera.height == 1);
-    CHECK(gs::shrunk(full, 1).pixels.rgba == full.pixels.rgba);
+    CHECK(half.pixels.rgba == gs::downsample(full.pixels, 18, 5).rgba);
+    CHECK(gs::downsampled(full, 64).camera.height == 1);
+    CHECK(gs::downsampled(full, 1).pixels.rgba == full.pixels.rgba);
 }
 
 TEST_CASE("a mask leaves pixels out, of averages too") {
@@ -610,15 +610,15 @@ TEST_CASE("a mask leaves pixels out, of averages too") {
     CHECK(photo.has_mask);
     CHECK_FALSE(photo.has_alpha);
     for (std::size_t i = 0; i < 24; ++i) {
-        CHECK(photo.leaves_out(i) == (i % 6 < 3 || i == 5));
-        if (!photo.leaves_out(i))
+        CHECK(photo.is_masked(i) == (i % 6 < 3 || i == 5));
+        if (!photo.is_masked(i))
             CHECK(std::equal(&photo.rgba[4 * i], &photo.rgba[4 * i] + 4, &whole.rgba[4 * i]));
     }
-    const image half = gs::shrink(photo, 3, 2);
+    const image half = gs::downsample(photo, 3, 2);
     CHECK(half.has_mask);
     CHECK_FALSE(half.has_alpha);
-    for (const std::size_t out : {0, 3}) CHECK(half.leaves_out(out));
-    for (const std::size_t kept : {1, 2, 4, 5}) CHECK_FALSE(half.leaves_out(kept));
+    for (const std::size_t out : {0, 3}) CHECK(half.is_masked(out));
+    for (const std::size_t kept : {1, 2, 4, 5}) CHECK_FALSE(half.is_masked(kept));
     for (std::size_t c = 0; c < 3; ++c) {
         const auto value = [&](std::size_t i) { return whole.rgba[4 * i + c]; };
         // Half of the second pixel counts, and three quarters of the third.
@@ -635,7 +635,7 @@ TEST_CASE("a mask leaves pixels out, of averages too") {
     clear.rgba[15] = clear.rgba[14] = clear.rgba[13] = clear.rgba[12] = 0;  // transparent, not left out
     gs::apply_mask(mask, clear);
     CHECK(clear.has_alpha);
-    CHECK_FALSE(clear.leaves_out(3));
+    CHECK_FALSE(clear.is_masked(3));
 }
 
 TEST_CASE("over_background lays the image over a colour") {

@@ -17,7 +17,7 @@
 #include "readers/colmap/colmap.hpp"
 #include "image/mask.hpp"
 #include "readers/load_scene.hpp"
-#include "readers/load_views.hpp"
+#include "scene/downsample.hpp"
 #include "../../support/temporary_folder.hpp"
 
 namespace {
@@ -469,7 +469,7 @@ TEST_CASE("photos of a lens with distortion become those of a pinhole camera") {
 TEST_CASE("barrel distortion lets the pinhole camera see wider, pincushion narrower") {
     for (const double k : {-0.12, 0.15}) {
         const auto lens = simple_radial(k);
-        const auto straight = gs::straightened(intrinsics_of(lens.camera), {k, 0, 0, 0});
+        const auto straight = gs::undistorted_camera(intrinsics_of(lens.camera), {k, 0, 0, 0});
         REQUIRE(straight);
         CHECK((straight->fx < lens.camera.parameters[0]) == (k < 0));
     }
@@ -484,7 +484,7 @@ TEST_CASE("a lens's stretch is the determinant of its derivative") {
         const glm::dvec2 by_y = (lens.distort(ray + y) - lens.distort(ray - y)) / (2 * step);
         // Central differences are off by step^2 times third derivatives, which are below 100 here, and in the
         // determinant each meets another first derivative, below 10.
-        CHECK(std::abs(lens.stretch(ray) - (by_x.x * by_y.y - by_x.y * by_y.x)) < 100 * 10 * step * step);
+        CHECK(std::abs(lens.area_scale(ray) - (by_x.x * by_y.y - by_x.y * by_y.x)) < 100 * 10 * step * step);
     }
 }
 
@@ -498,7 +498,7 @@ TEST_CASE("what a strong lens folds over stays outside of the pinhole camera's v
     camera.fx = camera.fy = 200;
     camera.cx = 200;
     camera.cy = 150;
-    const auto straight = gs::straightened(camera, lens);
+    const auto straight = gs::undistorted_camera(camera, lens);
     REQUIRE(straight);
     const double corner = std::hypot(199.5, 149.5) / straight->fx, fold = 1 / std::sqrt(3 * 0.3);
     CHECK(corner < fold);
@@ -696,10 +696,10 @@ TEST_CASE("masks leave out where they are black, in photos that were bent and sh
                 CHECK_FALSE(all.has_mask);
                 for (std::size_t i = 0; i < all.rgba.size() / 4; ++i) {
                     const int red = all.rgba[4 * i];
-                    if (v < 2 && red > 200) CHECK(pixels.leaves_out(i));
-                    if (v == 2 || red < 60) CHECK_FALSE(pixels.leaves_out(i));
+                    if (v < 2 && red > 200) CHECK(pixels.is_masked(i));
+                    if (v == 2 || red < 60) CHECK_FALSE(pixels.is_masked(i));
                     // What is left out comes into no average, but into what bending interpolates.
-                    if (v < 2 && !pixels.leaves_out(i)) CHECK(pixels.rgba[4 * i] <= (bent > 0 ? 128 : 0));
+                    if (v < 2 && !pixels.is_masked(i)) CHECK(pixels.rgba[4 * i] <= (bent > 0 ? 128 : 0));
                 }
             }
         }
@@ -778,7 +778,7 @@ TEST_CASE("depth maps come with their photos, bent and shrunk as these, and some
                 CHECK(wrong <= first.depths.values.size() / 20);  // where a map is coarser than its photo
                 CHECK(static_cast<double>(known) / static_cast<double>(first.depths.values.size()) ==
                       doctest::Approx(0.75).epsilon(0.1));
-                const gs::view half = gs::shrunk(first, 2);
+                const gs::view half = gs::downsampled(first, 2);
                 CHECK(half.depths.width == half.pixels.width);
                 CHECK(half.depths.values.size() == half.pixels.rgba.size() / 4);
             }
@@ -797,10 +797,10 @@ TEST_CASE("depth maps come with their photos, bent and shrunk as these, and some
 
 TEST_CASE("a mask leaves out of a depth map what it leaves out of its photo") {
     gs::image photo{2, 1, {9, 9, 9, 255, 9, 9, 9, 255}};
-    photo.leave_out(1);
+    photo.mask_pixel(1);
     gs::depth_map depths{2, 1, {7, 8}}, none;
-    gs::forget_left_out(photo, depths);
-    gs::forget_left_out(photo, none);
+    gs::clear_masked_depths(photo, depths);
+    gs::clear_masked_depths(photo, none);
     CHECK(depths.values == std::vector<std::uint16_t>{7, 0});
     CHECK_FALSE(none.is_there());
 }

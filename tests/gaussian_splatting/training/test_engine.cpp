@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 #include "engines.hpp"
-#include "readers/load_views.hpp"
+#include "scene/downsample.hpp"
 #include "training/initialise.hpp"
 #include "training/training.hpp"
 
@@ -104,7 +104,7 @@ TEST_CASE("a step learns from photos as small as it is told to") {
             e->reserve(downscales);
             e->take_report().loss;
             e->step(plan);
-            const gs::view small = gs::shrunk(scene.train[3], 1 << downscales);
+            const gs::view small = gs::downsampled(scene.train[3], 1 << downscales);
             REQUIRE(small.camera.width == 48 >> downscales);
             CHECK(e->take_report().loss.psnr() ==
                   doctest::Approx(psnr_between(e->render(small.camera, plan.background),

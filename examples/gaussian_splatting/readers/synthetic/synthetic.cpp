@@ -329,7 +329,7 @@ void paint_passer(const world& w, std::size_t photo, bool masks, image& pixels) 
             const double dx = column + 0.5 - x, dy = row + 0.5 - y;
             if (dx * dx + dy * dy > square) continue;
             if (masks)
-                pixels.leave_out(i);
+                pixels.mask_pixel(i);
             else
                 std::copy(colour, colour + 4, &pixels.rgba[4 * i]);
         }
@@ -447,7 +447,7 @@ scene_description describe(const load_options& options, const log_function& log)
     if (w.how.depths >= 0 && options.depths)
         for_each_in_parallel(views.size(), [&](std::size_t i) {
             views[i].depths = estimated_depths(w, views[i].camera, i);
-            forget_left_out(views[i].pixels, views[i].depths);
+            clear_masked_depths(views[i].pixels, views[i].depths);
         });
 
     std::vector<view> train, test;

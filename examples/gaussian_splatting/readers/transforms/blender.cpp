@@ -62,11 +62,11 @@ void set_intrinsics(image_record& record, const transforms& all, std::size_t ind
     taken_with.fy = number(fl_y).value_or(taken_with.fx);
     taken_with.cx = number(cx).value_or(0.5 * taken_with.width);
     taken_with.cy = number(cy).value_or(0.5 * taken_with.height);
-    const auto bend = [&](transforms_number which) { return number(which).value_or(0); };
+    const auto coefficient = [&](transforms_number which) { return number(which).value_or(0); };
     if (all.is_fisheye(index))
-        taken_with.fisheye = fisheye({bend(k1), bend(k2), bend(k3), bend(k4)});
+        taken_with.fisheye = fisheye({coefficient(k1), coefficient(k2), coefficient(k3), coefficient(k4)});
     else
-        record.distortion = {bend(k1), bend(k2), bend(p1), bend(p2)};
+        record.distortion = {coefficient(k1), coefficient(k2), coefficient(p1), coefficient(p2)};
     record.camera_model = all.is_fisheye(index) ? "OPENCV_FISHEYE" : "OPENCV";
     if (!has_valid_intrinsics(taken_with, record.distortion))
         throw error(all.where_is(index) + invalid_intrinsics);

@@ -124,7 +124,7 @@ class reader final : public json::json_sax_t {
             all_.frames.emplace_back();
             frame_ = {};
         } else if (at_ == level::matrix) {
-            frame_.has_matrix = frame_.is_sound = true;
+            frame_.has_matrix = frame_.is_valid = true;
             frame_.row = 0;
         } else if (at_ == level::row) {
             frame_.column = 0;
@@ -137,10 +137,10 @@ class reader final : public json::json_sax_t {
             return true;
         }
         if (at_ == level::row) {
-            frame_.is_sound &= frame_.column == 4;
+            frame_.is_valid &= frame_.column == 4;
             ++frame_.row;
         } else if (at_ == level::matrix) {
-            frame_.is_sound &= frame_.row == 4;
+            frame_.is_valid &= frame_.row == 4;
         } else if (at_ == level::frame) {
             finish_frame();
         }
@@ -166,7 +166,7 @@ class reader final : public json::json_sax_t {
                 take_field(number, text);
                 break;
             case level::matrix:
-                frame_.is_sound = false;
+                frame_.is_valid = false;
                 break;
             case level::row:
                 take_cell(number);
@@ -182,7 +182,7 @@ class reader final : public json::json_sax_t {
             frame_.has_path = true;
         } else if (field_ == "transform_matrix") {
             frame_.has_matrix = true;
-            frame_.is_sound = false;
+            frame_.is_valid = false;
         } else if (field_ == "mask_path") {
             if (!text) throw error(where() + ": mask_path is not a string");
             all_.frames.back().mask = *text;
@@ -194,7 +194,7 @@ class reader final : public json::json_sax_t {
     }
 
     void take_cell(double number) {
-        frame_.is_sound &= std::isfinite(number);
+        frame_.is_valid &= std::isfinite(number);
         if (frame_.row < 4 && frame_.column < 4)
             frame_.matrix[static_cast<int>(frame_.column)][static_cast<int>(frame_.row)] = number;
         ++frame_.column;
@@ -204,7 +204,7 @@ class reader final : public json::json_sax_t {
         transforms_frame& frame = all_.frames.back();
         if (!frame_.has_path) throw error(where() + ": the field file_path is missing");
         if (!frame_.has_matrix) throw error(where() + ": the field transform_matrix is missing");
-        if (!frame_.is_sound) throw error(where() + ": transform_matrix is not 4x4 finite numbers");
+        if (!frame_.is_valid) throw error(where() + ": transform_matrix is not 4x4 finite numbers");
         set_pose(frame, frame_.matrix, where());
         frame.numbers = frame_.numbers.list();
     }
@@ -222,7 +222,7 @@ class reader final : public json::json_sax_t {
         said_numbers numbers;
         glm::dmat4 matrix{0};
         std::size_t row = 0, column = 0;
-        bool has_path = false, has_matrix = false, is_sound = false;  ///< the last two: of the matrix
+        bool has_path = false, has_matrix = false, is_valid = false;  ///< the last two: of the matrix
     } frame_;  ///< what the last of the frames has said so far
 };
 
