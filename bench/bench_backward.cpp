@@ -96,7 +96,7 @@ contest random_crowd(std::uint64_t seed) {
 contest trained(const options& o) {
     const gs::scene scene = gs::load_scene(o.scene, [](const std::string& line) { std::puts(line.c_str()); });
     contest c;
-    c.model = gs::into(scene.frame, gs::read_ply(o.ply));
+    c.model = gs::to_internal(scene.normalization, gs::read_ply(o.ply));
     if (scene.has_alpha) c.background = {1, 1, 1};
     for (std::size_t v = 0; v < std::min(o.views, scene.train.size()); ++v) {
         gs::camera view = scene.train[v].camera;

@@ -56,7 +56,7 @@ options parse(int argc, char** argv) {
 paper_subject subject(const options& o) {
     const gs::scene scene = gs::load_scene(o.scene, [](const std::string& line) { std::puts(line.c_str()); });
     paper_subject s;
-    s.model = gs::into(scene.frame, gs::read_ply(o.ply));
+    s.model = gs::to_internal(scene.normalization, gs::read_ply(o.ply));
     if (scene.has_alpha) s.background = {1, 1, 1};
     for (std::size_t v = 0; v < std::min(o.views, scene.train.size()); ++v)
         s.cameras.push_back(scene.train[v].camera);

@@ -105,7 +105,7 @@ class temporary_file {
 /// Trains, and adds to `row` what came of it.
 void run(trial& t, gs::train::engine& engine, ordered_json& row) {
     gs::scene& scene = t.scene;
-    gs::recentre(scene, [](const std::string& line) { std::puts(line.c_str()); });
+    gs::normalize(scene, [](const std::string& line) { std::puts(line.c_str()); });
     std::vector<gs::view> views = scene.train;
     views.insert(views.end(), scene.test.begin(), scene.test.end());
     engine.set_views(scene.train, views, t.schedule.num_downscales);
@@ -132,10 +132,10 @@ void run(trial& t, gs::train::engine& engine, ordered_json& row) {
     row["finite_pictures"] = pictures_are_finite(engine, views);
 
     const temporary_file file;
-    gs::write_ply(file.path(), gs::out_of(scene.frame, model));
+    gs::write_ply(file.path(), gs::to_world(scene.normalization, model));
     const gs::gaussians saved = gs::read_ply(file.path());  // refuses what is not finite
     row["ply_in_place"] = is_in_place(saved, t);
-    engine.set_model(gs::into(scene.frame, saved));
+    engine.set_model(gs::to_internal(scene.normalization, saved));
     row["ply_training_psnr"] = mean_psnr(engine, 0, trained);
 }
 

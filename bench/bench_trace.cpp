@@ -54,7 +54,7 @@ options parse(int argc, char** argv) {
 class training {
   public:
     training(const options& o, const gs::scene& scene) : engine_(gs::train::make_cuda_engine()) {
-        const gs::gaussians model = gs::into(scene.frame, gs::read_ply(o.ply));
+        const gs::gaussians model = gs::to_internal(scene.normalization, gs::read_ply(o.ply));
         plan_.sh_degree = model.sh_degree;
         plan_.rates = gs::train::schedule{}.rates_at(7000);
         if (scene.has_alpha) plan_.background = {1, 1, 1};

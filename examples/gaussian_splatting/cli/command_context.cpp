@@ -21,7 +21,7 @@ void command_context::say(const std::string& line) const {
 scene command_context::load() const {
     const auto log = [this](const std::string& line) { say(line); };
     scene loaded = load_scene(settings_.scene, log);
-    recentre(loaded, log);
+    normalize(loaded, log);
     return loaded;
 }
 

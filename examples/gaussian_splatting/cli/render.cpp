@@ -75,8 +75,8 @@ void render(const settings& s) {
     bool alpha = false;
     std::vector<named_camera> cameras;
     if (orbits) {
-        const frame own = frame_of(model);
-        model = into(own, std::move(model));
+        const normalization own = normalization_of(model);
+        model = to_internal(own, std::move(model));
         cameras = orbit(model, s.orbit_views, orbit_size(s.scene.resolution));
     } else {
         const scene scene = context.load();

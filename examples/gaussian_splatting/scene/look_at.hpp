@@ -5,12 +5,13 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "scene.hpp"
+#include "camera.hpp"
 
 namespace gs {
 
-/// A camera at `from` with `to` in the middle of its square picture of `size` pixels a side; `focal` is in
-/// pixels. Precondition: the direction is not that of `up`, which is upwards in the picture.
+/// A camera at `from` that sees `to` in the middle of its image, and `up` pointing upwards. The image has
+/// `size` pixels per side; the focal length is in pixels. Precondition: `up` is not parallel to the viewing
+/// direction.
 inline camera look_at(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& up, int size,
                       double focal) {
     const glm::dvec3 z = glm::normalize(to - from);

@@ -19,7 +19,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// The median over `things` of what `measure` says of one.
+/// The median over `things` of `measure`.
 template <class Things, class Measure>
 double median_of(const Things& things, const Measure& measure) {
     std::vector<double> values;
@@ -38,7 +38,7 @@ glm::dvec3 mean_of(const gaussians& model, std::size_t i) {
     return {model.mean[3 * i], model.mean[3 * i + 1], model.mean[3 * i + 2]};
 }
 
-/// `change` is done to each mean, `shift` added to each log scale.
+/// Applies `change` to each mean and adds `shift` to each log scale.
 template <class Change>
 gaussians moved(gaussians model, const Change& change, double shift) {
     for (std::size_t i = 0; i < model.count(); ++i) {
@@ -63,14 +63,14 @@ double scene::extent() const {
     else if (const auto point = looked_at())
         depth = glm::distance(mean, *point);
     if (farthest > 1e-6 * depth && farthest > 0) return 1.1 * farthest;
-    return depth > 0 ? depth : 1 / frame.scale;
+    return depth > 0 ? depth : 1 / normalization.scale;
 }
 
 std::optional<glm::dvec3> scene::looked_at() const {
     if (train.empty()) return std::nullopt;
-    // Counted from the cameras, so that an origin far away costs no digits.
-    const glm::dvec3 mean = mean_of_cameras(*this), origin = frame.into(glm::dvec3(0)) - mean;
-    constexpr double pull = 1e-10;  // above rounding, and below what axes a hundredth of a degree apart say
+    // Relative to the cameras, so that a distant origin costs no precision.
+    const glm::dvec3 mean = mean_of_cameras(*this), origin = normalization.to_internal(glm::dvec3(0)) - mean;
+    constexpr double pull = 1e-10;  // above rounding, below the effect of axes 0.01 degrees apart
     const auto axis_of = [](const camera& c) { return glm::transpose(c.rotation)[2]; };
     glm::dmat3 normal(pull);
     glm::dvec3 right = pull * origin;
@@ -85,54 +85,56 @@ std::optional<glm::dvec3> scene::looked_at() const {
     const double depth = median_of(train, [&](const view& v) {
         return glm::dot(axis_of(v.camera), point - (v.camera.centre() - mean));
     });
-    // What is no farther off is nothing but the pull.
+    // A nearer point results from the pull alone.
     if (!(depth > 100 * pull * glm::length(origin))) return std::nullopt;
     return mean + point;
 }
 
-frame frame_of(const scene& scene) {
+normalization normalization_of(const scene& scene) {
     const double scale = scene.extent() / internal_extent;
     return {mean_of_cameras(scene), std::isnormal(scale) ? scale : 1};
 }
 
-frame frame_of(const gaussians& model) {
+normalization normalization_of(const gaussians& model) {
     std::vector<std::size_t> all(model.count());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-    frame f;
+    normalization found;
     for (glm::length_t axis = 0; axis < 3; ++axis)
-        f.origin[axis] = median_of(all, [&](std::size_t i) { return mean_of(model, i)[axis]; });
+        found.origin[axis] = median_of(all, [&](std::size_t i) { return mean_of(model, i)[axis]; });
     const double reach = median_of(all, [&](std::size_t i) {
         const auto first = model.log_scale.begin() + static_cast<std::ptrdiff_t>(3 * i);
         const double size = std::exp(static_cast<double>(*std::max_element(first, first + 3)));
-        return glm::distance(mean_of(model, i), f.origin) + size;
+        return glm::distance(mean_of(model, i), found.origin) + size;
     });
-    if (std::isnormal(reach)) f.scale = reach;
-    return f;
+    if (std::isnormal(reach)) found.scale = reach;
+    return found;
 }
 
-void recentre(scene& scene, const std::function<void(const std::string&)>& log) {
-    const frame f = frame_of(scene);
+void normalize(scene& scene, const log_function& log) {
+    const normalization n = normalization_of(scene);
     for (auto* views : {&scene.train, &scene.test})
         for (view& v : *views)
-            v.camera.translation = (v.camera.rotation * f.origin + v.camera.translation) / f.scale;
-    for (coloured_point& p : scene.points) p.position = f.into(p.position);
+            v.camera.translation = (v.camera.rotation * n.origin + v.camera.translation) / n.scale;
+    for (coloured_point& p : scene.points) p.position = n.to_internal(p.position);
     constexpr double farthest = 1e9;
-    const std::size_t left_out = std::erase_if(
+    const std::size_t dropped = std::erase_if(
         scene.points, [](const coloured_point& p) { return !(glm::length(p.position) <= farthest); });
-    if (left_out > 0)
-        log(std::to_string(left_out) + " of " + std::to_string(scene.points.size() + left_out) +
-            " points left out, which are a billion times farther off than the cameras are apart");
-    scene.frame = f;
+    if (dropped > 0)
+        log("dropped " + std::to_string(dropped) + " of " + std::to_string(scene.points.size() + dropped) +
+            " points, whose distance is over a billion times that between the cameras");
+    scene.normalization = n;
 }
 
-gaussians into(const frame& frame, gaussians original) {
+gaussians to_internal(const normalization& normalization, gaussians world) {
     return moved(
-        std::move(original), [&](const glm::dvec3& p) { return frame.into(p); }, -std::log(frame.scale));
+        std::move(world), [&](const glm::dvec3& p) { return normalization.to_internal(p); },
+        -std::log(normalization.scale));
 }
 
-gaussians out_of(const frame& frame, gaussians internal) {
+gaussians to_world(const normalization& normalization, gaussians internal) {
     return moved(
-        std::move(internal), [&](const glm::dvec3& p) { return frame.out_of(p); }, std::log(frame.scale));
+        std::move(internal), [&](const glm::dvec3& p) { return normalization.to_world(p); },
+        std::log(normalization.scale));
 }
 
 }  // namespace gs

@@ -14,9 +14,9 @@ namespace gs {
 namespace {
 
 constexpr std::size_t most_points = 6000;
-constexpr double spacings = 2.5;                  ///< so far off in the picture a point may hide another
-constexpr double nearer = 0.03;                   ///< by this share of the depth
-constexpr int least_value = 6, most_value = 249;  ///< of a byte that is not saturated
+constexpr double spacings = 2.5;                  ///< distance in the image at which a point may hide another
+constexpr double nearer = 0.03;                   ///< share of the depth by which the other point is nearer
+constexpr int least_value = 6, most_value = 249;  ///< of a channel that is not saturated
 
 std::vector<place_in_photo> project(const camera& c, const std::vector<coloured_point>& points) {
     std::vector<place_in_photo> seen;
@@ -28,7 +28,8 @@ std::vector<place_in_photo> project(const camera& c, const std::vector<coloured_
     return seen;
 }
 
-/// The depth of the nearest point in cells of the picture, as wide as points hide each other.
+/// The depth of the nearest point in each cell of the image. Cells are as wide as the distance at which
+/// points hide each other.
 class nearest_depths {
   public:
     nearest_depths(const camera& c, const std::vector<place_in_photo>& seen)

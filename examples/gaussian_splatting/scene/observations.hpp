@@ -10,13 +10,13 @@
 
 namespace gs {
 
-/// A point of a scene as one of its photos has it.
+/// A point of a scene as one of its photos shows it.
 struct observation {
     std::uint32_t view = 0;
-    glm::vec3 colour{0};     ///< as displayed, [0, 1]: the mean of the 3×3 pixels around it
-    glm::vec3 direction{0};  ///< unit, from the camera to the point
-    float footprint = 0;     ///< of a pixel there, in the scene's unit
-    float roughness = 0;     ///< by which share of the brightest of these pixels the darkest differs
+    glm::vec3 colour{0};     ///< mean of the 3×3 pixels around it, as displayed, in [0, 1]
+    glm::vec3 direction{0};  ///< from the camera to the point, of length one
+    float footprint = 0;     ///< width of a pixel at the point's depth, in the scene's unit
+    float roughness = 0;     ///< (brightest - darkest) / brightest of these pixels
 };
 
 /// The observations of each point.
@@ -28,7 +28,8 @@ struct place_in_photo {
     double x, y, depth;
 };
 
-/// The points that a camera sees: all but where a nearer one, a few spacings off in the picture, may hide it.
+/// Projects the points that a camera sees. A point does not count if a clearly nearer one, a few spacings
+/// away in the image, may hide it.
 std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<coloured_point>& points);
 
 /// What the training photos have of the scene's points, by point; some thousands of the points stand for all.

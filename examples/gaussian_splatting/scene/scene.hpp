@@ -14,12 +14,12 @@
 
 namespace gs {
 
-/// One photo with its camera; both are at the resolution that was asked for.
+/// One photo with its camera, both at the resolution of training.
 struct view {
-    std::string name;  ///< the file's name below the images folder, with its ending
+    std::string name;  ///< relative to the images folder, with its ending
     gs::camera camera;
     image pixels;
-    depth_map depths{};  ///< of the photo's size, or none
+    depth_map depths{};  ///< of the photo's size, or empty
 };
 
 struct coloured_point {
@@ -30,21 +30,22 @@ struct coloured_point {
 struct scene {
     std::vector<view> train;
     std::vector<view> test;
-    std::vector<coloured_point> points;  ///< from structure from motion; empty if the source has none
-    bool has_alpha = false;              ///< some photo is not opaque, beside what masks leave out
+    std::vector<coloured_point> points;  ///< from structure from motion; may be empty
+    bool has_alpha = false;              ///< some photo has transparent pixels; masked ones do not count
     /// The cameras look at one object, so that scenes without points begin with Gaussians around it.
     bool object_centered = false;
-    gs::frame frame;  ///< that cameras and points are in: the files' own until `recentre`
+    gs::normalization normalization;  ///< of cameras and points; the identity until `normalize`
 
-    /// 1.1 times the largest distance of a training camera from their mean: the unit of the learning rate of
-    /// positions and of densification (Kerbl et al. 2023, reference implementation). Where all cameras are in
-    /// one place, to a millionth of what follows, the median distance of the points from it; without points,
-    /// that of `looked_at`; and if that is nowhere, 1 in the files' unit.
+    /// 1.1 times the largest distance of a training camera from the mean of all: the unit of the learning
+    /// rate of positions and of densification (Kerbl et al. 2023, reference implementation). If all cameras
+    /// are at one place (up to a millionth of the following distances), it is the median distance of the
+    /// points from there; without points, the distance of `looked_at`; and without that, 1 in world units.
     double extent() const;
 
-    /// The point nearest to the optical axes of the training cameras, in the least squares sense. Along what
-    /// they leave open (a single camera, parallel axes) the one nearest to the origin of the files, where
-    /// scenes without points have their object. None where half of the cameras do not have it ahead.
+    /// The point nearest to the optical axes of the training cameras, by least squares. In directions that
+    /// the axes do not determine (a single camera, parallel axes) it is nearest to the origin of the world,
+    /// where scenes without points have their object. None if it is not in front of at least half of the
+    /// cameras.
     std::optional<glm::dvec3> looked_at() const;
 };
 

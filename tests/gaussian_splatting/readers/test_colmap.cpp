@@ -475,7 +475,7 @@ TEST_CASE("barrel distortion lets the pinhole camera see wider, pincushion narro
     }
 }
 
-TEST_CASE("a lens's stretch is the determinant of its derivative") {
+TEST_CASE("the area scale of a lens is the determinant of its derivative") {
     const gs::lens lens{0.3, -0.2, 0.04, -0.06};
     const double step = 1e-4;
     for (const glm::dvec2 ray : {glm::dvec2(0, 0), {0.7, 0.2}, {-0.4, 0.9}, {1.2, -0.8}, {-0.5, -0.6}}) {
@@ -519,7 +519,7 @@ TEST_CASE("a lens whose coefficients are zero leaves the photo alone") {
     CHECK(scene.train[0].camera.fy == 35);
 }
 
-TEST_CASE("a lens that folds the photo over is refused, not straightened into nonsense") {
+TEST_CASE("a lens that folds the photo over is refused") {
     const temporary_folder folder;
     model_record model = plain_model();
     for (auto& c : model.cameras) c = {c.id, 2, "SIMPLE_RADIAL", 40, 30, {1, 20, 15, -0.3}};

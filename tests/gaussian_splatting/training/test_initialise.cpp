@@ -199,11 +199,11 @@ TEST_CASE("random_points: cameras that look one way have the object where the or
         s.train.push_back(s.train[0]);
         CHECK(glm::distance(s.looked_at().value(), {0.5, 0.25, 0}) < 1e-5);
     }
-    SUBCASE("in the internal frame it is the same point") {
+    SUBCASE("in internal coordinates it is the same point") {
         const glm::dvec3 before = s.looked_at().value();
-        gs::recentre(s, [](const std::string&) {});
+        gs::normalize(s, [](const std::string&) {});
         CHECK(s.train[0].camera.centre() == glm::dvec3(0));
-        CHECK(glm::distance(s.frame.out_of(s.looked_at().value()), before) < 1e-5);
+        CHECK(glm::distance(s.normalization.to_world(s.looked_at().value()), before) < 1e-5);
     }
     SUBCASE("an object behind the camera is none: the box is about the camera") {
         s = scene_seen_from(true, {{0, 0, 4}});
