@@ -29,7 +29,7 @@ void evaluate(const settings& s) {
     const double load_seconds = loading.seconds();
 
     const stopwatch evaluating;
-    const auto report = evaluate::measure_test_views(
+    const auto report = evaluate::measure_held_out_views(
         *engine, scene, background.colour, output ? output->path() / "test" : std::filesystem::path(),
         s.fit_exposure);
     nlohmann::ordered_json metrics = to_json(report);

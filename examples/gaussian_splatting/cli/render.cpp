@@ -54,7 +54,7 @@ std::vector<named_camera> orbit(const gaussians& model, int views, int size) {
 
 std::vector<named_camera> cameras_of(const scene& scene) {
     const std::vector<view>& views = scene.test.empty() ? scene.train : scene.test;
-    const auto names = evaluate::picture_names(views);
+    const auto names = evaluate::render_names(views);
     std::vector<named_camera> cameras;
     for (std::size_t i = 0; i < views.size(); ++i) cameras.push_back({names[i], views[i].camera});
     return cameras;

@@ -11,14 +11,14 @@
 
 namespace gs::evaluate {
 
-std::optional<double> psnr_after_fit(const std::vector<float>& picture, const image& shot,
+std::optional<double> psnr_after_fit(const std::vector<float>& render, const image& shot,
                                      const std::array<float, 3>& background) {
     const int width = shot.width, height = shot.height;
     const std::vector<float> photo = over_background(shot, background.data());
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     const auto shown = [&](std::size_t pixel) {
         const auto value = [&](std::size_t c) {
-            return static_cast<double>(std::clamp(picture[c * pixels + pixel], 0.0f, 1.0f));
+            return static_cast<double>(std::clamp(render[c * pixels + pixel], 0.0f, 1.0f));
         };
         return glm::dvec4(value(0), value(1), value(2), 1);
     };
@@ -30,7 +30,7 @@ std::optional<double> psnr_after_fit(const std::vector<float>& picture, const im
                 if (!shot.is_masked(pixel)) f(pixel);
             }
     };
-    // A little towards no change, where the half has too few colours to tell.
+    // Regularizes towards the identity, in case the half has too few colors.
     double ridge = 0;
     over(0, width, [&](std::size_t) { ridge += 1e-4; });
     glm::dmat4 normal(ridge);

@@ -10,12 +10,12 @@
 
 namespace gs::evaluate {
 
-/// The PSNR in dB of a picture's right half, after the affine map of its colours that brings its left half
-/// nearest to the photo's, by least squares: what a photo's exposure was is not for a model to know, and no
-/// pixel is measured by which it was found (the protocol of Martin-Brualla et al. 2021, NeRF in the Wild).
-/// The picture is three planes of values, clamped to [0, 1] before and after; what a mask leaves out of the
-/// photo does not count. Nothing where that is all of the right half.
-std::optional<double> psnr_after_fit(const std::vector<float>& picture, const image& photo,
+/// The PSNR in dB of a render whose exposure is unknown: an affine map of colors is fitted to the left half
+/// of the photo by least squares, and the right half is measured with it, so that no pixel serves for both
+/// (the protocol of Martin-Brualla et al. 2021, NeRF in the Wild). `render` has three planes of values, which
+/// are clamped to [0, 1] before and after the map. Masked pixels do not count. None if the right half is
+/// masked entirely.
+std::optional<double> psnr_after_fit(const std::vector<float>& render, const image& photo,
                                      const std::array<float, 3>& background);
 
 }  // namespace gs::evaluate

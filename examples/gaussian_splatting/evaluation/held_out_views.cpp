@@ -23,7 +23,7 @@ double mean(const std::vector<view_quality>& views, Measure measure) {
 
 }  // namespace
 
-std::vector<std::string> picture_names(const std::vector<view>& views) {
+std::vector<std::string> render_names(const std::vector<view>& views) {
     std::vector<std::string> names;
     std::set<std::string> taken;
     for (const view& v : views) {
@@ -37,42 +37,42 @@ std::vector<std::string> picture_names(const std::vector<view>& views) {
     return names;
 }
 
-double test_report::psnr() const {
+double held_out_report::psnr() const {
     return mean(views, [](const view_quality& v) { return v.quality.psnr(); });
 }
-double test_report::ssim() const {
+double held_out_report::ssim() const {
     return mean(views, [](const view_quality& v) { return v.quality.ssim; });
 }
-std::optional<double> test_report::fitted_psnr() const {
+std::optional<double> held_out_report::fitted_psnr() const {
     std::vector<view_quality> fitted = views;
     std::erase_if(fitted, [](const view_quality& v) { return !v.fitted_psnr; });
     if (fitted.empty()) return {};
     return mean(fitted, [](const view_quality& v) { return *v.fitted_psnr; });
 }
 
-test_report measure_test_views(train::engine& engine, const scene& scene,
-                               const std::array<float, 3>& background, const std::filesystem::path& folder,
-                               bool fits) {
-    test_report report;
+held_out_report measure_held_out_views(train::engine& engine, const scene& scene,
+                                       const std::array<float, 3>& background,
+                                       const std::filesystem::path& folder, bool fits) {
+    held_out_report report;
     const bool keeps = !folder.empty();
     if (keeps) {
         std::filesystem::create_directories(folder / "renders");
         std::filesystem::create_directories(folder / "gt");
     }
-    const auto names = picture_names(scene.test);
-    // Compressing pictures takes longer than drawing them: as many at once as there are threads.
-    std::vector<std::vector<float>> pictures(static_cast<std::size_t>(omp_get_max_threads()));
-    for (std::size_t first = 0; first < scene.test.size(); first += pictures.size()) {
-        const std::size_t count = std::min(pictures.size(), scene.test.size() - first);
+    const auto names = render_names(scene.test);
+    // Compressing PNGs takes longer than rendering, so each thread compresses one.
+    std::vector<std::vector<float>> renders(static_cast<std::size_t>(omp_get_max_threads()));
+    for (std::size_t first = 0; first < scene.test.size(); first += renders.size()) {
+        const std::size_t count = std::min(renders.size(), scene.test.size() - first);
         for (std::size_t i = 0; i < count; ++i)
             report.views.push_back(
                 {scene.test[first + i].name,
-                 engine.measure(first + i, background, keeps || fits ? &pictures[i] : nullptr),
+                 engine.measure(first + i, background, keeps || fits ? &renders[i] : nullptr),
                  {}});
         if (fits)
             for_each_in_parallel(count, [&](std::size_t i) {
                 const view& v = scene.test[first + i];
-                report.views[first + i].fitted_psnr = psnr_after_fit(pictures[i], v.pixels, background);
+                report.views[first + i].fitted_psnr = psnr_after_fit(renders[i], v.pixels, background);
             });
         if (!keeps) continue;
         for_each_in_parallel(2 * count, [&](std::size_t job) {
@@ -80,7 +80,7 @@ test_report measure_test_views(train::engine& engine, const scene& scene,
             const bool drawn = job % 2 == 0;
             const view& v = scene.test[first + i];
             write_png(folder / (drawn ? "renders" : "gt") / names[first + i], v.camera.width, v.camera.height,
-                      drawn ? pictures[i] : over_background(v.pixels, background.data()));
+                      drawn ? renders[i] : over_background(v.pixels, background.data()));
         });
     }
     return report;

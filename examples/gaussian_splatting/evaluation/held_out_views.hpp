@@ -17,23 +17,22 @@ struct view_quality {
     std::optional<double> fitted_psnr;  ///< see fit_exposure.hpp
 };
 
-/// The file names of the pictures of views, without a folder: "a/b.jpg" is drawn as "a_b.png". No two are the
-/// same.
-std::vector<std::string> picture_names(const std::vector<view>& views);
+/// The file names, without a folder, for renders of views: "a/b.jpg" becomes "a_b.png". They are distinct.
+std::vector<std::string> render_names(const std::vector<view>& views);
 
-/// The test views of a scene, each measured.
-struct test_report {
+/// Measurements of the held-out views of a scene.
+struct held_out_report {
     std::vector<view_quality> views;
-    double psnr() const;  ///< mean over the views, as the field has it
+    double psnr() const;  ///< mean over the views of their values in dB
     double ssim() const;
     std::optional<double> fitted_psnr() const;
 };
 
-/// Measures every test view that `engine` holds. Where `folder` is not empty, writes each picture to
-/// `folder/renders` and its photo to `folder/gt`, by its `picture_names`. `fits`: also after fitting
-/// exposures.
-test_report measure_test_views(train::engine& engine, const scene& scene,
-                               const std::array<float, 3>& background, const std::filesystem::path& folder,
-                               bool fits = false);
+/// Measures every held-out view of `scene`, which `engine` must hold. Unless `folder` is empty, writes each
+/// render to `folder/renders` and its photo to `folder/gt`, see `render_names`. `fits` adds the PSNR after
+/// fitting exposures.
+held_out_report measure_held_out_views(train::engine& engine, const scene& scene,
+                                       const std::array<float, 3>& background,
+                                       const std::filesystem::path& folder, bool fits = false);
 
 }  // namespace gs::evaluate

@@ -277,12 +277,12 @@ TEST_CASE("behind a scene a sky is learnt, where no surface is") {
             e->set_views(scene.train, scene.test, o.schedule.num_downscales);
             e->set_model(model);
             gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
-            const double psnr = gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr();
+            const double psnr = gs::evaluate::measure_held_out_views(*e, scene, {}, {}).psnr();
             model = e->get_model();
             CHECK(model.sky.size() == sky.size());
             if (!sky.empty()) CHECK(model.sky != sky);
             e->set_model(model);
-            CHECK(gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr() ==
+            CHECK(gs::evaluate::measure_held_out_views(*e, scene, {}, {}).psnr() ==
                   doctest::Approx(psnr).epsilon(1e-6));
             return psnr;
         };
@@ -327,7 +327,7 @@ TEST_CASE("quality: with depth maps, few photos with few points make a better sc
                 e->set_views(scene.train, scene.test, o.schedule.num_downscales);
                 e->set_model(gs::from_points(scene.points, 0, 4000, seed));
                 gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
-                return gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr();
+                return gs::evaluate::measure_held_out_views(*e, scene, {}, {}).psnr();
             };
             const depth_evidence found = compare_depths(scene);
             CHECK(found.agreeing >= 3);
@@ -389,7 +389,7 @@ TEST_CASE("what passed before photos leaves nothing behind if masks leave it out
             e->set_views(scene.train, scene.test, o.schedule.num_downscales);
             e->set_model(gs::from_points(scene.points, 0, 3000, 1));
             gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
-            return gs::evaluate::measure_test_views(*e, scene, {}, {}).psnr();
+            return gs::evaluate::measure_held_out_views(*e, scene, {}, {}).psnr();
         };
         const double clean = psnr_of("synthetic:spheres", true);
         const double masked = psnr_of("synthetic:spheres,passers=0.25", true);
@@ -471,7 +471,7 @@ TEST_CASE("test photos are exposed as their neighbours, if training photos are")
     for (const char* name : {"0", "b", "d", "z"}) scene.test.emplace_back().name = name;
     const auto gain = [](float x) { return gs::features::exposure{x, 0, 0, 0, 0, x, 0, 0, 0, 0, x, 0}; };
     const std::vector walk{gain(1.2f), gain(0.8f), gain(1), gain(1.4f)};
-    CHECK(gs::evaluate::test_exposures(scene, walk) ==
+    CHECK(gs::evaluate::held_out_exposures(scene, walk) ==
           std::vector{gain(0.8f), gain(0.5f * (0.8f + 1)), gain(0.5f * (1 + 1.2f)), gain(1.4f)});
     const std::vector jumps{gain(0.6f), gain(0.8f), gain(1.4f), gain(1.2f)};
     CHECK(gs::evaluate::test_exposures(scene, jumps) == std::vector(4, gs::features::identity_exposure));

@@ -66,7 +66,7 @@ gs::gaussians trained(gs::train::engine& engine, const gs::scene& scene) {
 }
 
 double psnr_of(gs::train::engine& engine, const gs::scene& scene) {
-    return gs::evaluate::measure_test_views(engine, scene, {}, {}).psnr();
+    return gs::evaluate::measure_held_out_views(engine, scene, {}, {}).psnr();
 }
 
 double median_along(const gs::gaussians& model, std::size_t axis) {

@@ -23,14 +23,14 @@ double square_distance(const exposure& a, const exposure& b) {
     return sum;
 }
 
-/// Of photos in the order of their names.
-bool neighbours_are_alike(const std::vector<exposure>& in_order) {
-    double by_neighbours = 0, by_nothing = 0;
+/// `in_order`: exposures of photos in the order of their names.
+bool neighbors_are_alike(const std::vector<exposure>& in_order) {
+    double by_neighbors = 0, by_identity = 0;
     for (std::size_t i = 1; i + 1 < in_order.size(); ++i) {
         by_neighbours += square_distance(in_order[i], mean(in_order[i - 1], in_order[i + 1]));
         by_nothing += square_distance(in_order[i], identity_exposure);
     }
-    return by_neighbours < by_nothing;
+    return by_neighbors < by_identity;
 }
 
 }  // namespace
