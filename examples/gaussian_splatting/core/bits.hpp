@@ -9,12 +9,12 @@
 
 namespace gs::raster {
 
-/// An unsigned integer of as many bits as a Real.
+/// The unsigned integer with as many bits as a Real.
 template <class Real>
 using bits_as = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
 
-/// The bits of x as what else they may be. Those of a float as an integer are a sort key: non-negative floats
-/// sort as their bits do. Of a lane value, of each lane's.
+/// Reinterprets the bits of x, for lane values in each lane. As integers, the bits of non-negative floats are
+/// a sort key.
 template <class Bits = std::uint32_t, class V>
 WARPAGG_HD Bits bits_of(const V& x) {
     Bits bits;

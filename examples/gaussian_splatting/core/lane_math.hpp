@@ -34,7 +34,7 @@ WARPAGG_HD Real exponential(const Real& x) {
     if constexpr (std::is_arithmetic_v<Real>) {
         return glm::exp(x);
     } else {
-        // exp2 ends at the largest number, but a scale that no number holds is to be seen.
+        // exp2 saturates at the largest number, but an overflow has to remain visible.
         using limits = std::numeric_limits<Real>;
         const Real log2 = x * constant<Real>(1.4426950408889634);
         return select(log2 < Real(limits::max_exponent), exp2(log2), Real(limits::infinity()));

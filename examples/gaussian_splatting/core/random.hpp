@@ -10,8 +10,8 @@
 
 namespace gs::train {
 
-/// Random numbers by counter: the same for the same seed, step and index on every device and in any order.
-/// Mixes by the finaliser of SplitMix64 (Steele et al. 2014).
+/// Counter-based random numbers: seed, step and index determine them, on every device and in any order. Uses
+/// the finalizer of SplitMix64 (Steele et al. 2014).
 struct counter_random {
     std::uint64_t state;
 
@@ -22,7 +22,7 @@ struct counter_random {
         state += 0x9e3779b97f4a7c15u;
         return (static_cast<float>(mix(state) >> 41) + 0.5f) * 0x1p-23f;
     }
-    /// Three normal deviates (Box and Muller 1958).
+    /// Three standard normal deviates (Box and Muller 1958).
     WARPAGG_HD glm::vec3 normal3() {
         const float r = warpagg::math::sqrt(-2 * glm::log(uniform())), a = 6.2831853f * uniform();
         const float s = warpagg::math::sqrt(-2 * glm::log(uniform())), b = 6.2831853f * uniform();

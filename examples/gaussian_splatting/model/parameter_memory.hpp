@@ -13,7 +13,7 @@
 
 namespace gs {
 
-/// Arrays on a device with a place for each parameter of each Gaussian: see `place`.
+/// Arrays on a device with an element for each parameter of each Gaussian: see `aosoa_index`.
 template <device::device Device>
 class parameter_memory {
   public:

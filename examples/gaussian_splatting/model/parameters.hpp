@@ -35,7 +35,7 @@ constexpr bool has_parameter(std::size_t p, int sh_degree) {
 /// Whether it is of colours that depend on direction, which not every Gaussian has to have.
 constexpr bool is_band(std::size_t p) { return p > static_cast<std::size_t>(parameter::sh0); }
 
-/// Where the arrays lie, each in blocks: see `place`. Values, gradients and moments have this form.
+/// Where the arrays lie, each in blocks: see `aosoa_index`. Values, gradients and moments have this form.
 template <class Real>
 struct parameter_arrays {
     Real* mean = nullptr;

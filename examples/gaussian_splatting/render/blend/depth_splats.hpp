@@ -20,7 +20,7 @@ struct depth_splats {
 
     WARPAGG_HD void operator()(std::size_t i) const {
         vec3<Real> at;
-        for (unsigned k = 0; k < 3; ++k) at[static_cast<int>(k)] = mean[place(i, k, 3)];
+        for (unsigned k = 0; k < 3; ++k) at[static_cast<int>(k)] = mean[aosoa_index(i, k, 3)];
         splat<Real> s = splats[i];
         s.red = 1 / projection_of<Real, Effects>::depth(in_camera(at, camera));
         s.green = s.blue = 0;

@@ -9,8 +9,8 @@
 #include <glm/vec4.hpp>
 #include <warpagg/core/math.hpp>
 
-#include "../../model/aosoa.hpp"
 #include "../../core/lane_math.hpp"
+#include "../../model/aosoa.hpp"
 
 namespace gs::raster {
 
@@ -56,19 +56,20 @@ struct unit {
     }
 };
 
-/// The components of Gaussian i in an array of three: see `place`.
+/// The components of Gaussian i in an array of three: see `aosoa_index`.
 template <class Real>
 WARPAGG_HD vec3<Real> load3(const Real* p, unsigned i) {
-    return {p[place(i, 0, 3)], p[place(i, 1, 3)], p[place(i, 2, 3)]};
+    return {p[aosoa_index(i, 0, 3)], p[aosoa_index(i, 1, 3)], p[aosoa_index(i, 2, 3)]};
 }
 template <class Real>
 WARPAGG_HD void store3(Real* p, unsigned i, const vec3<Real>& v) {
-    for (int k = 0; k < 3; ++k) p[place(i, static_cast<unsigned>(k), 3)] = v[k];
+    for (int k = 0; k < 3; ++k) p[aosoa_index(i, static_cast<unsigned>(k), 3)] = v[k];
 }
 
 template <class Real>
 WARPAGG_HD vec4<Real> load4(const Real* p, unsigned i) {
-    return {p[place(i, 0, 4)], p[place(i, 1, 4)], p[place(i, 2, 4)], p[place(i, 3, 4)]};
+    return {p[aosoa_index(i, 0, 4)], p[aosoa_index(i, 1, 4)], p[aosoa_index(i, 2, 4)],
+            p[aosoa_index(i, 3, 4)]};
 }
 
 }  // namespace gs::raster

@@ -53,7 +53,7 @@ struct gaussian_row {
     }
     /// Where component k + n of the first lies.
     WARPAGG_HD std::ptrdiff_t at(std::size_t k, int n, std::size_t width) const {
-        return static_cast<std::ptrdiff_t>(place(first, k + static_cast<std::size_t>(n), width));
+        return static_cast<std::ptrdiff_t>(aosoa_index(first, k + static_cast<std::size_t>(n), width));
     }
 
   private:
