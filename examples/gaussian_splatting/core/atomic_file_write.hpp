@@ -10,9 +10,10 @@
 
 namespace gs {
 
-/// Replaces a file by what `fill` writes. `fill` writes to a temporary file beside it, which is renamed in
-/// the end, so that others see the old file or the complete new one. Throws `error` naming the file if it
-/// cannot be written; what `fill` throws passes through. The old file stays then.
+/// Replaces a file by what `fill` writes. `fill` writes to a temporary file beside it, which is
+/// renamed in the end, so that others see the old file or the complete new one. Throws `error`
+/// naming the file if it cannot be written; what `fill` throws passes through. The old file stays
+/// then.
 inline void atomic_file_write(const std::filesystem::path& file,
                               const std::function<void(std::ostream&)>& fill) {
     const std::filesystem::path temporary = file.string() + ".part";

@@ -13,8 +13,8 @@ namespace gs::raster {
 template <class Real>
 using bits_as = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
 
-/// Reinterprets the bits of x, for lane values in each lane. As integers, the bits of non-negative floats are
-/// a sort key.
+/// Reinterprets the bits of x, for lane values in each lane. As integers, the bits of non-negative
+/// floats are a sort key.
 template <class Bits = std::uint32_t, class V>
 WARPAGG_HD Bits bits_of(const V& x) {
     Bits bits;

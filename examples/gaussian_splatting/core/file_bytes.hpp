@@ -11,8 +11,8 @@
 
 namespace gs {
 
-/// A file that is open for reading, and its size in bytes. Throws `error` naming the file if it cannot be
-/// read.
+/// A file that is open for reading, and its size in bytes. Throws `error` naming the file if it
+/// cannot be read.
 struct opened_file {
     explicit opened_file(const std::filesystem::path& file) : name(file.string()) {
         std::error_code failed;

@@ -10,8 +10,8 @@
 
 namespace gs::train {
 
-/// Counter-based random numbers: seed, step and index determine them, on every device and in any order. Uses
-/// the finalizer of SplitMix64 (Steele et al. 2014).
+/// Counter-based random numbers: seed, step and index determine them, on every device and in any
+/// order. Uses the finalizer of SplitMix64 (Steele et al. 2014).
 struct counter_random {
     std::uint64_t state;
 

@@ -22,9 +22,9 @@
 #include "../core/atomic_file_write.hpp"
 #include "../core/error.hpp"
 
-// jpeglib.h leaves it to its user to have declared FILE and size_t.
+// jpeglib.h requires FILE and size_t to be declared.
 #include <jpeglib.h>
-// jerror.h looks at what jpeglib.h configured.
+// jerror.h depends on jpeglib.h.
 #include <jerror.h>
 
 namespace gs {
@@ -33,10 +33,10 @@ namespace {
 constexpr std::uint64_t largest_side = 65536;
 constexpr std::uint64_t largest_decoded_bytes = std::uint64_t{1} << 31;
 
-// A 1-bit PNG under deflate's best ratio, 1032 to 1: nothing that we read packs pixels more densely.
+// A 1-bit PNG at the best ratio of deflate, 1032 to 1, which is the densest format that is read.
 constexpr std::uint64_t most_pixels_per_byte = 8 * 1032;
 
-// Of a progressive JPEG, each of which goes over all pixels: as many as cjpeg can be told to write.
+// Each scan of a progressive JPEG visits all pixels. This is the largest number that cjpeg writes.
 constexpr int most_scans = 100;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
@@ -64,7 +64,7 @@ void check_size(const std::filesystem::path& file, std::uint64_t width, std::uin
         refuse(file, "its size, " + size + ", is too large");
 }
 
-// Keeps a header that promises a huge image over next to no data from costing gigabytes.
+// Refuses a header that promises a huge image with hardly any data, before it costs gigabytes.
 void check_density(const std::filesystem::path& file, std::uint64_t width, std::uint64_t height) {
     std::error_code ignored;
     if (width * height / most_pixels_per_byte > std::filesystem::file_size(file, ignored))
@@ -89,10 +89,10 @@ void premultiply(image& pixels) {
     }
 }
 
-// ------------------------------------------------------------------------------------------------ PNG
+// PNG
 //
-// libpng and libjpeg leave by longjmp. Each call into them is therefore made from a function whose frame
-// holds nothing with a destructor; what must be released is owned by the frames above it.
+// libpng and libjpeg leave by longjmp. Each call into them is therefore made from a function whose
+// frame holds no object with a destructor; the frames above it own all resources.
 
 struct png_failure {
     std::array<char, 256> message{};
@@ -117,7 +117,7 @@ class png_reader {
 
     bool ready() const { return png_ && info_; }
 
-    /// Whatever the file holds, `read_rows` will then yield 8-bit RGBA.
+    /// Makes `read_rows` yield 8-bit RGBA for every color type.
     bool read_header(std::FILE* file) {
         if (setjmp(png_jmpbuf(png_))) return false;
         begin(file);
@@ -129,7 +129,7 @@ class png_reader {
         return true;
     }
 
-    /// `read_rows` will then yield 16 bit a channel, as many as the file has.
+    /// Makes `read_rows` yield 16 bits per channel, and as many channels as the file has.
     bool read_deep_header(std::FILE* file) {
         if (setjmp(png_jmpbuf(png_))) return false;
         begin(file);
@@ -153,7 +153,8 @@ class png_reader {
   private:
     void begin(std::FILE* file) {
         png_set_user_limits(png_, largest_side, largest_side);
-        // But those that make the pixels: texts and profiles may be compressed, and swell to megabytes each.
+        // Keep only the chunks for pixels. Texts and profiles may be compressed, and expand to
+        // megabytes each.
         png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
         png_init_io(png_, file);
         png_read_info(png_, info_);
@@ -205,8 +206,8 @@ class png_writer {
         png_set_IHDR(png_, info_, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
                      PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                      PNG_FILTER_TYPE_DEFAULT);
-        // Runs alone make what filters leave of a photo as small as zlib's search does, in a fourth of the
-        // time.
+        // For filtered photos run-length coding compresses as well as the search of zlib, and
+        // faster.
         png_set_compression_strategy(png_, Z_RLE);
         png_write_info(png_, info_);
         png_write_image(png_, rows);
@@ -229,14 +230,14 @@ class png_writer {
 };
 
 std::uint8_t to_byte(float value) {
-    if (!(value > 0)) return 0;  // NaN too
+    if (!(value > 0)) return 0;  // or NaN
     return static_cast<std::uint8_t>(std::lround(255.0F * std::min(value, 1.0F)));
 }
 
-// ----------------------------------------------------------------------------------------------- JPEG
+// JPEG
 
 struct jpeg_errors {
-    jpeg_error_mgr manager{};  ///< first, so that libjpeg's pointer to it is a pointer to the whole
+    jpeg_error_mgr manager{};  ///< first, so that a pointer to it is a pointer to the struct
     std::jmp_buf escape{};
     std::array<char, JMSG_LENGTH_MAX> message{};
     bool no_pixels = false;
@@ -260,11 +261,11 @@ bool means_lost_pixels(int message_code) {
         case JWRN_MUST_RESYNC:
             return true;
         default:
-            return false;  // stray bytes or odd marker values: the pixels are whole
+            return false;  // stray bytes or odd marker values: the pixels are complete
     }
 }
 
-// libjpeg would go on after lost data and paint the rest grey, which must not pass for a photo.
+// libjpeg would continue after lost data and paint the rest gray, which must not pass for a photo.
 void heed_jpeg_warning(j_common_ptr jpeg, int level) {
     if (level < 0 && means_lost_pixels(jpeg->err->msg_code)) leave_jpeg(jpeg);
 }
@@ -345,9 +346,9 @@ image read_jpeg(const std::filesystem::path& file, std::FILE* opened) {
     return pixels;
 }
 
-// ------------------------------------------------------------------------------------- either of them
+// PNG or JPEG
 
-/// What the first bytes tell: the format, and for a PNG the size, whose place is fixed.
+/// The format by the first bytes, and for a PNG the size, which has a fixed position.
 struct first_bytes {
     bool is_png = false;
     std::uint64_t png_width = 0, png_height = 0;

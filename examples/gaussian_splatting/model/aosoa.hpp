@@ -8,10 +8,10 @@
 
 namespace gs {
 
-/// Device memory holds Gaussians as an array of structures of arrays: in a block of this many Gaussians, the
-/// first component of all of them precedes their second one. A warp, or a SIMD register, thus accesses
-/// neighbors in one piece, however many components a Gaussian has. (With one row per Gaussian, each value
-/// that a thread writes would cost a memory sector of 32 bytes.)
+/// Device memory holds Gaussians as an array of structures of arrays: in a block of this many
+/// Gaussians, the first component of all of them precedes their second one. A warp, or a SIMD
+/// register, thus accesses neighbors in one piece, however many components a Gaussian has. (With
+/// one row per Gaussian, each value that a thread writes would cost a memory sector of 32 bytes.)
 inline constexpr std::size_t block_length = 32;
 
 /// The number of Gaussians rounded up to whole blocks, for which arrays have memory.
@@ -24,8 +24,8 @@ WARPAGG_HD constexpr std::size_t aosoa_index(std::size_t i, std::size_t k, std::
     return i / block_length * block_length * width + i % block_length + k * block_length;
 }
 
-/// Copies the first `width` values of each of `count` rows, which are `stride` apart, into blocks. Padding is
-/// zero.
+/// Copies the first `width` values of each of `count` rows, which are `stride` apart, into blocks.
+/// Padding is zero.
 template <class Real>
 std::vector<Real> to_blocks(const Real* rows, std::size_t count, std::size_t stride, std::size_t width) {
     std::vector<Real> blocks(in_whole_blocks(count) * width);

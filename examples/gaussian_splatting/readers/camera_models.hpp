@@ -8,18 +8,20 @@
 
 namespace gs {
 
-/// A camera model of COLMAP. Its parameters are: f or fx fy, cx, cy, and the distortion coefficients.
+/// A camera model of COLMAP. Its parameters are: f or fx fy, cx, cy, and the distortion
+/// coefficients.
 struct camera_model {
     int id;  ///< in COLMAP's binary files
     const char* name;
     bool two_focal_lengths;
-    std::size_t distortion_count;  ///< of k1 k2 p1 p2 in this order, or of k1 to k4 of a fisheye lens
+    std::size_t distortion_count;  ///< of k1 k2 p1 p2, or k1 to k4 of a fisheye
     bool is_fisheye = false;
 
     std::size_t parameter_count() const { return (two_focal_lengths ? 4U : 3U) + distortion_count; }
 };
 
-/// Both throw `error` beginning with `where`, and listing the supported models, for any other model.
+/// Both throw `error` beginning with `where`, and listing the supported models, for any other
+/// model.
 const camera_model& camera_model_with_id(int id, const std::string& where);
 const camera_model& camera_model_named(std::string_view name, const std::string& where);
 

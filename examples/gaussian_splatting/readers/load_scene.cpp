@@ -43,7 +43,7 @@ scene_description describe(const load_options& options, const log_function& log,
         const reader& chosen = reader_of(options.data, readers);
         refuse_foreign_options(options, chosen, readers);
         return chosen.read(options, log);
-    } catch (const std::filesystem::filesystem_error& problem) {  // no permission, or a name too long
+    } catch (const std::filesystem::filesystem_error& problem) {
         throw error("cannot read " + problem.path1().string() + ": " + problem.code().message());
     }
 }

@@ -41,8 +41,8 @@ camera fitted_to_file(const image_record& record) {
     return recorded.resized(width, height);
 }
 
-/// Such copies all have the same scale, so a photo with another scale than most photos of the same recorded
-/// size is a wrong file.
+/// Such copies all have the same scale, so a photo with another scale than most photos of the same
+/// recorded size is a wrong file.
 void require_one_scale(const std::vector<image_record>& records, const std::vector<camera>& fitted) {
     const auto scale = [&](std::size_t i) {
         return static_cast<double>(fitted[i].width) / records[i].camera.width;
@@ -129,8 +129,8 @@ std::vector<camera> undistort_cameras(const std::vector<image_record>& records,
     return pinholes;
 }
 
-/// Refuses fisheye lenses whose model ends before the photo does on all sides: their parameters are wrong.
-/// Corners may lie beyond the end.
+/// Refuses fisheye lenses whose model ends before the photo does on all sides: their parameters are
+/// wrong. Corners may lie beyond the end.
 void require_wide_lenses(const std::vector<image_record>& records, const std::vector<camera>& fitted) {
     for (std::size_t i = 0; i < fitted.size(); ++i) {
         const camera& c = fitted[i];

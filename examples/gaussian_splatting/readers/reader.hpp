@@ -18,7 +18,7 @@ namespace gs {
 /// Which scene to read, and how.
 struct load_options {
     std::string data;        ///< a path, or a name that a reader knows, such as "synthetic:spheres"
-    int resolution = 1;      ///< 1, 2, 4, 8 divide the size; any other number is the longer side in pixels
+    int resolution = 1;      ///< see `divides_size`; otherwise the longer side in pixels
     bool eval = false;       ///< hold out the test images; otherwise they are training images, too
     bool masks = true;       ///< apply the scene's masks
     bool depths = true;      ///< load the scene's depth maps
@@ -29,7 +29,7 @@ struct load_options {
     int test_every = 8;             ///< hold out every n-th image, sorted by name, from the first
 };
 
-/// Whether a resolution divides the size of the images.
+/// Whether a resolution divides the size of the images instead of being their longer side.
 constexpr bool divides_size(int resolution) {
     return resolution == 1 || resolution == 2 || resolution == 4 || resolution == 8;
 }
@@ -44,20 +44,20 @@ inline constexpr reader_option images_option{
 inline constexpr reader_option test_every_option{
     "--test-every", [](const load_options& o) { return o.test_every != load_options().test_every; }};
 
-/// One image of a scene as a reader describes it. It names its files, which `load_scene` loads later, or
-/// holds the pixels that a reader has made.
+/// One image of a scene as a reader describes it. It names its files, which `load_scene` loads
+/// later, or holds the pixels that a reader has made.
 struct image_record {
     std::string name;       ///< unique within the scene; with '/' between folders
     gs::camera camera;      ///< at the size of the image when the camera was calibrated
     bool held_out = false;  ///< a test image, if `load_options::eval` is set
 
-    std::filesystem::path file;   ///< PNG or JPEG; its size may differ from the camera's by one factor
+    std::filesystem::path file;   ///< PNG or JPEG; may be a scaled copy
     lens distortion;              ///< of the file; loading removes it
     std::string camera_model;     ///< name of the model of `distortion`, for messages
     std::filesystem::path mask;   ///< PNG, see `read_mask`; empty: no mask
     std::filesystem::path depth;  ///< PNG, see `read_depth_map`; empty: no depth map
 
-    image pixels;            ///< replaces `file`: undistorted, at the camera's size and the final resolution
+    image pixels;            ///< instead of `file`: undistorted, at the final resolution
     depth_map depth_pixels;  ///< may accompany `pixels`, and has their size
 
     bool has_pixels() const { return !pixels.rgba.empty(); }
@@ -75,12 +75,12 @@ struct reader {
     std::string_view name;     ///< in messages, as in "COLMAP scenes"
     std::string_view accepts;  ///< what `probe` looks for, as in "a folder with sparse/0 or sparse"
 
-    /// Whether `load_options::data` is such a scene. Looks only at names: the first reader that returns true
-    /// reads the scene, and reports everything that is wrong with it.
+    /// Whether `load_options::data` is such a scene. Looks only at names: the first reader that
+    /// returns true reads the scene, and reports everything that is wrong with it.
     bool (*probe)(const std::string& data);
 
-    /// Reads cameras and points. Opens images at most for their size, unless the reader makes the images.
-    /// Throws `error` with the file, and the line or record, that is malformed.
+    /// Reads cameras and points. Opens images at most for their size, unless the reader makes the
+    /// images. Throws `error` with the file, and the line or record, that is malformed.
     scene_description (*read)(const load_options& options, const log_function& log);
 
     std::span<const reader_option> options{};  ///< those that `read` uses

@@ -15,7 +15,7 @@ double slope(const std::array<double, 4>& k, double angle) {
     return 1 + w * (3 * k[0] + w * (5 * k[1] + w * (7 * k[2] + w * 9 * k[3])));
 }
 
-/// Where a condition that holds at `from` and not at `to` ends to hold.
+/// The position where a condition ends to hold that holds at `from` and not at `to`.
 template <class Condition>
 double bisect(double from, double to, const Condition& holds) {
     for (int i = 0; i < 60; ++i) {
@@ -28,7 +28,7 @@ double bisect(double from, double to, const Condition& holds) {
 }  // namespace
 
 fisheye::fisheye(const std::array<double, 4>& k) : k_(k), end_(widest) {
-    constexpr int steps = 300;  // between two of them no valid lens turns back and forth
+    constexpr int steps = 300;  // a valid lens does not turn back and forth between two steps
     const auto grows = [&](double t) { return slope(k, t) > 0; };
     for (int i = 1; i <= steps && end_ == widest; ++i)
         if (!grows(widest * i / steps)) end_ = bisect(widest * (i - 1) / steps, widest * i / steps, grows);
@@ -41,7 +41,7 @@ double fisheye::reach(double angle) const {
 
 double fisheye::angle(double reach) const {
     if (reach >= this->reach(end_)) return end_;
-    // Newton's steps, and halves where these leave what is left.
+    // Newton's method, with bisection where it leaves the bracket.
     double low = 0, high = end_, angle = std::min(reach, end_);
     for (int step = 0; step < 60; ++step) {
         const double off = this->reach(angle) - reach;

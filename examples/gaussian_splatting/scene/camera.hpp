@@ -12,8 +12,9 @@
 
 namespace gs {
 
-/// A fisheye lens (Kannala and Brandt 2006; the model of COLMAP and OpenCV). It projects a ray at the angle t
-/// from the axis to t (1 + k[0] t^2 + k[1] t^4 + k[2] t^6 + k[3] t^8) focal lengths from the center.
+/// A fisheye lens (Kannala and Brandt 2006; the model of COLMAP and OpenCV). It projects a ray at
+/// the angle t from the axis to t (1 + k[0] t^2 + k[1] t^4 + k[2] t^6 + k[3] t^8) focal lengths
+/// from the center.
 class fisheye {
   public:
     explicit fisheye(const std::array<double, 4>& k);
@@ -34,9 +35,9 @@ class fisheye {
     double end_;
 };
 
-/// A camera. The point p of the world is q = `rotation * p + translation` in camera space (x right, y down, z
-/// forward). A pinhole camera projects q to the pixel coordinates (fx q.x/q.z + cx, fy q.y/q.z + cy), where
-/// the center of the top left pixel is (0.5, 0.5).
+/// A camera. The point p of the world is q = `rotation * p + translation` in camera space (x right,
+/// y down, z forward). A pinhole camera projects q to the pixel coordinates (fx q.x/q.z + cx, fy
+/// q.y/q.z + cy), where the center of the top left pixel is (0.5, 0.5).
 struct camera {
     int width = 0;
     int height = 0;
@@ -51,7 +52,8 @@ struct camera {
         double x, y;   ///< pixels
         double depth;  ///< z for a pinhole camera, the distance for a fisheye
     };
-    /// Projects a point of the world; none if it is behind the camera, or beyond the end of a fisheye lens.
+    /// Projects a point of the world; none if it is behind the camera, or beyond the end of a
+    /// fisheye lens.
     std::optional<image_point> see(const glm::dvec3& point) const;
     /// The direction in the world, of length one, that projects to these pixel coordinates.
     glm::dvec3 ray(double x, double y) const;

@@ -6,7 +6,8 @@
 
 namespace gs {
 
-/// The camera of an image with its sides divided by `divisor` and rounded to the nearest pixel, at least 1.
+/// The camera of an image with its sides divided by `divisor` and rounded to the nearest pixel, at
+/// least 1.
 camera downsampled(const camera& full, int divisor);
 
 /// The view with that camera; the photo and the depth map are averaged over areas.

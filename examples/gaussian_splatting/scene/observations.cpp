@@ -14,8 +14,8 @@ namespace gs {
 namespace {
 
 constexpr std::size_t most_points = 6000;
-constexpr double spacings = 2.5;                  ///< distance in the image at which a point may hide another
-constexpr double nearer = 0.03;                   ///< share of the depth by which the other point is nearer
+constexpr double spacings = 2.5;                  ///< points this close in the image may hide each other
+constexpr double nearer = 0.03;                   ///< relative difference in depth
 constexpr int least_value = 6, most_value = 249;  ///< of a channel that is not saturated
 
 std::vector<place_in_photo> project(const camera& c, const std::vector<coloured_point>& points) {
@@ -28,8 +28,8 @@ std::vector<place_in_photo> project(const camera& c, const std::vector<coloured_
     return seen;
 }
 
-/// The depth of the nearest point in each cell of the image. Cells are as wide as the distance at which
-/// points hide each other.
+/// The depth of the nearest point in each cell of the image. Cells are as wide as the distance at
+/// which points hide each other.
 class nearest_depths {
   public:
     nearest_depths(const camera& c, const std::vector<place_in_photo>& seen)

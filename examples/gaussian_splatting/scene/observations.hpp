@@ -28,8 +28,8 @@ struct place_in_photo {
     double x, y, depth;
 };
 
-/// Projects the points that a camera sees. A point does not count if a clearly nearer one, a few spacings
-/// away in the image, may hide it.
+/// Projects the points that a camera sees. A point does not count if a clearly nearer one, a few
+/// spacings away in the image, may hide it.
 std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<coloured_point>& points);
 
 /// What the training photos have of the scene's points, by point; some thousands of the points stand for all.

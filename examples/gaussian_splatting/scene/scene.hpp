@@ -31,21 +31,23 @@ struct scene {
     std::vector<view> train;
     std::vector<view> test;
     std::vector<coloured_point> points;  ///< from structure from motion; may be empty
-    bool has_alpha = false;              ///< some photo has transparent pixels; masked ones do not count
-    /// The cameras look at one object, so that scenes without points begin with Gaussians around it.
+    bool has_alpha = false;              ///< some photo has transparent, unmasked pixels
+    /// The cameras look at one object, so that scenes without points begin with Gaussians around
+    /// it.
     bool object_centered = false;
     gs::normalization normalization;  ///< of cameras and points; the identity until `normalize`
 
-    /// 1.1 times the largest distance of a training camera from the mean of all: the unit of the learning
-    /// rate of positions and of densification (Kerbl et al. 2023, reference implementation). If all cameras
-    /// are at one place (up to a millionth of the following distances), it is the median distance of the
-    /// points from there; without points, the distance of `looked_at`; and without that, 1 in world units.
+    /// 1.1 times the largest distance of a training camera from the mean of all: the unit of the
+    /// learning rate of positions and of densification (Kerbl et al. 2023, reference
+    /// implementation). If all cameras are at one place (up to a millionth of the following
+    /// distances), it is the median distance of the points from there; without points, the distance
+    /// of `looked_at`; and without that, 1 in world units.
     double extent() const;
 
-    /// The point nearest to the optical axes of the training cameras, by least squares. In directions that
-    /// the axes do not determine (a single camera, parallel axes) it is nearest to the origin of the world,
-    /// where scenes without points have their object. None if it is not in front of at least half of the
-    /// cameras.
+    /// The point nearest to the optical axes of the training cameras, by least squares. In
+    /// directions that the axes do not determine (a single camera, parallel axes) it is nearest to
+    /// the origin of the world, where scenes without points have their object. None if it is not in
+    /// front of at least half of the cameras.
     std::optional<glm::dvec3> looked_at() const;
 };
 

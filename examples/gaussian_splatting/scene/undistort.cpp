@@ -18,8 +18,9 @@ glm::dvec2 to_photo(const camera& taken_with, const lens& distortion, glm::dvec2
     return {taken_with.fx * distorted.x + taken_with.cx, taken_with.fy * distorted.y + taken_with.cy};
 }
 
-/// Rays through the centers of pixels along the border, including the four that are nearest to the camera's
-/// axis. There and in the corners the border of a distorted photo reaches farthest inwards and outwards.
+/// Rays through the centers of pixels along the border, including the four that are nearest to the
+/// camera's axis. There and in the corners the border of a distorted photo reaches farthest inwards
+/// and outwards.
 std::vector<glm::dvec2> border_rays(const camera& pinhole) {
     constexpr int steps = 64;
     const double left = 0.5, top = 0.5, right = pinhole.width - 0.5, bottom = pinhole.height - 0.5;

@@ -19,13 +19,14 @@ struct lens {
     /// The distorted position of the ray through (x/z, y/z) in the image plane.
     glm::dvec2 distort(glm::dvec2 ray) const;
 
-    /// The determinant of the derivative of `distort`. Where it is not positive, the image plane folds over.
+    /// The determinant of the derivative of `distort`. Where it is not positive, the image plane
+    /// folds over.
     double area_scale(glm::dvec2 ray) const;
 };
 
-/// The pinhole camera with the same size and center that shows as much of the photo as possible, but nothing
-/// outside of it. Its focal lengths are those of `taken_with` times one factor from 0.5 to 5. None if no such
-/// camera exists because the distortion is too strong.
+/// The pinhole camera with the same size and center that shows as much of the photo as possible,
+/// but nothing outside of it. Its focal lengths are those of `taken_with` times one factor from 0.5
+/// to 5. None if no such camera exists because the distortion is too strong.
 std::optional<camera> undistorted_camera(const camera& taken_with, const lens& distortion);
 
 /// The photo as the pinhole camera `wanted` would have taken it, with bilinear interpolation.

@@ -12,40 +12,41 @@ namespace gs {
 
 /// How to write a model. Each format honors what it can express.
 struct write_options {
-    int max_sh_degree = 3;  ///< 0 to 3; spherical-harmonics coefficients of higher degrees are dropped
+    int max_sh_degree = 3;  ///< 0 to 3; coefficients of higher degrees are dropped
 };
 
-/// A file format for Gaussians. To add one, write its folder and add a row to the table in writers.cpp.
+/// A file format for Gaussians. To add one, write its folder and add a row to the table in
+/// writers.cpp.
 ///
-/// A model has the axes of the scene that it was trained on. A format that prescribes other axes converts in
-/// both functions.
+/// A model has the axes of the scene that it was trained on. A format that prescribes other axes
+/// converts in both functions.
 struct writer {
     std::string_view name;  ///< in messages, as in "PLY files"
 
-    /// The endings of the files, in lower case. The longest ending that matches decides, so that one writer
-    /// may have ".ply" and another ".compressed.ply".
+    /// The endings of the files, in lower case. The longest ending that matches decides, so that
+    /// one writer may have ".ply" and another ".compressed.ply".
     std::span<const std::string_view> endings;
 
-    /// Writes the file as a whole or not at all, see `atomic_file_write`. Throws `error` with the file and
-    /// the value that the format cannot hold, such as one that is not finite.
+    /// Writes the file as a whole or not at all, see `atomic_file_write`. Throws `error` with the
+    /// file and the value that the format cannot hold, such as one that is not finite.
     void (*write)(const std::filesystem::path& file, const gaussians& model, const write_options& options);
 
-    /// Reads the file back; null for formats that can only be written. Throws `error` with the file and the
-    /// field that is malformed. Must not trust sizes in the file before it has compared them with the size of
-    /// the file itself.
+    /// Reads the file back; null for formats that can only be written. Throws `error` with the file
+    /// and the field that is malformed. Must not trust sizes in the file before it has compared
+    /// them with the size of the file itself.
     gaussians (*read)(const std::filesystem::path& file) = nullptr;
 };
 
 /// All writers.
 std::span<const writer* const> all_writers();
 
-/// Writes a model in the format of the file's ending, in upper or lower case. Throws `error` listing the
-/// known endings for any other, and what `writer::write` throws.
+/// Writes a model in the format of the file's ending, in upper or lower case. Throws `error`
+/// listing the known endings for any other, and what `writer::write` throws.
 void write_model(const std::filesystem::path& file, const gaussians& model, const write_options& options = {},
                  std::span<const writer* const> writers = all_writers());
 
-/// Reads a model in the format of the file's ending. Throws `error` listing the endings of formats that can
-/// be read for any other, and what `writer::read` throws.
+/// Reads a model in the format of the file's ending. Throws `error` listing the endings of formats
+/// that can be read for any other, and what `writer::read` throws.
 gaussians read_model(const std::filesystem::path& file,
                      std::span<const writer* const> writers = all_writers());
 

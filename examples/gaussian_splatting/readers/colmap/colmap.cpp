@@ -15,7 +15,7 @@
 namespace gs {
 namespace {
 
-/// `stem.bin`, or else `stem.txt`, or else nothing.
+/// `stem.bin`, otherwise `stem.txt`, otherwise an empty path.
 std::filesystem::path find_part(const std::filesystem::path& folder, const std::string& stem) {
     for (const char* ending : {".bin", ".txt"})
         if (const auto file = folder / (stem + ending); std::filesystem::exists(file)) return file;
@@ -26,7 +26,7 @@ std::filesystem::path require_part(const std::filesystem::path& folder, const st
     auto file = find_part(folder, stem);
     if (file.empty())
         throw error("the COLMAP model " + folder.string() + " has no " + stem + ": neither " + stem +
-                    ".bin nor " + stem + ".txt is there");
+                    ".bin nor " + stem + ".txt exists");
     return file;
 }
 
@@ -48,7 +48,7 @@ const colmap_camera& camera_of(const colmap_image& taken, const colmap_model& mo
     const auto found = std::ranges::lower_bound(model.cameras, taken.camera_id, {}, &colmap_camera::id);
     if (found == model.cameras.end() || found->id != taken.camera_id)
         throw error(model.images_file.string() + ": the image " + sanitize_for_message(model.name(taken)) +
-                    " refers to camera " + std::to_string(taken.camera_id) + ", which is not there");
+                    " refers to camera " + std::to_string(taken.camera_id) + ", which does not exist");
     return *found;
 }
 

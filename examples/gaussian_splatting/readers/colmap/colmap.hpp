@@ -19,9 +19,9 @@ struct colmap_camera {
     bool is_fisheye = false;
     const char* model = "";  ///< its name, for messages
     double fx = 0, fy = 0, cx = 0, cy = 0;
-    std::array<double, 4> coefficients{};  ///< of `lens`, or of `fisheye`
+    std::array<double, 4> coefficients{};  ///< k1 k2 p1 p2 of `lens`, or k1 to k4 of `fisheye`
 
-    /// At the origin.
+    /// The camera in the origin, without distortion.
     gs::camera camera() const {
         gs::camera c{width, height, fx, fy, cx, cy};
         if (is_fisheye) c.fisheye = fisheye(coefficients);
@@ -42,22 +42,23 @@ struct colmap_image {
 };
 
 struct colmap_model {
-    std::vector<colmap_camera> cameras;  ///< by id
+    std::vector<colmap_camera> cameras;  ///< sorted by id
     std::vector<colmap_image> images;    ///< in the file's order
     std::vector<coloured_point> points;
-    std::string names;                  ///< of the images, each with a final zero
-    std::filesystem::path images_file;  ///< where `images` came from, for messages
+    std::string names;                  ///< of the images, each with a terminating zero
+    std::filesystem::path images_file;  ///< the file with the images, for messages
 
     const char* name(const colmap_image& image) const { return names.c_str() + image.name_begins; }
 };
 
-/// Reads cameras, images and points3D from a folder; of each, `.bin` is preferred to `.txt`. The points may
-/// be missing. Throws `error` naming file, and line or record, where something is malformed. What it
-/// allocates, at any time, is below four times the files' size and 64 KiB, whatever they hold.
+/// Reads cameras, images and points3D from a folder, each from its `.bin` or otherwise its `.txt`.
+/// The points may be missing. Throws `error` with the file, and the line or record, that is
+/// malformed. Never allocates more than four times the size of the files plus 64 KiB, whatever they
+/// contain.
 colmap_model read_colmap_model(const std::filesystem::path& folder);
 
-/// A folder with a COLMAP model in sparse/0 or sparse, images, and possibly masks and depth maps. The images
-/// are sorted by name, and every `test_every`-th is held out.
+/// A folder with a COLMAP model in sparse/0 or sparse, images, and possibly masks and depth maps.
+/// The images are sorted by name, and every `test_every`-th is held out.
 extern const reader colmap_reader;
 
 }  // namespace gs

@@ -13,7 +13,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "COLMAP's binary files are read as they lie");
 
-/// Reads values one after another and throws `error` rather than pass the file's end.
+/// Reads values one after another. Throws `error` at the end of the file.
 class binary_reader {
   public:
     explicit binary_reader(const std::filesystem::path& file)
@@ -35,14 +35,15 @@ class binary_reader {
         return values;
     }
 
-    /// The number of records that follow, each of at least `record_size` bytes: never more than can follow.
+    /// The number of records that follow. Throws `error` if the file is too short for so many
+    /// records of at least `record_size` bytes.
     std::size_t take_count(std::size_t record_size) {
         const auto count = take<std::uint64_t>();
         if (count > remaining() / record_size) truncated();
         return static_cast<std::size_t>(count);
     }
 
-    /// Valid as long as the reader is.
+    /// Refers to memory of the reader.
     std::string_view take_name() {
         const std::size_t end = bytes_.find('\0', position_);
         if (end == std::string::npos) truncated();
@@ -100,7 +101,7 @@ void read_binary_images(const std::filesystem::path& file, colmap_model& model) 
     const std::size_t count = reader.take_count(4 + 7 * 8 + 4 + 1 + 8);
     model.images.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
-        reader.take<std::uint32_t>();  // the image's id, which nothing refers to here
+        reader.take<std::uint32_t>();  // the image's id
         const auto quaternion = reader.take_doubles<4>();
         const auto translation = reader.take_doubles<3>();
         const auto camera_id = reader.take<std::uint32_t>();

@@ -13,7 +13,8 @@
 
 namespace gs {
 
-// Each reads one file into its part of the model. Throws `error` naming the file, and the line of a text.
+// Each reads one file into its part of the model. Throws `error` with the file, and the line of a
+// text file.
 
 void read_binary_cameras(const std::filesystem::path& file, colmap_model& model);
 void read_binary_images(const std::filesystem::path& file, colmap_model& model);
@@ -23,9 +24,10 @@ void read_text_cameras(const std::filesystem::path& file, colmap_model& model);
 void read_text_images(const std::filesystem::path& file, colmap_model& model);
 void read_text_points(const std::filesystem::path& file, colmap_model& model);
 
-// What the two kinds of files have in common: a record is checked and added. `where` begins the message.
+// Binary and text files share these functions, which check a record and add it. Messages begin with
+// `where`.
 
-using colmap_parameters = std::array<double, 8>;  ///< as many of them as the camera model has
+using colmap_parameters = std::array<double, 8>;  ///< the first `parameter_count()` are used
 
 void add_camera(colmap_model& model, std::uint32_t id, const camera_model& kind, std::uint64_t width,
                 std::uint64_t height, const colmap_parameters& parameters, const std::string& where);

@@ -20,7 +20,7 @@ void add_camera(colmap_model& model, std::uint32_t id, const camera_model& kind,
     const std::string name = where + ": camera " + std::to_string(id);
     if (width == 0 || height == 0 || width > largest_side || height > largest_side)
         throw error(name + " has the size " + std::to_string(width) + "x" + std::to_string(height) +
-                    ", which no photo has");
+                    ", but must be 1 to 65536 pixels per side");
     colmap_camera added;
     added.id = id;
     added.width = static_cast<int>(width);

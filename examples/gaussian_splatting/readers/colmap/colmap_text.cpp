@@ -26,8 +26,8 @@ class text_reader {
   public:
     explicit text_reader(const std::filesystem::path& file) : file_(file) {}
 
-    /// The number of records, each of so many lines, in all of the file: never more than there is room for,
-    /// if none is shorter than this one.
+    /// Counts the records of the whole file, each of `lines` lines. The result is at most the
+    /// number of records that fit into the file if the given one is the shortest.
     template <class Record, std::size_t Size>
     std::size_t count_records(int lines, const char (&)[Size]) {
         constexpr std::size_t shortest = Size - 1;
@@ -43,7 +43,7 @@ class text_reader {
         return std::min(count, static_cast<std::size_t>(file_.size) / shortest + 1);
     }
 
-    /// Goes to the next line, whatever it holds.
+    /// Goes to the next line, even if it is blank or a comment.
     bool next_line() {
         if (!std::getline(file_.in, text_)) {
             if (file_.in.bad()) throw error("cannot read " + file_.name);
@@ -109,7 +109,7 @@ class text_reader {
   private:
     opened_file file_;
     std::string text_;       ///< the line
-    std::string_view rest_;  ///< what of it is still to be read
+    std::string_view rest_;  ///< its unread part
     std::size_t line_ = 0;
 };
 

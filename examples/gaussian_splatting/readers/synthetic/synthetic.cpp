@@ -25,7 +25,7 @@ namespace gs {
 namespace {
 
 constexpr int native_size = 128;
-constexpr int largest_size = 2048;  // 48 pictures of it are 0.8 GB
+constexpr int largest_size = 2048;  // 48 images of this size take 0.8 GB
 constexpr int view_count = 48;
 constexpr int views_per_test_view = 6;
 constexpr int samples_per_side = 4;
@@ -37,7 +37,7 @@ using vec = glm::dvec3;
 
 enum class pattern { bands, checks };
 
-/// Two colours (linear light) that alternate smoothly along `wave`, in radians per unit of length.
+/// Two colors (linear light) that alternate smoothly along `wave`, in radians per unit of length.
 struct albedo {
     vec first;
     vec second;
@@ -60,7 +60,7 @@ struct ground_disc {
 struct world {
     std::vector<ball> balls;
     std::optional<ground_disc> ground;
-    bool transparent = false;  ///< what no ray hits: transparent, or else black
+    bool transparent = false;  ///< the background is transparent; otherwise it is black
     synthetic_parameters how;
 };
 
@@ -70,7 +70,7 @@ struct surface_point {
     vec albedo;
 };
 
-// Positions are chosen by eye. The ground's checks are wide enough to span several pixels at the native size.
+// Positions are chosen by eye. The checks of the ground span several pixels at the native size.
 world spheres_world() {
     const double floor = -0.32;
     const auto standing = [floor](double x, double y, double radius, albedo paint) {
@@ -131,7 +131,8 @@ world world_of(const std::string& text) {
     throw error("there is no synthetic scene '" + how.world + "'; there are: " + known);
 }
 
-/// A square wave with rounded flanks: clear stripes to the eye, but no edge finer than a pixel.
+/// A square wave with rounded flanks: it looks like clear stripes, but has no edge finer than a
+/// pixel.
 double rounded_square_wave(double sine) { return sine / std::sqrt(sine * sine + 0.15) * std::sqrt(1.15); }
 
 vec colour_at(const albedo& paint, const vec& p) {
@@ -144,8 +145,8 @@ vec colour_at(const albedo& paint, const vec& p) {
     return glm::mix(paint.first, paint.second, 0.5 + 0.5 * rounded_square_wave(wave));
 }
 
-/// The distance along the ray to where it enters the ball. `direction` has unit length, and rays start
-/// outside.
+/// The distance along the ray to its entry into the ball. Preconditions: `direction` has length
+/// one, and the ray starts outside.
 double distance_to(const ball& b, const vec& origin, const vec& direction) {
     const vec to_origin = origin - b.centre;
     const double along = glm::dot(to_origin, direction);
@@ -181,8 +182,9 @@ std::optional<surface_point> first_hit(const world& w, const vec& origin, const 
     return surface_point{p, (p - hit->centre) / hit->radius, colour_at(hit->paint, p - hit->centre)};
 }
 
-/// How much of a round sun, `sun_softness` in angular radius, one ball leaves visible: 0 to 1. A point of the
-/// ball itself is either lit (the ball lies behind it) or turned away from the sun, so it needs no exception.
+/// The visible share of a round sun with the angular radius `sun_softness` if one ball occludes it:
+/// 0 to 1. Points of the ball itself need no exception: the ball lies behind them, or they face
+/// away from the sun.
 double sun_past(const ball& b, const vec& position, const vec& sun) {
     constexpr double sun_softness = 0.12;
     const vec to_centre = b.centre - position;
@@ -192,7 +194,7 @@ double sun_past(const ball& b, const vec& position, const vec& sun) {
     return glm::smoothstep(b.radius - sun_softness * along, b.radius + sun_softness * along, miss);
 }
 
-/// How much of the sky one ball leaves visible to a surface: one less its solid angle, weighted by the
+/// The visible share of the sky if one ball occludes it: one minus its solid angle, weighted by the
 /// cosine.
 double sky_past(const ball& b, const surface_point& s) {
     const vec to_centre = b.centre - s.position;
@@ -201,7 +203,7 @@ double sky_past(const ball& b, const surface_point& s) {
     return 1 - std::max(cosine, 0.0) * b.radius * b.radius / (distance * distance);
 }
 
-/// The pool of light fades to black within the ground's rim, so that the rim makes no edge.
+/// The light fades to black inside the rim of the ground, so that the rim is not an edge.
 double pool_of_light(const world& w, const vec& p) {
     if (!w.ground) return 1;
     return 1 - glm::smoothstep(0.5 * w.ground->radius, 0.98 * w.ground->radius, std::hypot(p.x, p.y));
@@ -216,9 +218,9 @@ vec sky(const world& w, const vec& direction) {
     return w.how.sky * (glm::mix(low, high, 0.5 + 0.5 * direction.z) + near_sun * glow);
 }
 
-/// The colour of a surface under a warm sun and a cool sky, as displayed, in [0, 1]; `to_eye` has unit
-/// length. What is glossy has Phong's lobe of the sun and the sky of the mirrored direction, more at grazing
-/// angles (Schlick's formula), on top.
+/// The color of a surface under a warm sun and a cool sky, as displayed, in [0, 1]. Glossy surfaces
+/// also show the sun as a Phong lobe and the sky in the mirrored direction, more at grazing angles
+/// (Schlick's formula). Precondition: `to_eye` has length one.
 vec shade(const world& w, const surface_point& s, const vec& to_eye) {
     static const vec sun_direction = to_sun();
     const vec sun_colour{0.90, 0.83, 0.71};
@@ -251,9 +253,9 @@ std::uint8_t to_byte(double in_unit_interval) {
     return static_cast<std::uint8_t>(std::lround(255 * in_unit_interval));
 }
 
-/// The i-th of the cameras on a spiral that turns by the golden angle: evenly spread, neighbours in space far
-/// apart in number, so that every n-th camera lies between others. Their distances are `how.scales` apart at
-/// most, each evenly likely by its logarithm, from `how.distance` on.
+/// The i-th camera on a spiral that turns by the golden angle. The cameras are spread evenly, and
+/// neighbors in space have distant numbers, so that every n-th camera lies between others. The
+/// logarithms of the distances are uniform from `how.distance` to `how.distance * how.scales`.
 camera spiral_camera(int i, int size, const synthetic_parameters& how) {
     const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
     const double lowest = std::sin(12 * std::numbers::pi / 180);
@@ -268,24 +270,24 @@ camera spiral_camera(int i, int size, const synthetic_parameters& how) {
         return look_at(eye, vec{0}, {0, 0, 1}, size, 0.5 * size / reach);
     };
     if (how.fisheye == 0) return looking(std::tan(0.5 * field_of_view));
-    const fisheye lens({0.02, -0.006, 0.001, -0.0001});  // about what lenses for sports have
+    const fisheye lens({0.02, -0.006, 0.001, -0.0001});  // similar to lenses of action cameras
     camera c = looking(lens.reach(how.fisheye * std::numbers::pi / 360));
     c.fisheye = lens;
     return c;
 }
 
-/// Spelt out because the standard leaves the results of its distributions to the implementation.
+/// Written out because the results of standard distributions depend on the implementation.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-/// Box and Muller's.
+/// A standard normal deviate (Box and Muller 1958).
 double normal(std::mt19937_64& random) {
     const double radius = std::sqrt(-2 * std::log(1 - uniform(random)));
     return radius * std::cos(2 * std::numbers::pi * uniform(random));
 }
 
-/// Of the n-th photo, as a factor of what is displayed.
+/// The exposure of the n-th photo, a factor of its displayed values.
 double exposure_of(const world& w, std::size_t photo) {
-    std::mt19937_64 random(~photo);  // none of the noise's
+    std::mt19937_64 random(~photo);  // distinct from the seeds of the noise
     return std::exp2(w.how.exposure * normal(random));
 }
 
@@ -316,9 +318,9 @@ void render_row(const world& w, const camera& c, std::size_t photo, int row, std
     }
 }
 
-/// Something that stands before one photo: a disc of one colour.
+/// Paints, or masks, something that stands in front of the scene in one photo: a disc of one color.
 void paint_passer(const world& w, std::size_t photo, bool masks, image& pixels) {
-    std::mt19937_64 random(photo + (std::uint64_t{1} << 63));  // none of exposures or noise
+    std::mt19937_64 random(photo + (std::uint64_t{1} << 63));
     const double x = uniform(random) * pixels.width, y = uniform(random) * pixels.height;
     const double square = w.how.passers * pixels.width * pixels.height / std::numbers::pi;
     std::uint8_t colour[4] = {0, 0, 0, 255};
@@ -335,10 +337,10 @@ void paint_passer(const world& w, std::size_t photo, bool masks, image& pixels) 
         }
 }
 
-/// What a network might make of a photo: the inverse of the true depth, with noise, up to a scale and an
-/// offset. Where nothing is hit, it is infinitely far.
+/// Inverse depths as a network might estimate them: with noise, and up to a scale and an offset.
+/// The background is infinitely far.
 depth_map estimated_depths(const world& w, const camera& c, std::size_t photo) {
-    std::mt19937_64 random(photo + (std::uint64_t{1} << 62));  // none of exposures, passers or noise
+    std::mt19937_64 random(photo + (std::uint64_t{1} << 62));
     const double offset = 0.1 + 0.2 * uniform(random), scale = 0.3 + 0.3 * uniform(random);
     std::vector<double> inverse;
     for (int row = 0; row < c.height; ++row)
@@ -391,7 +393,7 @@ void take_photos(const world& w, std::vector<view>& views, bool masks = true) {
         for (std::size_t i = 0; i < views.size(); ++i) paint_passer(w, i, masks, views[i].pixels);
 }
 
-/// So many of them, spread evenly.
+/// `count` of the views, spread evenly.
 std::vector<view> spread(std::vector<view> all, std::size_t count) {
     std::vector<view> some;
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -399,8 +401,8 @@ std::vector<view> spread(std::vector<view> all, std::size_t count) {
     return some;
 }
 
-/// Where rays through random places of random views meet a surface: seen by a camera by construction, and
-/// denser where more cameras look, as a cloud from structure from motion is.
+/// Points at which rays through random pixels of random views hit a surface. As in a cloud from
+/// structure from motion, a camera sees each point, and points are denser where more cameras look.
 std::vector<coloured_point> seen_points(const world& w, const std::vector<view>& views, std::size_t count,
                                         std::uint64_t seed) {
     std::mt19937_64 random(seed);
@@ -452,7 +454,8 @@ scene_description describe(const load_options& options, const log_function& log)
 
     std::vector<view> train, test;
     for (std::size_t i = 0; i < views.size(); ++i) {
-        // From the middle of each group: the first and the last camera have fewer neighbours.
+        // From the middle of each group, because the first and the last camera have fewer
+        // neighbors.
         const bool held_out = options.eval && i % views_per_test_view == views_per_test_view / 2;
         (held_out ? test : train).push_back(std::move(views[i]));
     }

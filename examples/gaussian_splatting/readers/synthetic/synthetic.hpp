@@ -9,27 +9,28 @@
 
 namespace gs {
 
-/// Ray-traced scenes that need no download: `synthetic:NAME[,PARAMETER=VALUE...]`. The parameters are the
-/// members of `synthetic_parameters`. Without any, cameras stand on the upper half of a sphere (z is up), and
-/// shading does not depend on the viewing direction. All surfaces lie within 1.3 of the origin along each
-/// axis.
+/// Ray-traced scenes that need no download: `synthetic:NAME[,PARAMETER=VALUE...]`. The parameters
+/// are the members of `synthetic_parameters`. Without any, cameras stand on the upper half of a
+/// sphere (z is up), and shading does not depend on the viewing direction. All surfaces lie within
+/// 1.3 of the origin along each axis.
 ///
-///     spheres   patterned spheres in a pool of light on a dark ground; opaque, on a black background
+///     spheres   patterned spheres in a pool of light on a dark ground, on black
 ///     alpha     spheres that float in front of a transparent background
 ///
-/// There are 40 training and 8 test images, or 48 training images without `load_options::eval`. They have
-/// 128x128 pixels, divided by the resolution. The points, about 3000 by default, lie on surfaces that a
-/// training camera sees. The result does not depend on the number of threads.
+/// There are 40 training and 8 test images, or 48 training images without `load_options::eval`.
+/// They have 128x128 pixels, divided by the resolution. The points, about 3000 by default, lie on
+/// surfaces that a training camera sees. The result does not depend on the number of threads.
 extern const reader synthetic_reader;
 
 /// The names that may follow "synthetic:".
 std::vector<std::string> synthetic_scene_names();
 
-/// Renders the pixels that the cameras of `views` see of the scene `name`, in place of their present ones.
-/// Precondition: no camera is inside a sphere.
+/// Renders the pixels that the cameras of `views` see of the scene `name`, in place of their
+/// present ones. Precondition: no camera is inside a sphere.
 void photograph_synthetic(const std::string& name, std::vector<view>& views);
 
-/// Draws `count` further surface points of the scene `name`. Precondition: some view sees a surface.
+/// Draws `count` further surface points of the scene `name`. Precondition: some view sees a
+/// surface.
 std::vector<coloured_point> synthetic_points(const std::string& name, const std::vector<view>& views,
                                              std::size_t count, std::uint64_t seed);
 

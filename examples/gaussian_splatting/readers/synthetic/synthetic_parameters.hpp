@@ -6,27 +6,25 @@
 
 namespace gs {
 
-/// What a synthetic scene shows, and how it was photographed. The defaults are what a matte world, cameras at
-/// one distance and one exposure, and no noise come to.
+/// The content of a synthetic scene, and how it was photographed. By default surfaces are matte,
+/// and all photos have the same distance and exposure and no noise.
 struct synthetic_parameters {
     std::string world;
-    double gloss = 0;     ///< how much surfaces reflect sun and sky, beside what they scatter: 0 to 1
-    double exposure = 0;  ///< standard deviation of log2 of a photo's brightness, as displayed: 0 to 2
-    double scales = 1;    ///< the farthest camera's distance over the nearest's: 1 to 16
-    double distance = 1;  ///< of all cameras, in those of other scenes: 0.25 to 16
-    double passers = 0;   ///< share of a photo that a disc covers which no other photo has: 0 to 0.5. Masked
-    /// Relative noise of the inverse depths that its depth maps have, each with a scale and an offset of its
-    /// own: 0 to 10. Negative: it has no maps.
-    double depths = -1;
-    double sky = 0;        ///< brightness of what no surface hides, which depends on direction alone: 0 to 1
-    double points = 3000;  ///< of its surfaces: 1 to 100000
-    double views = 48;     ///< of which as many are for training, spread over those there are: 1 to 48
-    double fisheye = 0;    ///< degrees across the picture of such a lens; 0: a pinhole camera. 0 to 190
-    double noise = 0;      ///< standard deviation of values in [0, 1] where a photo shows something: 0 to 0.5
+    double gloss = 0;      ///< share of specular reflection, 0 to 1
+    double exposure = 0;   ///< standard deviation of log2 of the brightness of photos, 0 to 2
+    double scales = 1;     ///< largest distance of a camera over the smallest, 1 to 16
+    double distance = 1;   ///< factor of all camera distances, 0.25 to 16
+    double passers = 0;    ///< share of each photo that a disc hides, which is masked; 0 to 0.5
+    double depths = -1;    ///< relative noise of depth maps, 0 to 10; negative: none
+    double sky = 0;        ///< brightness of the sky, which depends on direction alone; 0 to 1
+    double points = 3000;  ///< number of points, 1 to 100000
+    double views = 48;     ///< largest number of training images, 1 to 48
+    double fisheye = 0;    ///< degrees across a fisheye image, 0 to 190; 0: pinhole cameras
+    double noise = 0;      ///< standard deviation of the noise of colors in [0, 1], 0 to 0.5
 };
 
-/// From "WORLD", or "WORLD,gloss=0.5,noise=0.02" and so on. Throws `error` for a parameter that is none,
-/// twice there, or out of its range; the world is looked at elsewhere.
+/// Parses "WORLD", "WORLD,gloss=0.5,noise=0.02" and so on. Throws `error` for a parameter that is
+/// unknown, repeated or out of range. Does not check `world`.
 synthetic_parameters parse_synthetic(const std::string& text);
 
 }  // namespace gs

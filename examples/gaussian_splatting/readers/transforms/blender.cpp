@@ -20,7 +20,7 @@ using enum transforms_number;
 
 constexpr const char* training_file = "transforms_train.json";
 
-/// The photo, whose ending may have been left out.
+/// The file of the photo. The path in the frame may omit the ending.
 std::filesystem::path find_photo(const std::filesystem::path& data, const transforms& all,
                                  std::size_t index) {
     const auto plain = data / all.frames[index].path;
@@ -37,7 +37,7 @@ int side(const transforms& all, std::size_t index, transforms_number which, int 
     const double value = all.number(index, which).value_or(of_photo);
     if (!(value >= 1 && value <= 65536) || value != std::floor(value))
         throw error(all.where_is(index) + ": " + (which == w ? "w" : "h") + " is " + std::to_string(value) +
-                    ", which is no size of a photo");
+                    ", but must be a whole number from 1 to 65536");
     return static_cast<int>(value);
 }
 
@@ -46,7 +46,7 @@ double focal_length(const transforms& all, std::size_t index, int width) {
     if (!angle) throw error(all.where_is(index) + ": the field camera_angle_x (or fl_x) is missing");
     if (!(*angle > 0 && *angle < 3.14159))
         throw error(all.where_is(index) + ": camera_angle_x is " + std::to_string(*angle) +
-                    ", which must lie between 0 and pi");
+                    ", but must lie between 0 and pi");
     return 0.5 * width / std::tan(0.5 * *angle);
 }
 
@@ -72,13 +72,13 @@ void set_intrinsics(image_record& record, const transforms& all, std::size_t ind
         throw error(all.where_is(index) + invalid_intrinsics);
 }
 
-/// None where the frame has none.
+/// Empty if the frame names no mask.
 std::filesystem::path find_mask(const std::filesystem::path& data, const transforms& all, std::size_t index) {
     if (all.frames[index].mask.empty()) return {};
     auto file = data / all.frames[index].mask;
     if (!std::filesystem::is_regular_file(file))
         throw error(all.where_is(index) + ": the mask " + sanitize_for_message(file.string()) +
-                    " is no file");
+                    " does not exist");
     return file;
 }
 

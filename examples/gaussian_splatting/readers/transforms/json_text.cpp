@@ -12,7 +12,7 @@
 namespace gs {
 namespace {
 
-/// In JSON a number is preceded by one of these. What is no JSON the lexer does not read on.
+/// Whether a number begins here. In JSON one of `before` precedes it; elsewhere the lexer stops.
 bool begins_number(const std::string& text, std::size_t at) {
     constexpr std::string_view first = "-0123456789", before = " \t\r\n,:[";
     return first.find(text[at]) != std::string_view::npos && at > 0 &&
@@ -37,7 +37,7 @@ std::string json_text(const std::filesystem::path& file) {
             throw error(file.string() + " holds a string or number, or a gap between two, that is too long" +
                         line_and_byte(text, i + 1));
         if (text[i] == '"') quoted = !quoted;
-        if (quoted && text[i] == '\\') {  // the next character is no end, whatever it is
+        if (quoted && text[i] == '\\') {  // an escaped quote does not end the string
             ++i;
             ++kept;
         }

@@ -8,16 +8,17 @@
 
 namespace gs {
 
-/// The text of a JSON file as nlohmann's lexer takes it, within bounded memory; byte for byte as long as the
-/// file.
+/// Reads a JSON file as text that nlohmann's lexer can parse within bounded memory. The text has
+/// the length of the file.
 ///
-/// Python's json writes NaN and Infinity, which JSON does not have. They become empty objects of the same
-/// length: nowhere a number, so that who reads can name the frame that holds one, and no byte moves.
+/// Replaces NaN and Infinity, which Python's json module writes although JSON lacks them, by empty
+/// objects of the same length. They are not numbers, so the parser can name the frame that contains
+/// one, and positions stay the same.
 ///
-/// The lexer keeps, several times over where it finds an error, all that it has read since a string or a
-/// number began. Throws `error` naming file, line and byte where that is more than `longest_path` bytes,
-/// control characters, which its messages spell out, counted as eight; and `error` where the file cannot be
-/// read.
+/// The lexer keeps all text since the beginning of a string or number, several times over if it
+/// finds an error. Therefore throws `error` with file, line and byte if that is more than
+/// `longest_path` bytes, where control characters count eight times because messages spell them
+/// out. Throws `error` if the file cannot be read.
 std::string json_text(const std::filesystem::path& file);
 
 /// ": line LINE, byte BYTE", both counted from 1, for a message.

@@ -21,23 +21,23 @@ using nlohmann::json;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// The last one said is the one that counts.
-class said_numbers {
+/// The numbers of a frame or of the file. A later value replaces an earlier one.
+class number_fields {
   public:
-    /// Takes the value, NaN for what is no number, if the field is one of them.
+    /// Ignores fields that are not in `transforms_number_names`. `value` is NaN for other types.
     void take(std::string_view field, double value) {
         const auto found = std::ranges::find(transforms_number_names, field);
         if (found != transforms_number_names.end())
             values_[static_cast<std::size_t>(found - transforms_number_names.begin())] = value;
     }
 
-    std::vector<said_number> list() const {
-        std::vector<said_number> said;
-        said.reserve(static_cast<std::size_t>(
+    std::vector<number_field> list() const {
+        std::vector<number_field> found;
+        found.reserve(static_cast<std::size_t>(
             std::ranges::count_if(values_, [](const auto& value) { return value.has_value(); })));
         for (std::size_t i = 0; i < values_.size(); ++i)
-            if (values_[i]) said.push_back({static_cast<transforms_number>(i), *values_[i]});
-        return said;
+            if (values_[i]) found.push_back({static_cast<transforms_number>(i), *values_[i]});
+        return found;
     }
 
   private:
@@ -49,16 +49,17 @@ transforms_lens lens_called(const std::string* name, const std::string& where) {
     return camera_model_named(*name, where).is_fisheye ? transforms_lens::fisheye : transforms_lens::opencv;
 }
 
-/// How deep the reader is in what it reads: each level is a bracket within the one before.
+/// The nesting level of the parser. Each level is a bracket inside the previous one.
 enum class level { file, top, frames, frame, matrix, row };
 
 level deeper(level from, int by) { return static_cast<level>(static_cast<int>(from) + by); }
 
-/// Keeps of a file, as nlohmann's parser goes through it, the frames and the numbers alone. A document tree
-/// takes ten times its text; and neither the parser nor this calls itself, however deep the values nest.
+/// Collects frames and numbers while nlohmann's parser reads the file, because a document tree
+/// takes ten times the size of its text. Neither the parser nor this class recurses, so values may
+/// nest deeply.
 class reader final : public json::json_sax_t {
   public:
-    /// Both are kept by reference.
+    /// Keeps references to both.
     reader(transforms& into, const std::string& text) : all_(into), text_(text) {}
 
     void finish() {
@@ -67,8 +68,8 @@ class reader final : public json::json_sax_t {
     }
 
     bool null() override {
-        const bool is_text = field_ == "camera_model" || field_ == "mask_path";  // then it is not said
-        return (unread_ == 0 && (at_ == level::top || at_ == level::frame) && is_text) ||
+        const bool is_text = field_ == "camera_model" || field_ == "mask_path";
+        return (ignored_ == 0 && (at_ == level::top || at_ == level::frame) && is_text) ||
                value(not_a_number, nullptr);
     }
     bool boolean(bool) override { return value(not_a_number, nullptr); }
@@ -80,7 +81,7 @@ class reader final : public json::json_sax_t {
     }
     bool number_float(number_float_t number, const string_t&) override { return value(number, nullptr); }
     bool string(string_t& text) override { return value(not_a_number, &text); }
-    bool binary(binary_t&) override { return false; }  // of other formats
+    bool binary(binary_t&) override { return false; }  // only in other formats
     bool start_object(std::size_t) override { return open(true); }
     bool end_object() override { return close(); }
     bool start_array(std::size_t) override { return open(false); }
@@ -99,11 +100,11 @@ class reader final : public json::json_sax_t {
 
   private:
     bool open(bool is_object) {
-        if (unread_ == 0 && is_expected(is_object)) {
+        if (ignored_ == 0 && is_expected(is_object)) {
             enter();
         } else {
             value(not_a_number, nullptr);
-            ++unread_;
+            ++ignored_;
         }
         return true;
     }
@@ -132,8 +133,8 @@ class reader final : public json::json_sax_t {
     }
 
     bool close() {
-        if (unread_ > 0) {
-            --unread_;
+        if (ignored_ > 0) {
+            --ignored_;
             return true;
         }
         if (at_ == level::row) {
@@ -148,9 +149,10 @@ class reader final : public json::json_sax_t {
         return true;
     }
 
-    /// Of any value that is not entered: what number it is, or NaN; what text it is, or null.
+    /// Takes a value that is not entered: `number` is NaN, and `text` null, for values of other
+    /// types.
     bool value(double number, const std::string* text) {
-        if (unread_ > 0) return true;
+        if (ignored_ > 0) return true;
         switch (at_) {
             case level::file:
                 throw error(all_.where + " is not a JSON object");
@@ -214,20 +216,20 @@ class reader final : public json::json_sax_t {
     transforms& all_;
     const std::string& text_;
     level at_ = level::file;
-    std::size_t unread_ = 0;  ///< brackets that are open within a value that nobody reads
-    std::string field_;       ///< the last one, which is what a value at the top or of a frame is for
-    said_numbers numbers_;
+    std::size_t ignored_ = 0;  ///< open brackets inside a value that is ignored
+    std::string field_;        ///< the last key; values at the top level and in frames belong to it
+    number_fields numbers_;
     bool has_frames_ = false;
     struct {
-        said_numbers numbers;
+        number_fields numbers;
         glm::dmat4 matrix{0};
         std::size_t row = 0, column = 0;
-        bool has_path = false, has_matrix = false, is_valid = false;  ///< the last two: of the matrix
-    } frame_;  ///< what the last of the frames has said so far
+        bool has_path = false, has_matrix = false, is_valid = false;
+    } frame_;  ///< the contents of the last frame so far
 };
 
-std::optional<double> find_in(const std::vector<said_number>& numbers, transforms_number which) {
-    const auto found = std::ranges::find(numbers, which, &said_number::which);
+std::optional<double> find_in(const std::vector<number_field>& numbers, transforms_number which) {
+    const auto found = std::ranges::find(numbers, which, &number_field::which);
     if (found == numbers.end()) return std::nullopt;
     return found->value;
 }
@@ -252,7 +254,7 @@ std::optional<double> transforms::number(std::size_t index, transforms_number wh
 
 bool transforms::is_fisheye(std::size_t index) const {
     const transforms_lens own = frames[index].lens;
-    return (own == transforms_lens::unsaid ? lens : own) == transforms_lens::fisheye;
+    return (own == transforms_lens::unset ? lens : own) == transforms_lens::fisheye;
 }
 
 transforms read_transforms(const std::filesystem::path& file) {

@@ -15,46 +15,48 @@
 
 namespace gs {
 
-/// The numbers of a transforms file: said for one frame, or at the top for all that do not say it themselves.
+/// The numbers of a transforms file. A frame may have its own; otherwise the one at the top level
+/// applies.
 enum class transforms_number { camera_angle_x, fl_x, fl_y, cx, cy, w, h, k1, k2, k3, k4, p1, p2 };
 inline constexpr std::array<std::string_view, 13> transforms_number_names = {
     "camera_angle_x", "fl_x", "fl_y", "cx", "cy", "w", "h", "k1", "k2", "k3", "k4", "p1", "p2"};
 
-/// What a camera_model, said for one frame or for all, comes to: OpenCV's model without k3 and k4, of which a
-/// pinhole camera is a case, or its fisheye model.
-enum class transforms_lens { unsaid, opencv, fisheye };
+/// The camera_model of a frame or of the whole file: OpenCV's model without k3 and k4, which
+/// includes pinhole cameras, or its fisheye model.
+enum class transforms_lens { unset, opencv, fisheye };
 
-/// What a file said a number is; NaN where that was no number.
-struct said_number {
+/// A number in the file; NaN for a value of another type.
+struct number_field {
     transforms_number which;
     double value;
 };
 
 struct transforms_frame {
-    std::string path;        ///< of its photo, whose ending may have been left out
-    std::string mask;        ///< its path; empty: none
+    std::string path;        ///< of its photo, possibly without the ending
+    std::string mask;        ///< path of its mask, or empty
     glm::dmat3 rotation{1};  ///< of `camera`
     glm::dvec3 translation{0};
-    transforms_lens lens = transforms_lens::unsaid;
-    std::vector<said_number> numbers;
+    transforms_lens lens = transforms_lens::unset;
+    std::vector<number_field> numbers;
 };
 
 struct transforms {
     std::string where;  ///< the file, for messages
     std::deque<transforms_frame> frames;
-    transforms_lens lens = transforms_lens::unsaid;
-    std::vector<said_number> numbers;
+    transforms_lens lens = transforms_lens::unset;
+    std::vector<number_field> numbers;
 
     /// "FILE frame INDEX (PATH)"
     std::string where_is(std::size_t index) const;
-    /// Throws `error` naming the frame where it is said, but is no number.
+    /// The number of a frame, or else of the file; none if neither has it. Throws `error` with the
+    /// frame if the value is not a number.
     std::optional<double> number(std::size_t index, transforms_number which) const;
     bool is_fisheye(std::size_t index) const;
 };
 
-/// Reads a transforms file, and opens no photo. Throws `error` naming the file, and line or frame, where
-/// something is malformed. What it allocates, at any time, is below four times the file's size and 64 KiB,
-/// whatever it holds.
+/// Reads a transforms file, and opens no photo. Throws `error` with the file, and the line or
+/// frame, that is malformed. Never allocates more than four times the size of the file plus 64 KiB,
+/// whatever it contains.
 transforms read_transforms(const std::filesystem::path& file);
 
 }  // namespace gs

@@ -21,7 +21,8 @@ bool is_near_rotation(const glm::dmat3& matrix, double tolerance) {
     return true;
 }
 
-/// The rotation nearest to a matrix that almost is one (Newton's iteration for the polar decomposition).
+/// The rotation that is nearest to an almost orthogonal matrix (Newton's iteration for the polar
+/// decomposition).
 glm::dmat3 nearest_rotation(glm::dmat3 matrix) {
     for (int i = 0; i < 4; ++i) matrix = 0.5 * (matrix + glm::transpose(glm::inverse(matrix)));
     return matrix;

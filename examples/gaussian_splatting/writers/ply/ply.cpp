@@ -26,12 +26,12 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "PLY rows are copied as they lie in memory");
 
-/// One float of a Gaussian: what the file calls it, the array it lies in, and where.
+/// One float of a Gaussian: its name in the file, its array, and its position there.
 struct field {
     std::string name;
     std::vector<float> gaussians::*array;
-    int width;   ///< floats a Gaussian has in `array`
-    int offset;  ///< the field's place among them
+    int width;   ///< floats per Gaussian in `array`
+    int offset;  ///< of this float among them
 };
 
 void add_numbered(std::vector<field>& fields, const char* prefix, std::vector<float> gaussians::*array,
@@ -39,8 +39,9 @@ void add_numbered(std::vector<field>& fields, const char* prefix, std::vector<fl
     for (int i = 0; i < width; ++i) fields.push_back({prefix + std::to_string(i), array, width, i});
 }
 
-/// In the order of the reference implementation, without normals. In the file f_rest is channel-major. In the
-/// model, which has room for `rest_width` floats per Gaussian, it is coefficient-major.
+/// In the order of the reference implementation, without normals. In the file f_rest is
+/// channel-major. In the model, which has room for `rest_width` floats per Gaussian, it is
+/// coefficient-major.
 std::vector<field> fields_of_degree(int sh_degree, int rest_width) {
     std::vector<field> fields = {
         {"x", &gaussians::mean, 3, 0}, {"y", &gaussians::mean, 3, 1}, {"z", &gaussians::mean, 3, 2}};
@@ -59,10 +60,10 @@ std::vector<field> fields_of_degree(int sh_degree, int rest_width) {
 constexpr std::size_t normals_after = 3;  ///< fields before the normals: x y z
 constexpr std::size_t normals = 3;
 
-/// The comment that Brush writes, and other viewers read, of Gaussians that were trained with a 2D Mip
-/// filter.
+/// The comment for Gaussians that were trained with a 2D Mip filter. Brush writes it, and other
+/// viewers read it.
 constexpr std::string_view render_mode = "SplatRenderMode:", mip = "mip";
-/// And one of ours: `gaussians::sky`.
+/// Our comment for `gaussians::sky`.
 constexpr std::string_view sky_harmonics = "SkyHarmonics:";
 
 std::string header_of(const std::vector<field>& fields, const gaussians& model) {
@@ -158,7 +159,7 @@ double read_scalar(scalar_type type, const char* bytes) {
 }
 
 struct property {
-    std::string_view name;  ///< in the header's text
+    std::string_view name;  ///< a part of the header
     scalar_type type;
     std::size_t offset;  ///< bytes from the row's beginning
 };
@@ -175,14 +176,14 @@ struct header {
     }
 };
 
-/// Where a file has one of the fields.
+/// The position of a field in the rows of a file.
 struct column {
     field to;
     scalar_type type;
     std::size_t offset;  ///< bytes from the row's beginning
 };
 
-/// What of the header is needed to read the rows.
+/// The part of the header that is needed to read rows.
 struct layout {
     std::size_t count = 0;   ///< vertices
     std::size_t stride = 0;  ///< bytes of one
@@ -190,7 +191,8 @@ struct layout {
     std::vector<column> columns;
 };
 
-/// Takes the first word off a line; empty at its end. The \r of a Windows line end is a blank.
+/// Removes the first word of a line and returns it; empty at the end. The \r of a Windows line end
+/// is blank.
 std::string_view take_word(std::string_view& line) {
     constexpr std::string_view blanks = " \t\r";
     line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
@@ -199,21 +201,21 @@ std::string_view take_word(std::string_view& line) {
     return word;
 }
 
-/// Reads one file; knows its name for the messages.
+/// Reads one file.
 class reader {
   public:
     explicit reader(const std::filesystem::path& file) : file_(file) {}
 
     gaussians read() {
         const layout l = read_layout();
-        std::string().swap(text_);  // only the header's names lay in it
+        std::string().swap(text_);  // only the names in the header were needed
         return read_rows(l);
     }
 
   private:
     [[noreturn]] void fail(const std::string& what) const { throw error(file_.name + ": " + what); }
 
-    /// The first words of a line, of which none here has more than three.
+    /// The first words of a line. No valid line has more than three.
     struct line {
         std::array<std::string_view, 3> words;
         std::size_t count = 0;  ///< 4 stands for more than three
@@ -250,7 +252,7 @@ class reader {
             float value = 0;
             const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
             if (problem != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-                fail("its sky has '" + sanitize_for_message(word) + "', which is no finite number");
+                fail("its sky has '" + sanitize_for_message(word) + "', which is not a finite number");
             if (sky_.size() == sky_width)
                 fail("its sky has more than " + std::to_string(sky_width) + " numbers");
             sky_.push_back(value);
@@ -260,7 +262,7 @@ class reader {
                  std::to_string(sky_width));
     }
 
-    /// The header lies within the file's first bytes, which stay in `text_` for the names.
+    /// The first bytes of the file contain the header. They stay in `text_`, which names refer to.
     header read_header() {
         text_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(file_.size, longest_header)));
         file_.in.read(text_.data(), static_cast<std::streamsize>(text_.size()));
@@ -287,7 +289,7 @@ class reader {
                 fail_at_line(l.words[0]);
             }
         }
-        if (!format_said) fail("its header says no format");
+        if (!format_said) fail("its header has no line 'format'");
         if (h.properties.empty()) fail("it has no element 'vertex' with properties");
         return h;
     }
@@ -299,13 +301,12 @@ class reader {
         return count;
     }
 
-    /// What is no text is data: the header went on into it.
+    /// A line that is not text is data: the header has no end.
     [[noreturn]] void fail_at_line(std::string_view first_word) const {
         const bool text =
             std::all_of(first_word.begin(), first_word.end(), [](char c) { return c > ' ' && c < 127; });
         if (!text) fail("its header has no end_header");
-        fail("its header has a line '" + std::string(first_word.substr(0, 40)) +
-             " ...', which is not understood here");
+        fail("its header has a line '" + std::string(first_word.substr(0, 40)) + " ...', which is unknown");
     }
 
     void check_magic() {
@@ -320,7 +321,7 @@ class reader {
         const auto parsed = std::from_chars(count_text.data(), end, count);
         if (parsed.ec != std::errc{} || parsed.ptr != end) {
             fail("the count of its element '" + sanitize_for_message(name) + "' is '" +
-                 sanitize_for_message(count_text) + "', which is no count");
+                 sanitize_for_message(count_text) + "', which is not a count");
         }
         if (name == "vertex") {
             h.count = count;
@@ -334,7 +335,7 @@ class reader {
         const std::optional<scalar_type> type = scalar_type_called(l.words[1]);
         if (!type || l.count != 3) {
             fail("its property '" + sanitize_for_message(name) + "' has the type '" +
-                 sanitize_for_message(l.words[1]) + "', which is no scalar type");
+                 sanitize_for_message(l.words[1]) + "', which is not a scalar type");
         }
         if (h.find(name) != nullptr) fail("it has the property '" + sanitize_for_message(name) + "' twice");
         h.properties.push_back({name, *type, h.stride});
@@ -351,7 +352,7 @@ class reader {
             if (source == nullptr) fail("its vertices have no property '" + f.name + "'");
             l.columns.push_back({f, source->type, source->offset});
         }
-        check_size(h);  // before anything is allocated by the header's word
+        check_size(h);  // before memory is allocated for the promised count
         l.count = static_cast<std::size_t>(h.count);
         return l;
     }
@@ -383,7 +384,8 @@ class reader {
         for (const column& c : l.columns)
             (model.*c.to.array).resize(l.count * static_cast<std::size_t>(c.to.width));
 
-        // Few, as rows of bytes are to become floats, which are four times their size, and no more than that.
+        // Few rows at once, since the bound on memory allows little more than the floats
+        // themselves: four times the size of a file with one byte per value.
         constexpr std::size_t bytes_at_once = 1 << 14;
         const std::size_t rows_at_once = std::min(l.count, bytes_at_once / l.stride + 1);
         std::vector<char> rows(rows_at_once * l.stride);
@@ -404,7 +406,7 @@ class reader {
             (model.*c.to.array).data() + first * width + static_cast<std::size_t>(c.to.offset);
         for (std::size_t i = 0; i < count; ++i) {
             const double value = read_scalar(c.type, rows + i * stride + c.offset);
-            // Written so that NaN fails too; a double beyond the range of float is refused as well.
+            // Written so that NaN fails too. Doubles beyond the range of float are also refused.
             if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
                 fail("the property '" + c.to.name + "' of vertex " + std::to_string(first + i) +
                      " is not a finite float");
@@ -416,8 +418,8 @@ class reader {
     static constexpr std::size_t longest_header = 1 << 16;
 
     opened_file file_;
-    std::string text_;      ///< the header, and what follows it up to that length
-    std::size_t next_ = 0;  ///< where the next line begins in it
+    std::string text_;      ///< the first bytes of the file, up to that length
+    std::size_t next_ = 0;  ///< the beginning of the next line
     bool antialiased_ = false;
     std::vector<float> sky_;
 };
