@@ -11,8 +11,8 @@ namespace gs::cli {
 
 /// A row of the option table.
 struct option {
-    std::string names;  ///< separated by commas; `!` marks a name that turns a flag off
-    std::string group;  ///< heading in help texts
+    std::string names;    ///< separated by commas; `!` marks a name that turns a flag off
+    std::string group{};  ///< heading in help texts
     std::vector<command> commands;
     option_value value;
     std::string help;  ///< a sentence without its period; begins with a noun or a verb

@@ -14,164 +14,145 @@ namespace {
 using rows = std::vector<option>;
 using enum command;
 
+rows grouped(const std::string& heading, rows all) {
+    for (option& row : all) row.group = heading;
+    return all;
+}
+
 rows scene_options(settings& s) {
-    const std::string group = "Scene";
-    return {
-        {.names = "ply",
-         .group = group,
-         .commands = {evaluate, render},
-         .value = text(s.ply, "FILE"),
-         .help = "Model to read: a .ply file",
-         .required = {evaluate, render}},
-        {.names = "-d,--data,-s,--source-path",
-         .group = group,
-         .commands = {train, evaluate, render, inspect},
-         .value = text(s.scene.data, "SCENE"),
-         .help = "Scene to read: a COLMAP or Blender folder, or synthetic:NAME[,PARAMETER=VALUE...]",
-         .default_text = "none; render then draws an orbit around the model",
-         .required = {train, evaluate, inspect}},
-        {.names = "--images",
-         .group = group,
-         .commands = {train, evaluate, render, inspect},
-         .value = text(s.scene.images, "FOLDER"),
-         .help = "Folder of the photos inside the scene's folder (COLMAP only)",
-         .needs = {"--data"}},
-        {.names = "-r,--resolution",
-         .group = group,
-         .commands = {train, evaluate, render, inspect},
-         .value = whole(s.scene.resolution, 1, 65536),
-         .help = "Image size: 1, 2, 4 and 8 divide the size of the photos; any other number is the length "
-                 "of the longer side in pixels"},
-        {.names = "--eval",
-         .group = group,
-         .commands = {train, evaluate, render, inspect},
-         .value = flag(s.scene.eval),
-         .help = "Holds out test views, on which the model is measured",
-         .needs = {"--data"}},
-        {.names = "--test-every",
-         .group = group,
-         .commands = {train, evaluate, render, inspect},
-         .value = whole(s.scene.test_every, 2, 1000000),
-         .help = "Distance between two held-out views in the list of photos sorted by name (COLMAP only)",
-         .unit = "views",
-         .needs = {"--eval"}},
-        {.names = "!--no-masks",
-         .group = group,
-         .commands = {evaluate},
-         .value = flag(s.scene.masks),
-         .help = "Measures the masked pixels of the photos, too"},
-        {.names = "--background",
-         .group = group,
-         .commands = {train, evaluate, render},
-         .value = choice(s.background),
-         .help = "Background color behind the Gaussians: auto is white if photos have transparent parts "
-                 "and black otherwise; random, for train only, changes with every iteration"},
-        {.names = "-w,--white-background",
-         .group = group,
-         .commands = {train, evaluate, render},
-         .value = shorthand(s.background, background_kind::white),
-         .help = "Short for --background white",
-         .excludes = {"--background"},
-         .is_recorded = false}};
+    return grouped(
+        "Scene",
+        {{.names = "ply",
+          .commands = {evaluate, render},
+          .value = text(s.ply, "FILE"),
+          .help = "Model to read: a .ply file",
+          .required = {evaluate, render}},
+         {.names = "-d,--data,-s,--source-path",
+          .commands = {train, evaluate, render, inspect},
+          .value = text(s.scene.data, "SCENE"),
+          .help = "Scene to read: a COLMAP or Blender folder, or synthetic:NAME[,PARAMETER=VALUE...]",
+          .default_text = "none; render then draws an orbit around the model",
+          .required = {train, evaluate, inspect}},
+         {.names = "--images",
+          .commands = {train, evaluate, render, inspect},
+          .value = text(s.scene.images, "FOLDER"),
+          .help = "Folder of the photos inside the scene's folder (COLMAP only)",
+          .needs = {"--data"}},
+         {.names = "-r,--resolution",
+          .commands = {train, evaluate, render, inspect},
+          .value = whole(s.scene.resolution, 1, 65536),
+          .help = "Image size: 1, 2, 4 and 8 divide the size of the photos; any other number is the length "
+                  "of the longer side in pixels"},
+         {.names = "--eval",
+          .commands = {train, evaluate, render, inspect},
+          .value = flag(s.scene.eval),
+          .help = "Holds out test views, on which the model is measured",
+          .needs = {"--data"}},
+         {.names = "--test-every",
+          .commands = {train, evaluate, render, inspect},
+          .value = whole(s.scene.test_every, 2, 1000000),
+          .help = "Distance between two held-out views in the list of photos sorted by name (COLMAP only)",
+          .unit = "views",
+          .needs = {"--eval"}},
+         {.names = "!--no-masks",
+          .commands = {evaluate},
+          .value = flag(s.scene.masks),
+          .help = "Measures the masked pixels of the photos, too"},
+         {.names = "--background",
+          .commands = {train, evaluate, render},
+          .value = choice(s.background),
+          .help = "Background color behind the Gaussians: auto is white if photos have transparent parts "
+                  "and black otherwise; random, for train only, changes with every iteration"},
+         {.names = "-w,--white-background",
+          .commands = {train, evaluate, render},
+          .value = shorthand(s.background, background_kind::white),
+          .help = "Short for --background white",
+          .excludes = {"--background"},
+          .is_recorded = false}});
 }
 
 rows output_options(settings& s) {
-    const std::string group = "Output";
-    return {{.names = "-o,--output,-m,--model-path",
-             .group = group,
-             .commands = {train},
-             .value = text(s.output, "FOLDER"),
-             .help = "Folder for the model, its measures and the renders of held-out views",
-             .required = {train}},
-            {.names = "-o,--output",
-             .group = group,
-             .commands = {evaluate},
-             .value = text(s.output, "FOLDER"),
-             .help = "Folder for metrics.json and the renders",
-             .default_text = "none; nothing is written"},
-            {.names = "-o,--output",
-             .group = group,
-             .commands = {render},
-             .value = text(s.output, "FOLDER"),
-             .help = "Folder for the renders",
-             .required = {render}},
-            {.names = "-o,--output",
-             .group = group,
-             .commands = {inspect},
-             .value = text(s.output, "FILE"),
-             .help = "JSON file for the findings",
-             .default_text = "none; nothing is written"},
-            {.names = "--save-iterations",
-             .group = group,
-             .commands = {train},
-             .value = iterations(s.save_iterations),
-             .help = "Iterations after which the model is saved, besides the last one",
-             .default_text = "none"},
-            {.names = "--orbit-views",
-             .group = group,
-             .commands = {render},
-             .value = whole(s.orbit_views, 1, 10000),
-             .help = "Number of renders on an orbit around the model",
-             .unit = "images",
-             .excludes = {"--data"}},
-            {.names = "-q,--quiet",
-             .group = group,
-             .commands = {train, evaluate, render},
-             .value = flag(s.quiet),
-             .help = "Prints errors only"}};
+    return grouped("Output", {{.names = "-o,--output,-m,--model-path",
+                               .commands = {train},
+                               .value = text(s.output, "FOLDER"),
+                               .help = "Folder for the model, its measures and the renders of held-out views",
+                               .required = {train}},
+                              {.names = "-o,--output",
+                               .commands = {evaluate},
+                               .value = text(s.output, "FOLDER"),
+                               .help = "Folder for metrics.json and the renders",
+                               .default_text = "none; nothing is written"},
+                              {.names = "-o,--output",
+                               .commands = {render},
+                               .value = text(s.output, "FOLDER"),
+                               .help = "Folder for the renders",
+                               .required = {render}},
+                              {.names = "-o,--output",
+                               .commands = {inspect},
+                               .value = text(s.output, "FILE"),
+                               .help = "JSON file for the findings",
+                               .default_text = "none; nothing is written"},
+                              {.names = "--save-iterations",
+                               .commands = {train},
+                               .value = iterations(s.save_iterations),
+                               .help = "Iterations after which the model is saved, besides the last one",
+                               .default_text = "none"},
+                              {.names = "--orbit-views",
+                               .commands = {render},
+                               .value = whole(s.orbit_views, 1, 10000),
+                               .help = "Number of renders on an orbit around the model",
+                               .unit = "images",
+                               .excludes = {"--data"}},
+                              {.names = "-q,--quiet",
+                               .commands = {train, evaluate, render},
+                               .value = flag(s.quiet),
+                               .help = "Prints errors only"}});
 }
 
 rows run_options(settings& s) {
-    const std::string group = "Device and reproducibility";
-    return {
-        {.names = "--device",
-         .group = group,
-         .commands = {train, evaluate, render},
-         .value = choice(s.device),
-         .help = "Device to compute on; auto takes a GPU if one can be used"},
-        {.names = "--seed",
-         .group = group,
-         .commands = {train, evaluate, render},
-         .value = whole(s.seed, 0, std::numeric_limits<std::uint64_t>::max()),
-         .help = "Random seed"},
-        {.names = "--deterministic",
-         .group = group,
-         .commands = {train},
-         .value = flag(s.deterministic),
-         .help = "Makes runs with the same seed on the same machine write the same .ply bit for bit, with "
-                 "any number of threads; training takes longer"}};
+    return grouped(
+        "Device and reproducibility",
+        {{.names = "--device",
+          .commands = {train, evaluate, render},
+          .value = choice(s.device),
+          .help = "Device to compute on; auto takes a GPU if one can be used"},
+         {.names = "--seed",
+          .commands = {train, evaluate, render},
+          .value = whole(s.seed, 0, std::numeric_limits<std::uint64_t>::max()),
+          .help = "Random seed"},
+         {.names = "--deterministic",
+          .commands = {train},
+          .value = flag(s.deterministic),
+          .help = "Makes runs with the same seed on the same machine write the same .ply bit for bit, with "
+                  "any number of threads; training takes longer"}});
 }
 
 rows length_options(settings& s) {
-    const std::string group = "Length and resolution";
-    return {{.names = "-i,--iterations",
-             .group = group,
-             .commands = {train},
-             .value = whole(s.schedule.iterations, 1, most_iterations),
-             .help = "Number of training iterations",
-             .unit = "iterations"},
-            {.names = "--quality",
-             .group = group,
-             .commands = {train},
-             .value = choice(s.quality),
-             .help = "Preset: fast takes less time, best takes more time for more detail; explicit options "
-                     "override the preset"},
-            {.names = "--num-downscales",
-             .group = group,
-             .commands = {train},
-             .value = whole(s.schedule.num_downscales, 0, 8),
-             .help = "Number of times that the photos are halved at the start of training"},
-            {.names = "--resolution-schedule",
-             .group = group,
-             .commands = {train},
-             .value = whole(s.schedule.resolution_schedule, 1, most_iterations),
-             .help = "Iterations until the photos are halved once less",
-             .unit = "iterations",
-             .default_text = "a fifth of the iterations; for --num-downscales N above 1, one part in N + 4"}};
+    return grouped(
+        "Length and resolution",
+        {{.names = "-i,--iterations",
+          .commands = {train},
+          .value = whole(s.schedule.iterations, 1, most_iterations),
+          .help = "Number of training iterations",
+          .unit = "iterations"},
+         {.names = "--quality",
+          .commands = {train},
+          .value = choice(s.quality),
+          .help = "Preset: fast takes less time, best takes more time for more detail; explicit options "
+                  "override the preset"},
+         {.names = "--num-downscales",
+          .commands = {train},
+          .value = whole(s.schedule.num_downscales, 0, 8),
+          .help = "Number of times that the photos are halved at the start of training"},
+         {.names = "--resolution-schedule",
+          .commands = {train},
+          .value = whole(s.schedule.resolution_schedule, 1, most_iterations),
+          .help = "Iterations until the photos are halved once less",
+          .unit = "iterations",
+          .default_text = "a fifth of the iterations; for --num-downscales N above 1, one part in N + 4"}});
 }
 
 rows effect_options(settings& s) {
-    const std::string group = "Effects and colors";
     std::string names;
     for (const auto& f : features::all_features())
         if (f->is_selectable()) names += (names.empty() ? "" : ", ") + std::string(f->name());
@@ -183,48 +164,44 @@ rows effect_options(settings& s) {
          .help = "Effects to simulate: auto (those that the scene needs, see inspect), all, none, or a list "
                  "of their names (" +
                  names + "); auto,+exposure,-sky adds one effect and leaves out another"},
-        {.names = "--sh-degree",
-         .group = group,
-         .commands = {train},
-         .value = whole(s.sh_degree, 0, 3),
-         .help = "Degree of the spherical harmonics (SH) of view-dependent colors",
-         .default_text = "chosen by --effects"},
-        {.names = "--sh-degree-interval",
-         .group = group,
-         .commands = {train},
-         .value = whole(s.schedule.sh_degree_interval, 1, most_iterations),
-         .help = "Iterations between two increases of the SH degree",
-         .unit = "iterations"},
-        {.names = "--sh-update-interval",
-         .group = group,
-         .commands = {train},
-         .value = whole(s.schedule.sh_update_interval, 1, most_iterations),
-         .help = "Iterations between two updates of the SH coefficients of degree 1 and higher",
-         .unit = "iterations"},
-    };
+            {.names = "--sh-degree",
+             .commands = {train},
+             .value = whole(s.sh_degree, 0, 3),
+             .help = "Degree of the spherical harmonics (SH) of view-dependent colors",
+             .default_text = "chosen by --effects"},
+            {.names = "--sh-degree-interval",
+             .commands = {train},
+             .value = whole(s.schedule.sh_degree_interval, 1, most_iterations),
+             .help = "Iterations between two increases of the SH degree",
+             .unit = "iterations"},
+            {.names = "--sh-update-interval",
+             .commands = {train},
+             .value = whole(s.schedule.sh_update_interval, 1, most_iterations),
+             .help = "Iterations between two updates of the SH coefficients of degree 1 and higher",
+             .unit = "iterations"},
+        });
 }
 
 rows learning_rate_options(settings& s) {
-    const std::string group = "Learning rates of Adam";
     train::schedule& plan = s.schedule;
     const auto rate = [&](const char* name, auto& member, const char* help, const char* default_text = "") {
         return option{.names = name,
-                      .group = group,
                       .commands = {train},
                       .value = positive(member),
                       .help = help,
                       .default_text = default_text};
     };
-    return {rate("--position-lr-init", plan.position_lr_init,
-                 "Learning rate of positions in the first iteration, in units of the scene's extent"),
-            rate("--position-lr-final", plan.position_lr_final,
-                 "Learning rate of positions in the last iteration, in units of the scene's extent"),
-            rate("--feature-lr", plan.feature_lr, "Learning rate of base colors (SH degree 0)"),
-            rate("--sh-lr", plan.sh_lr, "Learning rate of view-dependent colors (SH degrees 1 to 3)",
-                 "a tenth of --feature-lr"),
-            rate("--opacity-lr", plan.opacity_lr, "Learning rate of opacities, before their sigmoid"),
-            rate("--scaling-lr", plan.scaling_lr, "Learning rate of the logarithms of scales"),
-            rate("--rotation-lr", plan.rotation_lr, "Learning rate of rotation quaternions")};
+    return grouped("Learning rates of Adam",
+                   {rate("--position-lr-init", plan.position_lr_init,
+                         "Learning rate of positions in the first iteration, relative to the scene's extent"),
+                    rate("--position-lr-final", plan.position_lr_final,
+                         "Learning rate of positions in the last iteration, relative to the scene's extent"),
+                    rate("--feature-lr", plan.feature_lr, "Learning rate of base colors (SH degree 0)"),
+                    rate("--sh-lr", plan.sh_lr, "Learning rate of view-dependent colors (SH degrees 1 to 3)",
+                         "a tenth of --feature-lr"),
+                    rate("--opacity-lr", plan.opacity_lr, "Learning rate of opacities"),
+                    rate("--scaling-lr", plan.scaling_lr, "Learning rate of the logarithms of scales"),
+                    rate("--rotation-lr", plan.rotation_lr, "Learning rate of rotation quaternions")});
 }
 
 rows densification_options(settings& s) {
@@ -295,10 +272,8 @@ rows densification_options(settings& s) {
 }
 
 rows evaluation_options(settings& s) {
-    const std::string group = "Evaluation";
     const auto fit_exposure = [&](command c, std::vector<std::string> needs) {
         return option{.names = "--fit-exposure",
-                      .group = group,
                       .commands = {c},
                       .value = flag(s.fit_exposure),
                       .help =
@@ -306,15 +281,15 @@ rows evaluation_options(settings& s) {
                           "on the left halves",
                       .needs = std::move(needs)};
     };
-    return {{.names = "--test-iterations",
-             .group = group,
-             .commands = {train},
-             .value = iterations(s.test_iterations),
-             .help = "Iterations after which the held-out views are measured, besides the last one",
-             .default_text = "none",
-             .needs = {"--eval"}},
-            fit_exposure(train, {"--eval"}),
-            fit_exposure(evaluate, {})};
+    return grouped("Evaluation",
+                   {{.names = "--test-iterations",
+                     .commands = {train},
+                     .value = iterations(s.test_iterations),
+                     .help = "Iterations after which the held-out views are measured, besides the last one",
+                     .default_text = "none",
+                     .needs = {"--eval"}},
+                    fit_exposure(train, {"--eval"}),
+                    fit_exposure(evaluate, {})});
 }
 
 }  // namespace
@@ -323,7 +298,7 @@ std::vector<option> option_table(settings& s) {
     rows table;
     for (auto& group :
          {scene_options(s), output_options(s), length_options(s), effect_options(s), learning_rate_options(s),
-          densification_options(s), evaluation_options(s), run_options(s)})
+          densification_options(s), growth_options(s), evaluation_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }

@@ -6,21 +6,22 @@
 
 namespace gs::cli {
 
-/// A line that is written over on a terminal, and a plain line now and then where there is none.
+/// Shows where training stands: on a terminal in one line that is overwritten, elsewhere in up to twenty
+/// lines.
 class progress_bar {
   public:
     explicit progress_bar(bool quiet);
     progress_bar(const progress_bar&) = delete;
     progress_bar& operator=(const progress_bar&) = delete;
-    /// What comes next has a line of its own, also after an error.
+    /// Ends the bar's line, so that an error message begins in a new one.
     ~progress_bar();
     void show(const train::progress& p);
-    /// Makes room for a line of another's.
+    /// Clears the bar's line for other output.
     void clear();
 
   private:
     bool quiet_, terminal_;
-    bool open_ = false;  ///< the cursor is in the bar's line
+    bool open_ = false;  ///< the cursor is in the line of the bar
     int lines_ = 0;
 };
 

@@ -21,8 +21,8 @@ struct named_camera {
     gs::camera camera;
 };
 
-/// Round the middle of the cloud, in the plane in which it is widest, from above. The model is in the frame
-/// that it has by itself.
+/// Cameras on a circle around the middle of the Gaussians, slightly above the plane in which they spread
+/// most. Precondition: the model is normalized by itself, see `frame_of`.
 std::vector<named_camera> orbit(const gaussians& model, int views, int size) {
     const std::size_t n = model.count();
     std::array<glm::dvec3, 2> quartiles;  // robust against floaters
@@ -60,7 +60,7 @@ std::vector<named_camera> cameras_of(const scene& scene) {
     return cameras;
 }
 
-/// The side of an orbit's pictures: `--resolution` divides 800 pixels or says how many there are.
+/// The side of the images of an orbit, in pixels: --resolution divides 800 pixels or is the side itself.
 int orbit_size(int resolution) { return divides_size(resolution) ? 800 / resolution : resolution; }
 
 }  // namespace
@@ -90,7 +90,7 @@ void render(const settings& s) {
     for (const named_camera& c : cameras)
         write_png(output.path() / c.name, c.camera.width, c.camera.height,
                   engine->render(c.camera, background.colour));
-    context.say(std::to_string(cameras.size()) + " pictures in " + s.output);
+    context.say(std::to_string(cameras.size()) + " images in " + s.output);
 }
 
 }  // namespace gs::cli
