@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "image/image.hpp"
+#include "run_program.hpp"
+#include "small_scene.hpp"
+#include "small_training.hpp"
+#include "writers/ply/ply.hpp"
+
+using namespace gs_test;
+
+namespace {
+
+std::vector<std::string> pictures_in(const fs::path& folder, int expected_width, int expected_height) {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const gs::image picture = gs::read_image(entry.path());
+        CHECK(picture.width == expected_width);
+        CHECK(picture.height == expected_height);
+        names.push_back(entry.path().filename().string());
+    }
+    std::ranges::sort(names);
+    return names;
+}
+
+void check_metrics(const json& metrics) {
+    CHECK(metrics.at("psnr").get<double>() > 15);
+    CHECK(metrics.at("ssim").get<double>() > 0.3);
+    CHECK(metrics.at("ssim").get<double>() < 1);
+    REQUIRE(metrics.at("views").size() == 8);
+    double sum = 0;
+    for (const json& view : metrics.at("views")) {
+        CHECK(view.at("name").get<std::string>().ends_with(".png"));
+        CHECK(view.at("ssim").is_number());
+        sum += view.at("psnr").get<double>();
+    }
+    CHECK(sum / 8 == doctest::Approx(metrics.at("psnr").get<double>()).epsilon(1e-12));
+    for (const char* stage : {"load", "train", "evaluate"})
+        CHECK(metrics.at("seconds").at(stage).get<double>() > 0);
+    CHECK(metrics.at("iterations") == 60);
+    CHECK(metrics.at("gaussians").get<int>() > 0);
+    CHECK(says(metrics.at("device").get<std::string>(), {"cpu"}));
+    CHECK(metrics.at("accumulator") == "native");
+    REQUIRE(!metrics.at("effects").empty());
+    for (const json& effect : metrics.at("effects")) {
+        CHECK(effect.at("name").is_string());
+        CHECK(effect.at("on").is_boolean());
+        CHECK(!effect.at("reason").get<std::string>().empty());
+    }
+    CHECK(metrics.at("seed") == 7);
+}
+
+}  // namespace
+
+TEST_CASE("train writes a model, measures and renders; evaluate and render read them") {
+    const temporary_folder folder;
+    const fs::path output = folder / "deep/results", model = model_of(output, 60);
+    const outcome trained =
+        run(small_training(output) +
+            words{"--seed", "7", "--save_iterations", "30", "--sh_degree", "1", "--test_iterations", "20"});
+    CHECK(trained.err == "");
+    REQUIRE(trained.code == 0);
+    CHECK(says(trained.out, {"held-out PSNR", model.string(), (output / "metrics.json").string()}));
+
+    const json metrics = read_json(output / "metrics.json");
+    check_metrics(metrics);
+    REQUIRE(metrics.at("tests").size() == 1);
+    const json& test = metrics.at("tests")[0];
+    CHECK(test.at("iteration") == 20);
+    CHECK(test.at("psnr").get<double>() < metrics.at("psnr").get<double>());
+    CHECK(test.at("seconds").get<double>() > 0);
+    CHECK(test.at("seconds").get<double>() < metrics.at("seconds").at("train").get<double>());
+    const json settings = read_json(output / "settings.json");
+    CHECK(settings.at("data") == "synthetic:spheres");
+    CHECK(settings.at("iterations") == 60);
+    CHECK(settings.at("sh_degree") == 1);  // `_` and `-` are alike
+    CHECK(settings.at("resolution") == 32);
+    CHECK(settings.at("seed") == 7);
+
+    CHECK(gs::read_ply(model_of(output, 30)).count() > 0);
+    const gs::gaussians saved = gs::read_ply(model);
+    CHECK(saved.sh_degree == 1);
+    CHECK(saved.count() == metrics.at("gaussians").get<std::size_t>());
+    const auto renders = pictures_in(output / "test/ours_60/renders", 32, 32);
+    CHECK(renders.size() == 8);
+    CHECK(pictures_in(output / "test/ours_60/gt", 32, 32) == renders);
+
+    SUBCASE("evaluate measures the same") {
+        const fs::path again = folder / "again";
+        check_success(words{"evaluate", model.string(), "-o", again.string()} + small_spheres);
+        const json measured = read_json(again / "metrics.json");
+        // The file holds every bit of the parameters, and a pixel is blended in one order only. But threads
+        // add up errors over pixels as they finish: the last bits of sums of 3072 doubles may differ.
+        constexpr double rounding = 1e-12;
+        for (const char* measure : {"psnr", "ssim"})
+            CHECK(measured.at(measure).get<double>() ==
+                  doctest::Approx(metrics.at(measure).get<double>()).epsilon(rounding));
+        CHECK(measured.at("views").size() == metrics.at("views").size());
+        CHECK(contents(again / "test") == contents(output / "test/ours_60"));
+    }
+    SUBCASE("evaluate without an output says it only") {
+        const outcome said = run(words{"evaluate", model.string()} + small_spheres);
+        CHECK(said.code == 0);
+        CHECK(says(said.out, {"PSNR", "8 views"}));
+    }
+    SUBCASE("render from the scene's cameras draws what training drew") {
+        const fs::path pictures = folder / "pictures";
+        check_success(words{"render", model.string(), "-o", pictures.string()} + small_spheres);
+        CHECK(pictures_in(pictures, 32, 32) == renders);
+        CHECK(contents(pictures) == contents(output / "test/ours_60/renders"));
+    }
+    SUBCASE("render from the model alone draws an orbit") {
+        const fs::path pictures = folder / "orbit";
+        check_success({"render", model.string(), "-o", pictures.string(), "--orbit-views", "3", "-r", "40",
+                       "--device", "cpu"});
+        CHECK(pictures_in(pictures, 40, 40) == words{"00000.png", "00001.png", "00002.png"});
+    }
+}
+
+TEST_CASE("a second training replaces the results of the first") {
+    const temporary_folder folder;
+    write_file(folder / "metrics.json", "{}\n");
+    write_file(folder / "notes.txt", "mine");
+    check_success(small_training(folder.path()) + words{"--quiet"});
+    CHECK(read_json(folder / "metrics.json").at("iterations") == 60);
+    CHECK(read_file(folder / "notes.txt") == "mine");
+}
+
+TEST_CASE("train reads a COLMAP scene") {
+    const temporary_folder folder;
+    small_scene{}.write(folder / "scene");
+    check_success(training(folder / "scene") + words{"-o", (folder / "results").string()});
+    CHECK(read_json(folder / "results/metrics.json").at("psnr").is_null());  // no views were held out
+}
+
+TEST_CASE("models have the coordinates of the scene, far from the origin and in any unit") {
+    for (const auto& [offset, unit] : {std::pair(0.0, 1e-4), std::pair(1e4, 1.0), std::pair(0.0, 1e4)}) {
+        CAPTURE(offset);
+        CAPTURE(unit);
+        const temporary_folder folder;
+        small_scene scene;
+        scene.offset = offset;
+        scene.unit = unit;
+        scene.write(folder / "scene");
+        const fs::path output = folder / "results", again = folder / "again", model = model_of(output, 5);
+        const words data{"-d", (folder / "scene").string(), "--eval", "--test-every", "2", "--device", "cpu"};
+        check_success(words{"train", "-i", "5", "-o", output.string()} + data);
+        const gs::gaussians saved = gs::read_ply(model);
+        REQUIRE(saved.count() == 8);
+        for (const float x : saved.mean)
+            CHECK(std::abs(static_cast<double>(x) / unit - offset) == doctest::Approx(0.5).epsilon(0.1));
+        for (const float s : saved.log_scale)
+            CHECK(static_cast<double>(s) - std::log(unit) == doctest::Approx(0).epsilon(0.1));
+
+        check_success(words{"evaluate", model.string(), "-o", again.string()} + data);
+        const double psnr = read_json(output / "metrics.json").at("psnr").get<double>();
+        CHECK(read_json(again / "metrics.json").at("psnr").get<double>() ==
+              doctest::Approx(psnr).epsilon(1e-12));
+        check_success(words{"render", model.string(), "-o", (folder / "pictures").string()} + data);
+        CHECK(contents(folder / "pictures") == contents(output / "test/ours_5/renders"));
+
+        // The orbit sees something, wherever it is.
+        check_success({"render", model.string(), "-o", (folder / "orbit").string(), "--orbit-views", "1",
+                       "-r", "40", "--device", "cpu"});
+        const gs::image picture = gs::read_image(folder / "orbit/00000.png");
+        CHECK(std::ranges::any_of(std::vector<std::uint8_t>(picture.rgba.begin() + 4 * (20 * 40 + 15),
+                                                            picture.rgba.begin() + 4 * (20 * 40 + 25)),
+                                  [](std::uint8_t level) { return level > 20 && level < 255; }));
+    }
+}
+
+TEST_CASE("inspect prints and writes the effects that a scene needs") {
+    const temporary_folder folder;
+    const fs::path file = folder / "effects.json";
+    const outcome o = run({"inspect", "-d", "synthetic:spheres,gloss=0.6,exposure=0.3", "-o", file.string()});
+    CAPTURE(o.err);
+    CHECK(o.code == 0);
+    const auto json = nlohmann::json::parse(read_file(file));
+    REQUIRE(json.at("effects").size() == 8);
+    for (const auto& effect : json.at("effects")) {
+        const auto name = effect.at("name").get<std::string>();
+        CHECK(effect.at("called_for").get<bool>() == (name == "direction" || name == "exposure"));
+        CHECK(says(o.out, {name, effect.at("evidence").get<std::string>(),
+                           effect.at("expected").get<std::string>()}));
+    }
+    check_refusal({"inspect", "-d", "synthetic:spheres,shine=1"}, {"'shine'", "gloss"});
+    check_refusal({"inspect", "-d", "synthetic:spheres", "-o", (folder / "none/effects.json").string()},
+                  {"none"});
+}

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "../../support/temporary_folder.hpp"
+#include "cli/help.hpp"
+#include "cli/option.hpp"
+#include "cli/parse.hpp"
+#include "cli/training_report.hpp"
+
+using namespace gs::cli;
+using gs_test::says;
+using words = std::vector<std::string>;
+
+namespace {
+
+/// A value that is not the default, and whether it has reached the setting.
+struct option_case {
+    words value;
+    std::function<bool(const settings&)> has_arrived;
+    words before{};  ///< given before the option
+};
+
+/// By name, except for second names of the same option.
+const std::map<std::string, option_case> cases{
+    {"ply", {{"a.ply"}, [](const settings& s) { return s.ply == "a.ply"; }}},
+    {"--data", {{"a scene"}, [](const settings& s) { return s.scene.data == "a scene"; }}},
+    {"--images", {{"photos"}, [](const settings& s) { return s.scene.images == "photos"; }}},
+    {"--resolution", {{"640"}, [](const settings& s) { return s.scene.resolution == 640; }}},
+    {"--eval", {{}, [](const settings& s) { return s.scene.eval; }}},
+    {"--test-every", {{"5"}, [](const settings& s) { return s.scene.test_every == 5; }}},
+    {"--no-masks", {{}, [](const settings& s) { return !s.scene.masks; }}},
+    {"--background", {{"black"}, [](const settings& s) { return s.background == background_kind::black; }}},
+    {"--white-background", {{}, [](const settings& s) { return s.background == background_kind::white; }}},
+    {"--output", {{"results"}, [](const settings& s) { return s.output == "results"; }}},
+    {"--save-iterations",
+     {{"30", "10"},
+      [](const settings& s) {
+          return s.save_iterations == std::set{10, 30};
+      }}},
+    {"--orbit-views", {{"3"}, [](const settings& s) { return s.orbit_views == 3; }}},
+    {"--quiet", {{}, [](const settings& s) { return s.quiet; }}},
+    {"--iterations", {{"20"}, [](const settings& s) { return s.schedule.iterations == 20; }}},
+    {"--quality", {{"best"}, [](const settings& s) { return s.quality == quality_preset::best; }}},
+    {"--num-downscales", {{"2"}, [](const settings& s) { return s.schedule.num_downscales == 2; }}},
+    {"--resolution-schedule", {{"7"}, [](const settings& s) { return s.schedule.resolution_schedule == 7; }}},
+    {"--effects", {{"none,+sky"}, [](const settings& s) { return s.effects.text == "none,+sky"; }}},
+    {"--sh-degree", {{"2"}, [](const settings& s) { return s.sh_degree == 2; }}},
+    {"--sh-degree-interval", {{"50"}, [](const settings& s) { return s.schedule.sh_degree_interval == 50; }}},
+    {"--sh-update-interval", {{"4"}, [](const settings& s) { return s.schedule.sh_update_interval == 4; }}},
+    {"--position-lr-init", {{"1e-3"}, [](const settings& s) { return s.schedule.position_lr_init == 1e-3; }}},
+    {"--position-lr-final",
+     {{"1e-5"}, [](const settings& s) { return s.schedule.position_lr_final == 1e-5; }}},
+    {"--feature-lr", {{"2e-3"}, [](const settings& s) { return s.schedule.feature_lr == 2e-3; }}},
+    {"--sh-lr", {{"3e-4"}, [](const settings& s) { return s.schedule.sh_lr == 3e-4; }}},
+    {"--opacity-lr", {{"3e-2"}, [](const settings& s) { return s.schedule.opacity_lr == 3e-2; }}},
+    {"--scaling-lr", {{"4e-3"}, [](const settings& s) { return s.schedule.scaling_lr == 4e-3; }}},
+    {"--rotation-lr", {{"5e-3"}, [](const settings& s) { return s.schedule.rotation_lr == 5e-3; }}},
+    {"--densify-from-iter", {{"0"}, [](const settings& s) { return s.schedule.densify_from_iter == 0; }}},
+    {"--densify-until-iter", {{"9"}, [](const settings& s) { return s.schedule.densify_until_iter == 9; }}},
+    {"--densification-interval",
+     {{"8"}, [](const settings& s) { return s.schedule.densification_interval == 8; }}},
+    {"--densify-grad-threshold",
+     {{"1e-4"}, [](const settings& s) { return s.schedule.densify_grad_threshold == 1e-4; }}},
+    {"--budget", {{"900"}, [](const settings& s) { return s.budget == 900; }}},
+    {"--max-cap", {{"1000"}, [](const settings& s) { return s.max_cap == 1000; }}},
+    {"--opacity-reset-interval",
+     {{"60"}, [](const settings& s) { return s.schedule.opacity_reset_interval == 60; }}},
+    {"--no-revised-opacity", {{}, [](const settings& s) { return !s.revised_opacity; }}},
+    {"--revised-opacity",
+     {{}, [](const settings& s) { return s.revised_opacity; }, {"--no-revised-opacity"}}},
+    {"--prune-share", {{"0.5"}, [](const settings& s) { return s.schedule.prune_share == 0.5; }}},
+    {"--test-iterations", {{"15"}, [](const settings& s) { return s.test_iterations == std::set{15}; }}},
+    {"--fit-exposure", {{}, [](const settings& s) { return s.fit_exposure; }}},
+    {"--device", {{"cpu"}, [](const settings& s) { return s.device == device_kind::cpu; }}},
+    {"--seed",
+     {{"18446744073709551615"}, [](const settings& s) { return s.seed == 18446744073709551615ULL; }}},
+    {"--deterministic", {{}, [](const settings& s) { return s.deterministic; }}}};
+
+const option_case& case_of(const option& row, const std::string& name) {
+    const auto own = cases.find(name);
+    const auto found = own != cases.end() ? own : cases.find(row.name());
+    if (found == cases.end()) FAIL("add a case for " << row.name());
+    return found->second;
+}
+
+void append(words& all, const words& more) { all.insert(all.end(), more.begin(), more.end()); }
+
+void append_option(words& all, const option& row, const std::string& name) {
+    const option_case& c = case_of(row, name);
+    append(all, c.before);
+    if (!row.is_positional()) all.push_back(name);
+    append(all, c.value);
+}
+
+/// The shortest command line that gives the option by this name.
+words command_line(command c, const option& row, const std::string& name) {
+    static settings unused;
+    static const std::vector<option> table = option_table(unused);
+    const auto is_needed = [&](const option& other) {
+        const auto needs = [&](const option& some) {
+            return std::ranges::find(some.needs, other.name()) != some.needs.end();
+        };
+        return other.name() != row.name() &&
+               (other.is_required_by(c) || needs(row) || (other.name() == "--data" && !row.needs.empty()));
+    };
+    words all{name_of(c)};
+    for (const option& other : table)
+        if (other.belongs_to(c) && is_needed(other)) append_option(all, other, other.name());
+    append_option(all, row, name);
+    return all;
+}
+
+/// Calls `f(command, row)` for all options of all commands.
+template <class F>
+void for_each_option(const F& f) {
+    settings defaults;
+    for (const option& row : option_table(defaults))
+        for (const command c : row.commands) {
+            CAPTURE(name_of(c));
+            CAPTURE(row.names);
+            f(c, row);
+        }
+}
+
+}  // namespace
+
+TEST_CASE("every option is accepted by all its names and reaches its setting") {
+    for_each_option([](command c, const option& row) {
+        for (const std::string& name : row.all_names()) {
+            CAPTURE(name);
+            const option_case& expected = case_of(row, name);
+            if (expected.before.empty()) CHECK_FALSE(expected.has_arrived(settings{}));
+            CHECK(expected.has_arrived(parse(command_line(c, row, name))));
+
+            std::string with_underscores = name;
+            std::replace(with_underscores.begin() + 2, with_underscores.end(), '-', '_');
+            words same = command_line(c, row, name);
+            std::ranges::replace(same, name, with_underscores);
+            CHECK(expected.has_arrived(parse(same)));
+        }
+    });
+}
+
+TEST_CASE("an unknown option is refused with the name of the nearest one") {
+    for_each_option([](command c, const option& row) {
+        if (row.is_positional()) return;
+        words wrong = command_line(c, row, row.name());
+        std::ranges::replace(wrong, row.name(), row.name() + "xx");
+        std::string message;
+        try {
+            parse(wrong);
+        } catch (const gs::error& e) {
+            message = e.what();
+        }
+        CHECK(says(message, {"unknown option " + row.name() + "xx of " + name_of(c), "is " + row.name()}));
+    });
+}
+
+TEST_CASE("settings.json has every option of train exactly once") {
+    std::set<std::string> expected;
+    const settings defaults = parse({"train", "-d", "a scene", "-o", "results"});
+    const auto recorded = settings_json(defaults);
+    for_each_option([&](command c, const option& row) {
+        if (c != command::train || !row.is_recorded) return;
+        CHECK(expected.insert(row.key()).second);
+        CHECK(recorded.contains(row.key()));
+        if (row.is_required_by(c)) return;
+        CHECK(settings_json(parse(command_line(c, row, row.all_names().back()))).at(row.key()) !=
+              recorded.at(row.key()));
+    });
+    CHECK(recorded.size() == expected.size());
+}
+
+TEST_CASE("rows of the option table refer to options of the same command") {
+    settings defaults;
+    const std::vector<option> table = option_table(defaults);
+    for_each_option([&](command c, const option& row) {
+        for (const auto& others : {row.needs, row.excludes})
+            for (const std::string& name : others)
+                CHECK(std::ranges::any_of(
+                    table, [&](const option& o) { return o.belongs_to(c) && o.name() == name; }));
+        CHECK(std::ranges::count_if(
+                  table, [&](const option& o) { return o.belongs_to(c) && o.name() == row.name(); }) == 1);
+    });
+}
+
+TEST_CASE("the reference of the command line is up to date") {
+    const std::string file = WARPAGG_SOURCE_DIR "/docs/reference/cli.md";
+    INFO("to update it: gaussian_splatting --print-reference > " << file);
+    CHECK(gs_test::read_file(file) == reference_page());
+}
+
+TEST_CASE("the help of a command has all its options") {
+    for_each_option([](command c, const option& row) {
+        settings defaults;
+        std::vector<option> rows;
+        for (const option& other : option_table(defaults))
+            if (other.belongs_to(c)) rows.push_back(other);
+        const std::string text = help_text(c, rows);
+        CHECK(says(text, {row.group + ":\n", "  " + row.all_names().front()}));
+        for (const std::string& name : row.all_names()) CHECK(says(text, {name}));
+    });
+}
