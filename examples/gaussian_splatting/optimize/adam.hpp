@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "../render/project/gaussian_row.hpp"
 #include "../render/geometry/list_capacity.hpp"
+#include "../render/project/gaussian_row.hpp"
 #include "finite_check.hpp"
 
 namespace gs::train {

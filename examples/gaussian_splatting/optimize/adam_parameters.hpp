@@ -10,17 +10,17 @@
 
 namespace gs::train {
 
-/// Rows of `Width` numbers on the device, each of which learns by Adam from sums over pictures, by the steps
-/// that were its own.
+/// Rows of `Width` parameters on the device, such as one row per image. Adam (Kingma and Ba 2015)
+/// optimizes each row from gradients that are sums over an image, and counts steps per row.
 template <device::device Device, unsigned Width>
-class learned_numbers {
+class adam_parameters {
     template <class T>
     using buffer = typename Device::template buffer<T>;
 
   public:
-    explicit learned_numbers(Device& device) : device_(device) {}
+    explicit adam_parameters(Device& device) : device_(device) {}
 
-    /// What they begin from, row by row, as if there had been no step.
+    /// Sets all rows, one after another, and forgets earlier steps. Waits for the device.
     void set(const std::vector<float>& values) {
         for (auto* memory : {&values_, &first_, &second_}) memory->resize(values.size());
         device_.upload(values_.data(), values.data(), values.size());
@@ -29,6 +29,7 @@ class learned_numbers {
         device_.wait();
         steps_.assign(values.size() / Width, 0);
     }
+    /// All rows, one after another. Waits for the device.
     std::vector<float> get() const {
         std::vector<float> values(Width * rows());
         device_.download(values.data(), values_.data(), values.size());
@@ -36,31 +37,33 @@ class learned_numbers {
     }
 
     std::size_t rows() const { return steps_.size(); }
+    /// On the device.
     float* row(std::size_t i) { return values_.data() + i * Width; }
 
-    /// Zeros, for that many warps to add to; what `learn` is then given.
-    picture_sums sums(std::size_t warps) {
+    /// Sums of zero to which this many warps add a row's gradient, before `learn`.
+    ordered_sums sums(std::size_t warps) {
         if (Width * warps > sums_.size()) {
             sums_.resize(Width * warps);
             device_.zero(sums_.data(), sums_.size());
         }
         return {sums_.data(), warps};
     }
-    void learn(std::size_t i, const picture_sums& sums, float rate, const raster::list_room& room) {
+    /// A step of row i, unless the lists of the view did not fit. Sets the sums to zero.
+    void learn(std::size_t i, const ordered_sums& sums, float rate, const raster::list_room& room) {
         const int t = ++steps_[i];
-        const double by_first = 1 - std::pow(static_cast<double>(learn_from_sums::beta1), t);
-        const double by_second = 1 - std::pow(static_cast<double>(learn_from_sums::beta2), t);
+        const double by_first = 1 - std::pow(static_cast<double>(adam_from_sums::beta1), t);
+        const double by_second = 1 - std::pow(static_cast<double>(adam_from_sums::beta2), t);
         device_.for_each_warp(
-            Width, learn_from_sums{sums, row(i), first_.data() + i * Width, second_.data() + i * Width,
-                                   static_cast<float>(rate / by_first),
-                                   static_cast<float>(1 / std::sqrt(by_second)), room});
+            Width, adam_from_sums{sums, row(i), first_.data() + i * Width, second_.data() + i * Width,
+                                  static_cast<float>(rate / by_first),
+                                  static_cast<float>(1 / std::sqrt(by_second)), room});
     }
 
   private:
     Device& device_;
     buffer<float> values_, first_, second_;
-    buffer<float> sums_;      ///< zeros between steps
-    std::vector<int> steps_;  ///< of each row
+    buffer<float> sums_;      ///< zero between steps
+    std::vector<int> steps_;  ///< so far, by row
 };
 
 }  // namespace gs::train

@@ -233,7 +233,7 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
                 sum += static_cast<double>(weights[i] * through[i % pixels] * planes[i]);
             return sum;
         };
-        gs::train::learned_numbers<gs::device::cpu, gs::sky_width> numbers(device);
+        gs::train::adam_parameters<gs::device::cpu, gs::sky_width> numbers(device);
         const auto sums = numbers.sums(gs::train::sky_patch<warp, false>::count(width, height));
         gs::raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
             device.for_each_warp(
