@@ -15,23 +15,27 @@ using warpagg::mask_t;
 using warpagg::value_t;
 using warpagg::math::select;
 
-/// One step of Adam (Kingma and Ba 2015, algorithm 1, with the corrections of bias folded into the rate) for
-/// what `project_backward` gives it. A Gaussian that took no part in the k steps before had gradients of zero
-/// there, so that its moments shrank by beta1^k and beta2^k, and its value moved by what is the sum of a
-/// geometric series: that is made up for first. The rate and the corrections are those of now, which for
-/// steps of long ago is not quite what they were. A gradient that is not finite, or whose square would not
-/// be, is left out, and so is a step that would not end in a finite value: value and moments stay as they
-/// were, and what was missed is forgotten, as it is for bands of colour that this step does not update.
-/// Squared, such a gradient would hold its value still for ever.
+/// One step of Adam (Kingma and Ba 2015, algorithm 1) for the gradients from `project_backward`.
+/// The bias corrections are folded into the rate.
+///
+/// Only Gaussians that the view shows are updated. A Gaussian that missed k steps had gradients of
+/// zero in them: its moments decayed by beta1^k and beta2^k, and its value moved by the sum of a
+/// geometric series. The step makes up for these k steps first, with the present rate and bias
+/// corrections, which is an approximation if k is large.
+///
+/// If a gradient is not finite, or too large to square, or if the new value would not be finite,
+/// then value and moments stay as they are, and the missed steps are forgotten. (The square of such
+/// a gradient would keep its value from ever moving again.) Missed steps are also forgotten for SH
+/// coefficients that this step does not update.
 template <class Real>
 struct adam {
-    parameter_arrays<Real> values, first, second;  ///< and the moments
-    std::uint32_t* last_step;                      ///< that each Gaussian took part in
-    std::uint32_t step;                            ///< t, from 1
-    Real rates[parameter_count];                   ///< of this step: alpha / (1 - beta1^t)
+    parameter_arrays<Real> values, first, second;  ///< parameters, first and second moments
+    std::uint32_t* last_step;                      ///< in which each Gaussian was updated
+    std::uint32_t step;                            ///< number t of this step, from 1
+    Real rates[parameter_count];                   ///< alpha / (1 - beta1^t)
     Real correction;                               ///< 1 / sqrt(1 - beta2^t)
-    raster::list_room room;                        ///< of the view: see there
-    train::watch watch;
+    raster::list_room room;                        ///< of the view
+    finite_check check;
 
     static constexpr double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-15;
     static constexpr double most_gradient = 1e18;
@@ -46,8 +50,8 @@ struct adam {
         const adam& of;
         const W& w;
         const raster::gaussian_row<W>& row;
-        real first_left, second_left;  ///< of the moments, after the steps missed: beta1^k, beta2^k
-        real drift;                    ///< the value moved by so many times rate m / sqrt(v) meanwhile
+        real first_left, second_left;  ///< decay during the missed steps: beta1^k, beta2^k
+        real drift;                    ///< movement meanwhile, in units of rate m / sqrt(v)
 
         template <int N>
         WARPAGG_HD void operator()(parameter p, std::size_t k, std::size_t width,
@@ -55,7 +59,7 @@ struct adam {
             const glm::vec<N, real> m = row.template load<N>(w, of.first[p], k, width);
             const glm::vec<N, real> v = row.template load<N>(w, of.second[p], k, width);
             const real rate(of.rates[static_cast<int>(p)]), most = constant<real>(most_gradient);
-            mask_t<W> bounded[N], sound[N], all_sound = true;
+            mask_t<W> bounded[N], valid[N], all_valid = true;
             WARPAGG_UNROLL
             for (int n = 0; n < N; ++n) {
                 const real g = gradient[n];
@@ -65,26 +69,26 @@ struct adam {
                 const real next =
                     value[n] - rate * (of.relative(drift * m[n], v[n]) + of.relative(next_m, next_v));
                 bounded[n] = g < most && -g < most;
-                sound[n] = bounded[n] && raster::is_finite(next);
-                all_sound = all_sound && sound[n];
-                row.store(w, of.first[p], k, n, width, next_m, m[n], sound[n]);
-                row.store(w, of.second[p], k, n, width, next_v, v[n], sound[n]);
-                row.store(w, of.values[p], k, n, width, next, value[n], sound[n]);
+                valid[n] = bounded[n] && raster::is_finite(next);
+                all_valid = all_valid && valid[n];
+                row.store(w, of.first[p], k, n, width, next_m, m[n], valid[n]);
+                row.store(w, of.second[p], k, n, width, next_v, v[n], valid[n]);
+                row.store(w, of.values[p], k, n, width, next, value[n], valid[n]);
             }
-            if (!w.any(row.active && !all_sound)) return;
+            if (!w.any(row.active && !all_valid)) return;
             using number = value_t<W, unsigned>;
             number gradients(0), parameters(0);
             WARPAGG_UNROLL
             for (int n = 0; n < N; ++n) {
                 gradients += select(row.active && !bounded[n], number(1), number(0));
-                parameters += select(row.active && bounded[n] && !sound[n], number(1), number(0));
+                parameters += select(row.active && bounded[n] && !valid[n], number(1), number(0));
             }
-            of.watch.note(w, fault::gradient, p, row.first, gradients);
-            of.watch.note(w, fault::parameter, p, row.first, parameters);
+            of.check.note(w, fault_kind::gradient, p, row.first, gradients);
+            of.check.note(w, fault_kind::parameter, p, row.first, parameters);
         }
     };
 
-    /// Notes that the row's active Gaussians take part in this step.
+    /// Prepares the step of the row's active Gaussians.
     template <class W>
     WARPAGG_HD row_sink<W> for_row(const W& w, const raster::gaussian_row<W>& row) const {
         using real = value_t<W, Real>;
@@ -93,8 +97,8 @@ struct adam {
         const number last = w.load_row(last_step, at, row.active);
         w.store_row(last_step, at, number(step), row.active);
         const real missed = warpagg::math::convert<Real>(number(step - 1) - last);
-        // By r + r^2 + ... + r^k the value moved, with r = beta1 / sqrt(beta2): r / (1 - r) (1 - r^k). The
-        // first factors are log2 of beta1, beta2 and r.
+        // The drift is r + r^2 + ... + r^k = r / (1 - r) (1 - r^k) with r = beta1 / sqrt(beta2).
+        // The factors of `missed` are log2 of beta1, beta2 and r.
         const real first_left = warpagg::math::exp2(constant<real>(-0.15200309344504995) * missed);
         const real second_left = warpagg::math::exp2(constant<real>(-0.0014434168696687186) * missed);
         const real r_left = warpagg::math::exp2(constant<real>(-0.15128138501021560) * missed);
@@ -102,8 +106,8 @@ struct adam {
     }
 
   private:
-    /// m / sqrt(v + epsilon^2), v corrected: at least the paper's m / (sqrt(v) + epsilon) in size, and at
-    /// most sqrt(2) times that.
+    /// m / sqrt(v + epsilon^2), with v corrected for bias. Its magnitude is that of the paper's
+    /// m / (sqrt(v) + epsilon), or larger by at most a factor of sqrt(2).
     template <class V>
     WARPAGG_HD V relative(const V& m, const V& v) const {
         const V variance = warpagg::math::fma(v, V(correction * correction), constant<V>(epsilon * epsilon));

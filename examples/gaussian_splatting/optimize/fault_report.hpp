@@ -9,21 +9,26 @@
 
 namespace gs::train {
 
-/// What may turn out not to be finite: the loss of a step, an element of a gradient, or what Adam would have
-/// made of a parameter; or, where sums are in fixed point, not to fit: some warp's sum in a step.
-enum class fault { loss, gradient, parameter, sum, count };
-inline constexpr std::size_t fault_count = static_cast<std::size_t>(fault::count);
+/// What went wrong in a step:
+/// - `loss`: the loss is not finite.
+/// - `gradient`: an element of a gradient is not finite or too large to square.
+/// - `parameter`: a parameter would not be finite after Adam's step.
+/// - `sum`: with fixed-point sums, a sum of gradients exceeds their range: see
+///   `loss::gradient_scale`.
+enum class fault_kind { loss, gradient, parameter, sum, count };
+inline constexpr std::size_t fault_kind_count = static_cast<std::size_t>(fault_kind::count);
 
-/// The earliest of its kind, and how many there were; the rest means nothing if there were none. Of several
-/// in one iteration it is the one of the first parameter and Gaussian.
-struct finding {
+/// The faults of one kind: their number and the earliest one. Within an iteration, the one of the
+/// first parameter, and of its first Gaussian, counts as the earliest. Without faults the other
+/// members are undefined.
+struct fault_report {
     std::uint64_t count = 0;
     int iteration = 0;
     gs::parameter parameter = gs::parameter::mean;
     std::uint32_t gaussian = 0;
 };
 
-/// By `fault`.
-using findings = std::array<finding, fault_count>;
+/// By `fault_kind`.
+using fault_reports = std::array<fault_report, fault_kind_count>;
 
 }  // namespace gs::train

@@ -10,28 +10,28 @@
 
 namespace gs::train {
 
-/// Where kernels note what is not finite, on the device, so that nobody waits for it: of each kind the
-/// earliest and how many there were. The earliest is a number: iteration, parameter and Gaussian from its
-/// highest bits down, 24, 8 and 32 of them.
-struct watch {
+/// Lets kernels record faults in device memory, so that the host need not wait for each step. For
+/// each kind it counts the faults and keeps the earliest one as a number: iteration, parameter and
+/// Gaussian, in 24, 8 and 32 bits from the highest bit down.
+struct finite_check {
     struct memory {
-        unsigned long long first[fault_count];  ///< `nothing` at the start
-        unsigned long long count[fault_count];
+        unsigned long long first[fault_kind_count];  ///< at first `none`
+        unsigned long long count[fault_kind_count];
     };
-    static constexpr unsigned long long nothing = ~0ull;
+    static constexpr unsigned long long none = ~0ull;
 
     memory* found;
     std::uint32_t iteration;
 
-    WARPAGG_HD void note(fault kind, std::uint32_t parameter, std::uint32_t gaussian) const {
+    WARPAGG_HD void note(fault_kind kind, std::uint32_t parameter, std::uint32_t gaussian) const {
         const auto high = static_cast<unsigned long long>(iteration) << 8 | parameter;
         device::atomic_min(&found->first[static_cast<int>(kind)], high << 32 | gaussian);
         device::atomic_add(&found->count[static_cast<int>(kind)], 1);
     }
 
-    /// As many times as each lane says; the first lane's Gaussian is `gaussian`.
+    /// Records `times[lane]` faults for each lane. Lane i has the Gaussian `gaussian + i`.
     template <class W>
-    WARPAGG_HD void note(const W& w, fault kind, parameter p, std::size_t gaussian,
+    WARPAGG_HD void note(const W& w, fault_kind kind, parameter p, std::size_t gaussian,
                          const warpagg::value_t<W, unsigned>& times) const {
         using number = unsigned long long;
         const auto high = static_cast<number>(iteration) << 8 | static_cast<number>(p);
@@ -45,14 +45,15 @@ struct watch {
             warpagg::math::convert<number>(times), active);
     }
 
+    /// The memory before any fault.
     static memory clean() {
         memory m{};
-        for (auto& f : m.first) f = nothing;
+        for (auto& f : m.first) f = none;
         return m;
     }
-    static findings decode(const memory& m) {
-        findings all;
-        for (std::size_t k = 0; k < fault_count; ++k) {
+    static fault_reports decode(const memory& m) {
+        fault_reports all;
+        for (std::size_t k = 0; k < fault_kind_count; ++k) {
             all[k].count = m.count[k];
             all[k].iteration = static_cast<int>(m.first[k] >> 40);
             all[k].parameter = static_cast<gs::parameter>(m.first[k] >> 32 & 0xff);

@@ -73,8 +73,8 @@ class training_on {
         for (auto* b : {&values, &first, &second}) on.put(*b, std::vector<double>(places, 0.0));
         buffer<std::uint32_t> part, last_step;
         on.put_as_they_are(last_step, std::vector<std::uint32_t>(places, 0));
-        buffer<gs::train::watch::memory> found;
-        on.put_as_they_are(found, std::vector{gs::train::watch::clean()});
+        buffer<gs::train::finite_check::memory> found;
+        on.put_as_they_are(found, std::vector{gs::train::finite_check::clean()});
         std::vector<std::vector<double>> path;
         for (auto g : gradients) {
             g.resize(places);
@@ -86,7 +86,7 @@ class training_on {
             step.last_step = last_step.data();
             step.step = steps_before + static_cast<std::uint32_t>(path.size()) + 1;
             const auto t = static_cast<double>(step.step);
-            step.watch.found = found.data();
+            step.check.found = found.data();
             step.values.opacity = values.data();
             step.first.opacity = first.data();
             step.second.opacity = second.data();

@@ -17,7 +17,7 @@
 namespace {
 
 using gs::device::cpu;
-using gs::train::fault;
+using gs::train::fault_kind;
 
 constexpr int width = 40, height = 27;
 constexpr std::size_t pixels = width * height;

@@ -13,12 +13,12 @@
 
 namespace {
 
-using gs::train::fault;
-using gs::train::finding;
+using gs::train::fault_kind;
+using gs::train::fault_report;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-const finding& of(const gs::train::findings& all, fault kind) { return all[static_cast<std::size_t>(kind)]; }
+const fault_report& of(const gs::train::fault_reports& all, fault_kind kind) { return all[static_cast<std::size_t>(kind)]; }
 
 bool is_finite(const gs::gaussians& model) {
     for (const auto* values : {&model.mean, &model.log_scale, &model.quaternion, &model.opacity,
