@@ -14,9 +14,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "driver.hpp"
 #include "core/error.hpp"
-#include "hostile.hpp"
+#include "driver.hpp"
+#include "stress_scenes.hpp"
 #include "training/initialise.hpp"
 #include "writers/ply/ply.hpp"
 

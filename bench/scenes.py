@@ -19,7 +19,7 @@ from environment import environment, own_and_passed_on
 
 KEPT = ["psnr", "ssim", "training_psnr", "gaussians", "iterations", "iterations_per_second", "seconds", "densify_seconds",
         "skipped_steps", "pairs_per_iteration", "stages", "peak_host_bytes", "peak_device_bytes", "seed", "device",
-        "gradient", "tests"]
+        "gradient", "tests"]  # the rung of the ladder only from bench/lab
 
 
 def train_into(folder, program, data, scene, seed, options):
@@ -30,7 +30,7 @@ def train_into(folder, program, data, scene, seed, options):
     subprocess.run(command, check=True)
     process = time.monotonic() - start
     metrics = json.loads((pathlib.Path(folder) / "metrics.json").read_text())
-    kept = {"scene": scene, **{key: metrics[key] for key in KEPT}}
+    kept = {"scene": scene, **{key: metrics[key] for key in KEPT if key in metrics}}
     kept["seconds"]["process"] = process
     return kept
 

@@ -14,12 +14,12 @@ import re
 import statistics
 import sys
 
-import paper
 from decisions import tables as decisions_tables
 from effects import table as effects_table
 from environment import markdown
+from lab import paper
+from lab.tradeoff import table as tradeoff_table
 from scenes import where
-from tradeoff import table as tradeoff_table
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TABLE = re.compile(r"(<!-- table (\w+) -->\n).*?(<!-- end of table -->)", re.DOTALL)

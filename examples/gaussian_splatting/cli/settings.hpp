@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -12,6 +13,7 @@
 #include "../densify/strategy_settings.hpp"
 #include "../features/resolve.hpp"
 #include "../readers/load_scene.hpp"
+#include "../training/engine.hpp"
 #include "../training/schedule.hpp"
 
 namespace gs::cli {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
-"""bench/tradeoff.py: what it makes of runs whose figures are given, and a run of the program $WARPAGG_PROGRAM."""
+"""bench/lab/tradeoff.py: what it makes of runs whose figures are given, and a run of the program $WARPAGG_LAB."""
 import json
 import os
 import pathlib
@@ -12,7 +12,7 @@ import unittest
 
 BENCH = pathlib.Path(__file__).resolve().parents[3] / "bench"
 sys.path.insert(0, str(BENCH))
-import tradeoff  # noqa: E402
+from lab import tradeoff  # noqa: E402
 
 
 def runs(**figures):
@@ -65,19 +65,20 @@ class Together(unittest.TestCase):
         self.assertEqual(tradeoff.together(["fast"], 700)["fast + double"]["-i"], ["1000"])
 
 
+@unittest.skipUnless("WARPAGG_LAB" in os.environ, "the lab is built with WARPAGG_BENCH")
 class Program(unittest.TestCase):
     def test_run_and_table(self):
-        script = [sys.executable, BENCH / "tradeoff.py"]
+        script = [sys.executable, BENCH / "lab" / "tradeoff.py"]
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "tradeoff.json"
-            run = [*script, "run", "--program", os.environ["WARPAGG_PROGRAM"], "--data", "synthetic:spheres", "--knobs", "fixed",
+            run = [*script, "run", "--program", os.environ["WARPAGG_LAB"], "--data", "synthetic:spheres", "--knobs", "fixed",
                    "double", "--commit", "none", "--output", file, "--", "--iterations=20", "-r", "16", "--device", "cpu"]
             subprocess.run(run, check=True, stdout=subprocess.DEVNULL)
             result = json.loads(file.read_text())
             text = subprocess.run([*script, "table", file], check=True, capture_output=True, text=True).stdout
         iterations = {r["options"]: r["iterations"] for r in result["runs"]}
         self.assertEqual(iterations, {"default": 20, "again": 20, "fixed": 20, "double": 40})
-        name = pathlib.Path(os.environ["WARPAGG_PROGRAM"]).name
+        name = pathlib.Path(os.environ["WARPAGG_LAB"]).name
         self.assertIn(f"{name} train -d synthetic:spheres -o OUTPUT --eval -i 40 -r 16 --device cpu  # double", text)
 
 

@@ -1,7 +1,0 @@
-// SPDX-FileCopyrightText: 2026 The warpagg authors
-// SPDX-License-Identifier: MIT
-#include <stdexcept>
-
-#include "measure.hpp"
-
-paper_figures measure_on_cuda(const paper_subject&) { throw std::logic_error("built without CUDA"); }
