@@ -108,8 +108,8 @@ def default_against_best():
     return markdown(["active lanes", "records", "default / best of three, N = 1 to 32", "above 1.05"], rows)
 
 
-def ideas():
-    figures = results("ideas")
+def experiments():
+    figures = results("experiments")
     rows = [[r["idea"], f"{r['ms_all']:.2f}", f"{r['ms_3_percent']:.2f}"] for r in figures["rows"]]
     return markdown(["N = 9, float", "all lanes active", "3 % of lanes active"], rows)
 
@@ -372,7 +372,7 @@ EXAMPLES = {
     "torch": "PyTorch",
 }
 
-TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, ideas, match, examples_origin, stability, hard_cases,
+TABLES = {f.__name__: f for f in (atomics_dense, atomics_sparse, gates, types, default_against_best, experiments, match, examples_origin, stability, hard_cases,
                                  against_double, backward_ladder, backward_contenders, roofline, schedules, tradeoff, tradeoff_default, decisions, effects, effects_photos, accuracy, accuracy_gpu,
                                  accuracy_active, accumulations)}
 TABLES.update({name: lambda name=name: paper.tables(results(name)) for name in ("paper_cpu", "paper_h200", "paper_h200_20s")})

@@ -4,7 +4,7 @@
 """Whether training repeats: the hashes of the .ply that several runs from one seed end in.
 
     bench/lab/determinism.py --program build/cuda/.../gaussian_splatting --data ../shared/data --scenes lego truck --runs 5 \\
-        --output bench/results/repeat.json -- -i 7000 --device cuda --deterministic
+        --output bench/results/determinism.json -- -i 7000 --device cuda --deterministic
 
 With --threads the runs have these numbers of threads in turn, on a CPU. Exits with 1 where a scene has several hashes.
 """
@@ -48,7 +48,7 @@ def main():
         turns = [arguments.threads[k % len(arguments.threads)] for k in range(arguments.runs)]
         hashes[scene] = [hash_of(arguments, scene, options, threads) for threads in turns]
         print(f"{scene}: {len(set(hashes[scene]))} of {arguments.runs} runs, {hashes[scene][0][:12]}", flush=True)
-    result = {"bench": "repeat", **environment(arguments.commit), "seed": arguments.seed, "threads": arguments.threads,
+    result = {"bench": "determinism", **environment(arguments.commit), "seed": arguments.seed, "threads": arguments.threads,
               "options": options, "hashes": hashes}
     pathlib.Path(arguments.output).write_text(json.dumps(result, indent=1) + "\n")
     return 1 if any(len(set(h)) > 1 for h in hashes.values()) else 0

@@ -21,7 +21,7 @@ struct cut {
     static constexpr bool sparse = Sparse;
 };
 
-/// How a device's warps cut it, as measured (bench/bench_backward).
+/// How a device's warps cut it, as measured (`lab backward`).
 template <class W>
 using cut_for = std::conditional_t<W::size == 1, cut<1, 1, 128>,
                                    std::conditional_t<W::size == 8, cut<8, 16, 1024, true>, cut<8, 2, 128>>>;
