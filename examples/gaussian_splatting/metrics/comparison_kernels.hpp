@@ -6,16 +6,16 @@
 #include <glm/vec3.hpp>
 #include <warpagg/atomic.hpp>
 
-#include "../image/masked_pixel.hpp"
 #include "../render/geometry/list_capacity.hpp"
 #include "ssim_strip.hpp"
+#include "target_pixels.hpp"
 
 namespace gs::train {
 
 /// Intermediate results of a comparison of a render x with a target y, as framed planes.
 ///
-/// The SSIM at a pixel p depends on the values under its window w. Its derivative with respect to the
-/// render's value at q is
+/// The SSIM at a pixel p depends on the values under its window w. Its derivative with respect to
+/// the render's value at q is
 ///
 ///     w(p - q) (constant(p) + by_sum(p) (x + y)(q) + by_difference(p) (x - y)(q)).
 template <class Real>
@@ -61,7 +61,6 @@ struct sum_and_difference {
     template <class W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
         using real = value_t<W, Real>;
-        using warpagg::math::convert;
         const framed_planes& planes = maps.planes;
         const auto per_line = static_cast<unsigned>(planes.pitch()) / W::size;
         const auto line = static_cast<int>(index / per_line);
@@ -84,14 +83,7 @@ struct sum_and_difference {
 
         const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(row) * planes.width + left;
         const value_t<W, unsigned> rgba = w.load_row(target, pixel, inside);
-        const auto fraction = [&](const value_t<W, unsigned>& byte) {  // byte / 255, rounded once
-            constexpr Real unit = Real(1) / 255;
-            const real n = convert<Real>(convert<int>(byte)), q = n * unit;
-            return fma(fma(q, real(-255), n), real(unit), q);
-        };
-        const real transparency = fraction(255u - (rgba >> value_t<W, unsigned>(24u)));
-        const value_t<W, unsigned> shift(8 * static_cast<unsigned>(channel));
-        const real y = fraction((rgba >> shift) & 255u) + transparency * background[channel];
+        const real y = target_value<W>(rgba, channel, background[channel]);
         const auto plane = static_cast<std::ptrdiff_t>(planes.width) * planes.height;
         const real x = w.load_row(render, channel * plane + pixel, inside);
         mask_t<W> counts = inside;
