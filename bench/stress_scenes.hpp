@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/look_at.hpp"
 #include "readers/load_scene.hpp"
 #include "readers/synthetic/synthetic.hpp"
+#include "scene/look_at.hpp"
 #include "training/training.hpp"
 
 /// Something to train: at first as it should be, then made hard.

@@ -4,8 +4,8 @@
 
 #include <vector>
 #include <warpagg/atomic.hpp>
-#include <warpagg/warp/simd.hpp>
 #include <warpagg/warp/serial.hpp>
+#include <warpagg/warp/simd.hpp>
 
 //! [kernel]
 /// Adds x, and 1 if x is positive, over those of n numbers that this warp has to look at.

@@ -18,11 +18,11 @@
 
 #include "core/error.hpp"
 #include "driver.hpp"
+#include "engine/engine.hpp"
 #include "lab.hpp"
 #include "ranking.hpp"
 #include "readers/load_scene.hpp"
 #include "scene/look_at.hpp"
-#include "engine/engine.hpp"
 
 namespace {
 

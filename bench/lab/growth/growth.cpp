@@ -17,10 +17,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "engine/engine.hpp"
 #include "lab.hpp"
 #include "readers/load_scene.hpp"
 #include "readers/synthetic/synthetic.hpp"
-#include "engine/engine.hpp"
 
 namespace {
 
@@ -93,7 +93,8 @@ nlohmann::ordered_json measure(gs::train::engine& engine, const options& o) {
             {"least_milliseconds", milliseconds.front()},
             {"most_milliseconds", milliseconds.back()},
             {"stages", stages},
-            {"pairs", static_cast<double>(engine.profile().pairs() - before) / (blocks * static_cast<double>(o.steps))},
+            {"pairs", static_cast<double>(engine.profile().pairs() - before) /
+                          (blocks * static_cast<double>(o.steps))},
             {"skipped_steps", engine.take_report().skipped}};
 }
 

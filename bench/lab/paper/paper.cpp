@@ -14,11 +14,11 @@
 
 #include "core/error.hpp"
 #include "driver.hpp"
+#include "engine/engine.hpp"
 #include "lab.hpp"
 #include "measure.hpp"
 #include "readers/load_scene.hpp"
 #include "scene/normalization.hpp"
-#include "engine/engine.hpp"
 
 namespace {
 

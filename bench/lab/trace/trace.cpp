@@ -15,12 +15,12 @@
 
 #include "core/error.hpp"
 #include "driver.hpp"
+#include "engine/engine.hpp"
 #include "gpu_trace.hpp"
 #include "lab.hpp"
 #include "readers/load_scene.hpp"
 #include "scene/normalization.hpp"
 #include "trace/gpu_trace.hpp"
-#include "engine/engine.hpp"
 #include "training/schedule.hpp"
 #include "writers/ply/ply.hpp"
 
@@ -67,8 +67,8 @@ class training {
         engine_->set_model(model);
         engine_->set_strategy({}, {.iterations = 1 << 20});  // which collects statistics
         engine_->reserve();
-        run(static_cast<int>(2 * views_));  // until nothing grows any more
-        engine_->profile().sample_times(1 << 30);     // which takes the next one's times, and no more
+        run(static_cast<int>(2 * views_));         // until nothing grows any more
+        engine_->profile().sample_times(1 << 30);  // which takes the next one's times, and no more
         run(1);
     }
 

@@ -18,7 +18,7 @@ void evaluate(const settings& s) {
     gaussians model = read_model(s.ply);
     context.require_no_background_before(model);
     scene scene = context.load();
-    model = into(scene.frame, std::move(model));
+    model = to_internal(scene.normalization, std::move(model));
     if (scene.test.empty()) scene.test = std::move(scene.train);  // without --eval, all views are measured
     scene.train.clear();
     const auto background = context.background(scene.has_alpha);

@@ -22,11 +22,12 @@ void inspect(const settings& s) {
                     : *found.recommended ? "yes"
                                          : "no",
                     found.evidence.c_str(), "", found.choice.c_str(), costs_and_gains.c_str());
-        all.push_back({{"name", name},
-                       {"called_for", found.recommended ? nlohmann::ordered_json(*found.recommended) : nullptr},
-                       {"evidence", found.evidence},
-                       {"choice", found.choice},
-                       {"expected", costs_and_gains}});
+        all.push_back(
+            {{"name", name},
+             {"called_for", found.recommended ? nlohmann::ordered_json(*found.recommended) : nullptr},
+             {"evidence", found.evidence},
+             {"choice", found.choice},
+             {"expected", costs_and_gains}});
     }
     if (!s.output.empty()) write_json(s.output, {{"data", s.scene.data}, {"effects", all}});
 }

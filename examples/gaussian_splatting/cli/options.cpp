@@ -90,7 +90,7 @@ rows output_options(settings& s) {
                               {.names = "-o,--output",
                                .commands = {inspect},
                                .value = text(s.output, "FILE"),
-                               .help = "JSON file for the findings",
+                               .help = "JSON file for the fault_reports",
                                .default_text = "none; nothing is written"},
                               {.names = "--save-iterations",
                                .commands = {train},

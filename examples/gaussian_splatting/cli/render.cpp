@@ -80,7 +80,7 @@ void render(const settings& s) {
         cameras = orbit(model, s.orbit_views, orbit_size(s.scene.resolution));
     } else {
         const scene scene = context.load();
-        model = into(scene.frame, std::move(model));
+        model = to_internal(scene.normalization, std::move(model));
         alpha = scene.has_alpha;
         cameras = cameras_of(scene);
     }

@@ -8,7 +8,7 @@
 
 namespace gs::cli {
 
-nlohmann::ordered_json to_json(const evaluate::test_report& report) {
+nlohmann::ordered_json to_json(const evaluate::held_out_report& report) {
     nlohmann::ordered_json json;
     json["psnr"] = nullptr;
     json["ssim"] = nullptr;
@@ -24,13 +24,13 @@ nlohmann::ordered_json to_json(const evaluate::test_report& report) {
     return json;
 }
 
-std::string fitted_part(const evaluate::test_report& report) {
+std::string fitted_part(const evaluate::held_out_report& report) {
     const auto fitted = report.fitted_psnr();
     return fitted ? ", " + number("%.2f", *fitted) + " dB after fitting exposures" : "";
 }
 
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
-    write_aside(file, [&](std::ostream& out) {
+    atomic_file_write(file, [&](std::ostream& out) {
         out << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
     });
 }

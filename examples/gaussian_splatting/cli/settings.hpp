@@ -13,7 +13,6 @@
 #include "../densify/strategy_settings.hpp"
 #include "../features/resolve.hpp"
 #include "../readers/load_scene.hpp"
-#include "../training/engine.hpp"
 #include "../training/schedule.hpp"
 
 namespace gs::cli {

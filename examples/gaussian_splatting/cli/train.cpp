@@ -17,8 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-train::train_options options_of(const settings& s, const scene& scene,
-                                const command_context& context,
+train::train_options options_of(const settings& s, const scene& scene, const command_context& context,
                                 features::feature_set features) {
     train::train_options o;
     o.schedule = s.schedule;
@@ -113,12 +112,12 @@ train::train_events training_run::events() {
 void training_run::save(int iteration) {
     const fs::path file = model_file(iteration);
     fs::create_directories(file.parent_path());
-    write_model(file, out_of(scene_.frame, engine_->get_model()));
+    write_model(file, to_world(scene_.normalization, engine_->get_model()));
 }
 
 void training_run::test(int iteration) {
     options_.features.before_evaluation(*engine_, scene_);
-    const auto report = evaluate::measure_test_views(*engine_, scene_, options_.background.colour, {});
+    const auto report = evaluate::measure_held_out_views(*engine_, scene_, options_.background.colour, {});
     measures_.tests.push_back({{"iteration", iteration},
                                {"seconds", measures_.last.seconds},
                                {"psnr", report.psnr()},
@@ -131,17 +130,20 @@ void training_run::test(int iteration) {
 void training_run::train() {
     measures_.result = train::train(*engine_, scene_, options_, events());
     measures_.stages = engine_->profile().times();
-    measures_.pairs_per_iteration = static_cast<double>(engine_->profile().pairs()) / options_.schedule.iterations;
+    measures_.pairs_per_iteration =
+        static_cast<double>(engine_->profile().pairs()) / options_.schedule.iterations;
     measures_.gaussians = engine_->count();
 }
 
 void training_run::measure() {
     const stopwatch evaluating;
     // The file's model is measured: its floats are rounded in the coordinates of the scene.
-    engine_->set_model(into(scene_.frame, out_of(scene_.frame, engine_->get_model())));
+    engine_->set_model(
+        to_internal(scene_.normalization, to_world(scene_.normalization, engine_->get_model())));
     options_.features.before_evaluation(*engine_, scene_);
-    measures_.held_out = evaluate::measure_test_views(*engine_, scene_, options_.background.colour, renders_folder(),
-                                                      s_.fit_exposure || options_.features.is_on("exposure"));
+    measures_.held_out =
+        evaluate::measure_held_out_views(*engine_, scene_, options_.background.colour, renders_folder(),
+                                         s_.fit_exposure || options_.features.is_on("exposure"));
     measures_.evaluate_seconds = evaluating.seconds();
     measures_.peak_device_bytes = engine_->profile().peak_device_bytes();
 }
@@ -163,13 +165,13 @@ void training_run::print_summary() const {
         context_.say(std::to_string(measures_.gaussians -
                                     direction->second["gaussians_with_bands"].get<std::size_t>()) +
                      " of " + count + " Gaussians have one color in all directions");
-    const evaluate::test_report& report = measures_.held_out;
+    const evaluate::held_out_report& report = measures_.held_out;
     const std::size_t views = report.views.size();
     if (views == 0) {
         context_.say("training PSNR " + number("%.2f dB", measures_.last.psnr) +
                      " (no held-out views without --eval)");
     } else {
-        const fs::path first = evaluate::picture_names(scene_.test).front();
+        const fs::path first = evaluate::render_names(scene_.test).front();
         context_.say("held-out PSNR " + number("%.2f dB", report.psnr()) + ", SSIM " +
                      number("%.4f", report.ssim()) + fitted_part(report) + " over " + std::to_string(views) +
                      " views");

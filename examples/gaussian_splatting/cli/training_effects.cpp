@@ -9,8 +9,7 @@ namespace gs::cli {
 
 using nlohmann::ordered_json;
 
-features::feature_set resolve_effects(const settings& s, const scene& scene,
-                                      const command_context& context) {
+features::feature_set resolve_effects(const settings& s, const scene& scene, const command_context& context) {
     const std::string background = "--background " + name_of(s.background);
     std::vector<features::selected_feature> fixed;
     if (s.sh_degree) fixed.push_back(features::explicit_sh_degree(*s.sh_degree));

@@ -22,7 +22,7 @@ struct training_measures {
     std::size_t gaussians = 0;
     std::size_t peak_device_bytes = 0;
     std::string device;
-    evaluate::test_report held_out;
+    evaluate::held_out_report held_out;
 };
 
 /// The settings with the values that dependent defaults came to.

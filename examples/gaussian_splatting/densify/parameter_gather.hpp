@@ -47,7 +47,7 @@ struct gather_parameters {
         const bool exists = gaussian < count && origin[gaussian] < before,
                    keeps = exists && (births[gaussian] == birth::kept || births[gaussian] == birth::original);
         const std::size_t source =
-            exists ? place(origin[gaussian], i / block_length % width, width) : std::size_t{0};
+            exists ? aosoa_index(origin[gaussian], i / block_length % width, width) : std::size_t{0};
         to[0][i] = exists ? from[0][source] : 0;
         to[1][i] = keeps ? from[1][source] : 0;
         to[2][i] = keeps ? from[2][source] : 0;

@@ -57,7 +57,7 @@ class engine {
     /// Compares a held-out view with its photo, both clamped to [0, 1]. If `picture` is not null, it receives
     /// the render, not clamped.
     virtual image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
-                            std::vector<float>* picture = nullptr) = 0;
+                                  std::vector<float>* picture = nullptr) = 0;
 
     std::size_t count() const { return count_; }
     /// When the strategy of `begin` acts.

@@ -12,9 +12,9 @@ namespace gs::train {
 
 /// What the training steps since the last report came to.
 struct step_report {
-    loss_report loss;               ///< means over these steps
-    std::uint64_t skipped = 0;      ///< steps that changed nothing because their tile lists did not fit
-    findings faults;                ///< what was not finite; no parameter ever is: see `adam`
+    loss_report loss;           ///< means over these steps
+    std::uint64_t skipped = 0;  ///< steps that changed nothing because their tile lists did not fit
+    fault_reports faults;       ///< what was not finite; no parameter ever is: see `adam`
 };
 
 }  // namespace gs::train

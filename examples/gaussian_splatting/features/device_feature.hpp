@@ -41,9 +41,9 @@ class device_feature : public train::feature_state {
     virtual void set_model(const gaussians&) {}
     virtual void get_model(gaussians&) {}
 
-    /// Equal keys promise equal kernels of equal sizes and equal memory in all hooks below: the key is part of
-    /// that of the step's graph. Every value of the host that decides about them belongs into it, apart from
-    /// the number of Gaussians, the capacity of the lists and the size of the view.
+    /// Equal keys promise equal kernels of equal sizes and equal memory in all hooks below: the key is part
+    /// of that of the step's graph. Every value of the host that decides about them belongs into it, apart
+    /// from the number of Gaussians, the capacity of the lists and the size of the view.
     virtual std::size_t memory_key(const step&) const { return 0; }
 
     /// The largest magnitude of a gradient per pixel that the feature passes to the renderer by itself: see
@@ -56,8 +56,8 @@ class device_feature : public train::feature_state {
     virtual const float* background(const camera&) { return nullptr; }
     /// The render as the photo shows it. Hooks of several features chain in the order of the table.
     virtual const float* show(const step&, const float* render) { return render; }
-    /// From the gradient with respect to what `show` returned to that with respect to its render; learns. Hooks
-    /// chain in the reverse order.
+    /// From the gradient with respect to what `show` returned to that with respect to its render; learns.
+    /// Hooks chain in the reverse order.
     virtual const float* backward(const step&, const float* gradient) { return gradient; }
     /// Learns from the gradient with respect to the render of the Gaussians.
     virtual void learn(const step&, const float* /*render_gradient*/) {}

@@ -34,13 +34,6 @@ struct comparison_maps {
     }
 };
 
-/// Which pixels of a row, from `pixel` on, the mask of the target excludes.
-template <class W>
-WARPAGG_HD mask_t<W> is_masked(const W& w, const std::uint32_t* target, std::ptrdiff_t pixel,
-                               const mask_t<W>& inside) {
-    return w.load_row(target, pixel, inside) == value_t<W, unsigned>(masked_pixel);
-}
-
 /// First pass: writes the sum and the difference of the render and the target in front of its
 /// background. The SSIM is simplest in terms of these. Also writes zeros to the frames of all maps
 /// and to the values after their end. The sum and the difference are zero where the mask excludes a

@@ -33,7 +33,7 @@ WARPAGG_HD warpagg::value_t<W, Real> target_value(const warpagg::value_t<W, unsi
 template <class W>
 WARPAGG_HD warpagg::mask_t<W> is_masked(const W& w, const std::uint32_t* target, std::ptrdiff_t pixel,
                                         const warpagg::mask_t<W>& inside) {
-    return w.load_row(target, pixel, inside) == warpagg::value_t<W, unsigned>(left_out);
+    return w.load_row(target, pixel, inside) == warpagg::value_t<W, unsigned>(masked_pixel);
 }
 
 }  // namespace gs::train

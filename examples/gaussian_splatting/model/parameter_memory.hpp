@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "../device/device.hpp"
-#include "gaussians.hpp"
 #include "aosoa.hpp"
+#include "gaussians.hpp"
 #include "parameters.hpp"
 
 namespace gs {

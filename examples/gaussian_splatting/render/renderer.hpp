@@ -7,15 +7,15 @@
 #include <string>
 #include <type_traits>
 
-#include "../device/device.hpp"
 #include "../core/error.hpp"
-#include "tiles/bin.hpp"
+#include "../device/device.hpp"
 #include "blend/blend_backward.hpp"
 #include "blend/blend_forward.hpp"
 #include "blend/depth_splats.hpp"
 #include "gradients/gradient_sums.hpp"
 #include "project/project.hpp"
 #include "project/project_backward.hpp"
+#include "tiles/bin.hpp"
 
 namespace gs::raster {
 

@@ -287,7 +287,7 @@ class device_engine final : public engine, device::profiler {
                          {},
                          static_cast<float>(by_second),
                          renderer_.room(),
-                         monitor_.watch(plan.iteration)};
+                         monitor_.check_of(plan.iteration)};
         for (std::size_t p = 0; p < parameter_count; ++p)
             step.rates[p] = static_cast<float>(plan.rates[p] * by_first);
         return step;

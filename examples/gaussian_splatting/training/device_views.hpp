@@ -13,7 +13,7 @@
 #include "../core/parallel.hpp"
 #include "../device/device.hpp"
 #include "../metrics/target_image.hpp"
-#include "../readers/load_views.hpp"
+#include "../scene/downsample.hpp"
 
 namespace gs::train {
 
@@ -97,7 +97,7 @@ inline std::vector<std::vector<view>> downsampled_levels(const std::vector<view>
     levels[0] = train;
     for_each_in_parallel((levels.size() - 1) * train.size(), [&](std::size_t i) {
         const std::size_t level = i / train.size(), which = i % train.size();
-        levels[1 + level][which] = shrunk(train[which], 2 << level);
+        levels[1 + level][which] = downsampled(train[which], 2 << level);
     });
     return levels;
 }

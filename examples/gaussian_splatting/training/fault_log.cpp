@@ -6,18 +6,18 @@
 
 namespace gs::train {
 
-void fault_log::check(const findings& found, const scene& scene, int iteration,
+void fault_log::check(const fault_reports& found, const scene& scene, int iteration,
                       const std::function<void(const std::string&)>& warn) {
-    const auto& loss = found[static_cast<std::size_t>(fault::loss)];
-    const auto& value = found[static_cast<std::size_t>(fault::parameter)];
-    const auto& gradient = found[static_cast<std::size_t>(fault::gradient)];
-    const auto& sum = found[static_cast<std::size_t>(fault::sum)];
-    const auto where = [&](const finding& f) {
+    const auto& loss = found[static_cast<std::size_t>(fault_kind::loss)];
+    const auto& value = found[static_cast<std::size_t>(fault_kind::parameter)];
+    const auto& gradient = found[static_cast<std::size_t>(fault_kind::gradient)];
+    const auto& sum = found[static_cast<std::size_t>(fault_kind::sum)];
+    const auto where = [&](const fault_report& f) {
         const std::size_t back = static_cast<std::size_t>(iteration - f.iteration) + 1;
         return "iteration " + std::to_string(f.iteration) + ", view " +
                scene.train[views_[views_.size() - back]].name;
     };
-    const auto parameter = [](const finding& f) {
+    const auto parameter = [](const fault_report& f) {
         return std::string(parameter_names[static_cast<std::size_t>(f.parameter)]) + " of Gaussian " +
                std::to_string(f.gaussian);
     };

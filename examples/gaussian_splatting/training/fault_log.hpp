@@ -19,10 +19,10 @@ class fault_log {
     /// A step trained on this view.
     void steps(std::size_t view) { views_.push_back(view); }
 
-    /// Looks at the faults of the steps since the last call, the last of which was `iteration`. Warns about the
-    /// first gradient and the first sum that was left out. Throws `error` if the loss or a parameter is not
-    /// finite.
-    void check(const findings& found, const scene& scene, int iteration,
+    /// Looks at the faults of the steps since the last call, the last of which was `iteration`. Warns about
+    /// the first gradient and the first sum that was left out. Throws `error` if the loss or a parameter is
+    /// not finite.
+    void check(const fault_reports& found, const scene& scene, int iteration,
                const std::function<void(const std::string&)>& warn);
 
     std::uint64_t left_out_gradients() const { return left_out_gradients_; }

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "../scene/scene.hpp"
 #include "../model/gaussians.hpp"
+#include "../scene/scene.hpp"
 
 namespace gs {
 

@@ -55,8 +55,9 @@ class list_sizer {
         for (std::size_t v = 0; v < lengths.size(); ++v) {
             longest = std::max(longest, lengths[v]);
             if (lengths[v] > 0)
-                expected = std::max(expected, static_cast<double>(lengths[v]) * static_cast<double>(gaussians) /
-                                                  static_cast<double>(counts_[v]));
+                expected =
+                    std::max(expected, static_cast<double>(lengths[v]) * static_cast<double>(gaussians) /
+                                           static_cast<double>(counts_[v]));
         }
         // With a margin on both sides, so that the memory seldom changes.
         if (static_cast<double>(renderer.reserved_instances()) < 1.5 * expected + 1024)

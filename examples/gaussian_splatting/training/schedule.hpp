@@ -31,7 +31,6 @@ struct schedule {
     /// Colours that depend on direction learn in every so many iterations.
     int sh_update_interval = 1;
 
-
     int sh_degree_at(int iteration) const;
     bool updates_sh(int iteration) const { return iteration % sh_update_interval == 0; }
     /// The iteration after which it shows which bands are needed: half-way, but each has had its interval.

@@ -21,15 +21,15 @@ struct close_step {
     const double* sums;     ///< see `loss::sums`
     std::size_t sum_count;
     std::uint32_t* unfit;  ///< see `gradient_sums::fault`
-    train::watch watch;
+    train::finite_check check;
 
     WARPAGG_HD void operator()(std::size_t) const {
         if (room.exceeded()) ++*skipped;
         *length = *room.needed;
         double sum = 0;
         for (std::size_t k = 0; k < sum_count; ++k) sum += sums[k];
-        if (!raster::is_finite(sum)) watch.note(fault::loss, 0, 0);
-        if (*unfit != 0) watch.note(fault::sum, 0, 0);
+        if (!raster::is_finite(sum)) check.note(fault_kind::loss, 0, 0);
+        if (*unfit != 0) check.note(fault_kind::sum, 0, 0);
         *unfit = 0;
     }
 };
@@ -44,12 +44,14 @@ class step_monitor {
         reset();
     }
 
-    train::watch watch(int iteration) { return {faults_.data(), static_cast<std::uint32_t>(iteration)}; }
+    train::finite_check check_of(int iteration) {
+        return {faults_.data(), static_cast<std::uint32_t>(iteration)};
+    }
     template <class Renderer>
     void close(const Renderer& renderer, std::span<const double> loss_sums, std::uint64_t* length,
                int iteration) {
         device_.for_each_index(1, close_step{renderer.room(), skipped_.data(), length, loss_sums.data(),
-                                             loss_sums.size(), renderer.fault(), watch(iteration)});
+                                             loss_sums.size(), renderer.fault(), check_of(iteration)});
     }
 
     /// Steps that were skipped since the last call of `take_faults`. Waits for the device.
@@ -59,24 +61,24 @@ class step_monitor {
         return n;
     }
     /// Faults since the last call; resets all. Waits for the device.
-    findings take_faults() {
-        watch::memory found;
+    fault_reports take_faults() {
+        finite_check::memory found;
         device_.download(&found, faults_.data(), 1);
         reset();
-        return watch::decode(found);
+        return finite_check::decode(found);
     }
 
   private:
     void reset() {
         device_.zero(skipped_.data(), 1);
-        const watch::memory clean = watch::clean();
+        const finite_check::memory clean = finite_check::clean();
         device_.upload(faults_.data(), &clean, 1);
         device_.wait();
     }
 
     Device& device_;
     typename Device::template buffer<std::uint64_t> skipped_;
-    typename Device::template buffer<watch::memory> faults_;
+    typename Device::template buffer<finite_check::memory> faults_;
 };
 
 }  // namespace gs::train

@@ -67,7 +67,8 @@ void training::add(action action) { actions_.push_back(std::move(action)); }
 void training::add_step() {
     const auto order = std::make_shared<view_order>(scene_.train.size(), options_.seed);
     const auto colors = std::make_shared<std::mt19937_64>(options_.seed + 1);
-    add({phase::step, "step", [](int) { return true; }, [=, this](int iteration) {
+    add({phase::step, "step", [](int) { return true; },
+         [=, this](int iteration) {
              step_plan plan;
              plan.iteration = iteration;
              plan.view = order->next();

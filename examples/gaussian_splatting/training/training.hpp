@@ -118,7 +118,7 @@ class training {
     int level_ = 0;              ///< how many times photos are halved
     bool restructured_ = false;  ///< in this iteration
     fault_log faults_;
-    double outside_ = 0;         ///< seconds in callbacks
+    double outside_ = 0;  ///< seconds in callbacks
     std::chrono::steady_clock::time_point start_;
 };
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "../../../examples/gaussian_splatting/features/decide.hpp"
 #include "../../../examples/gaussian_splatting/core/error.hpp"
+#include "../../../examples/gaussian_splatting/features/decide.hpp"
 #include "../../../examples/gaussian_splatting/model/spherical_harmonics.hpp"
 #include "../../../examples/gaussian_splatting/readers/load_scene.hpp"
 #include "../../../examples/gaussian_splatting/readers/synthetic/synthetic_parameters.hpp"

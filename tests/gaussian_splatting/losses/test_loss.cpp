@@ -102,7 +102,7 @@ outcome steps_with(gs::train::loss_factory<cpu> make) {
     auto plan = plan_for(0);
     plan.gradient = gs::accumulator::fixed;
     for (plan.iteration = 1; plan.iteration <= 3; ++plan.iteration) engine.step(plan);
-    return {engine.get_model(), engine.take_report().faults[static_cast<std::size_t>(fault::sum)].count,
+    return {engine.get_model(), engine.take_report().faults[static_cast<std::size_t>(fault_kind::sum)].count,
             engine.take_report().loss.loss};
 }
 

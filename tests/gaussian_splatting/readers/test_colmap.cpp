@@ -14,11 +14,11 @@
 #include <utility>
 
 #include "../../support/bytes.hpp"
-#include "readers/colmap/colmap.hpp"
+#include "../../support/temporary_folder.hpp"
 #include "image/mask.hpp"
+#include "readers/colmap/colmap.hpp"
 #include "readers/load_scene.hpp"
 #include "scene/downsample.hpp"
-#include "../../support/temporary_folder.hpp"
 
 namespace {
 
@@ -901,7 +901,8 @@ TEST_CASE("folders that are no scene") {
     CHECK(says(error_of_loading(folder / "none"), {"none", "does not exist"}));
     write_file(folder / "file", "x");
     CHECK(says(error_of_loading(folder / "file"), {"file", "is not a scene"}));
-    CHECK(says(error_of_loading(folder.path()), {"is not a scene", "transforms_train.json", "sparse/0", "synthetic:"}));
+    CHECK(says(error_of_loading(folder.path()),
+               {"is not a scene", "transforms_train.json", "sparse/0", "synthetic:"}));
     std::filesystem::create_directories(folder / "sparse/0");
     CHECK(says(error_of_loading(folder.path()), {"sparse/0", "no cameras", "cameras.bin", "cameras.txt"}));
     write_file(folder / "sparse/0/cameras.bin", cameras_bin(plain_model()));

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "readers/load_scene.hpp"
 #include "../../support/temporary_folder.hpp"
+#include "readers/load_scene.hpp"
 
 namespace {
 

@@ -18,7 +18,9 @@ using gs::train::fault_report;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-const fault_report& of(const gs::train::fault_reports& all, fault_kind kind) { return all[static_cast<std::size_t>(kind)]; }
+const fault_report& of(const gs::train::fault_reports& all, fault_kind kind) {
+    return all[static_cast<std::size_t>(kind)];
+}
 
 bool is_finite(const gs::gaussians& model) {
     for (const auto* values : {&model.mean, &model.log_scale, &model.quaternion, &model.opacity,
@@ -80,15 +82,15 @@ TEST_CASE("a gradient that is not finite is left out, and found where it appears
             e->step(plan);
         }
         const auto found = e->take_report().faults;
-        const finding& f = of(found, fault::gradient);
+        const finding& f = of(found, fault_kind::gradient);
         CHECK(f.count >= 3);   // an element or more, each time
         CHECK(f.count <= 12);  // of one Gaussian's four
         CHECK(f.iteration == 41);
         CHECK(f.parameter == gs::parameter::quaternion);
         CHECK(f.gaussian == 17);
-        CHECK(of(found, fault::loss).count == 0);
-        CHECK(of(found, fault::parameter).count == 0);
-        CHECK(of(e->take_report().faults, fault::gradient).count == 0);  // taken
+        CHECK(of(found, fault_kind::loss).count == 0);
+        CHECK(of(found, fault_kind::parameter).count == 0);
+        CHECK(of(e->take_report().faults, fault_kind::gradient).count == 0);  // taken
 
         const gs::gaussians after = e->get_model();
         CHECK(is_finite(after));
@@ -108,8 +110,8 @@ TEST_CASE("a loss that is not finite is found where it appears, and moves nothin
         plan.iteration = 7;
         e->step(plan);
         const auto found = e->take_report().faults;
-        CHECK(of(found, fault::loss).count == 2);
-        CHECK(of(found, fault::loss).iteration == 6);
+        CHECK(of(found, fault_kind::loss).count == 2);
+        CHECK(of(found, fault_kind::loss).iteration == 6);
         CHECK(is_finite(e->get_model()));
     }
 }
@@ -129,9 +131,9 @@ TEST_CASE("a sum that fixed point cannot hold is left out, and found where it ap
             plan.iteration = 6;
             e->step(plan);
             const auto found = e->take_report().faults;
-            CHECK(of(found, fault::sum).count == (is_bright ? 2 : 0));
-            if (is_bright) CHECK(of(found, fault::sum).iteration == 5);
-            CHECK(of(found, fault::loss).count == 0);
+            CHECK(of(found, fault_kind::sum).count == (is_bright ? 2 : 0));
+            if (is_bright) CHECK(of(found, fault_kind::sum).iteration == 5);
+            CHECK(of(found, fault_kind::loss).count == 0);
             CHECK(is_finite(e->get_model()));
         }
 }
@@ -147,7 +149,7 @@ TEST_CASE("a rate that would drive a parameter out of range moves nothing") {
         plan.rates[static_cast<std::size_t>(gs::parameter::opacity)] = infinity;
         e->step(plan);
         const auto found = e->take_report().faults;
-        const finding& f = of(found, fault::parameter);
+        const finding& f = of(found, fault_kind::parameter);
         CHECK(f.count > 0);
         CHECK(f.iteration == 9);
         CHECK(f.parameter == gs::parameter::opacity);

@@ -73,7 +73,7 @@ class recorder final : public gs::train::engine {
     void reserve() override { sizes_reserved.push_back(downscales_); }
     gs::train::loss_report take_report().loss override { return {}; }
     std::uint64_t take_report().skipped override { return 0; }
-    gs::train::findings take_report().faults override { return {}; }
+    gs::train::fault_reports take_report().faults override { return {}; }
     std::vector<float> render(const gs::camera&, const std::array<float, 3>&, int) override { return {}; }
     std::vector<int> degrees;
     void set_sh_degree(int degree) override { degrees.push_back(degree); }

@@ -12,9 +12,9 @@
 
 namespace gs::device {
 
-/// Checks the promise of a graph key: iterations with equal keys launch the same kernels over the same ranges,
-/// and only the first of them allocates memory. A GPU that records and replays iterations relies on it; here a
-/// broken promise is an error. Cost: a few comparisons per launch.
+/// Checks the promise of a graph key: iterations with equal keys launch the same kernels over the same
+/// ranges, and only the first of them allocates memory. A GPU that records and replays iterations relies on
+/// it; here a broken promise is an error. Cost: a few comparisons per launch.
 class key_check {
   public:
     /// Every type of kernel has its own address.

@@ -250,8 +250,8 @@ class cuda {
     owned_stream stream_;
     cuda_times times_;
     cuda_graph graph_;
-    std::set<graph_key> keys_;  ///< of the iterations so far
-    bool kernels_await_ = false;        ///< the GPU launches a kernel before its predecessor ends
+    std::set<graph_key> keys_;    ///< of the iterations so far
+    bool kernels_await_ = false;  ///< the GPU launches a kernel before its predecessor ends
     std::size_t resident_warps_ = 0;
     buffer<std::uint32_t> other_keys_, other_values_, sort_memory_;
     buffer<char> scratch_;

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "kernel.hpp"
 #include "../distribute.hpp"
+#include "kernel.hpp"
 
 /// The kernels of `cuda::distribute`. The candidates of all items, one item's after the other's, are cut into
 /// `slices` of equal length, whatever the items' sizes. Each slice has a row of a table, with an entry for

@@ -6,8 +6,8 @@
 
 #include <array>
 
-#include "memory.hpp"
 #include "../stages.hpp"
+#include "memory.hpp"
 
 namespace gs::device {
 

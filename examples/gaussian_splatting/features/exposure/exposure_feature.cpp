@@ -89,7 +89,7 @@ void exposure_feature::write_results(const selected_feature& selected, train::en
     const auto of_training = exposures_from(engine.feature(name()).values());
     const nlohmann::ordered_json all{{"train", to_json(scene.train, of_training)},
                                      {"test", to_json(scene.test, held_out_exposures(scene, of_training))}};
-    write_aside(file, [&](std::ostream& out) { out << all.dump(2) << '\n'; });
+    atomic_file_write(file, [&](std::ostream& out) { out << all.dump(2) << '\n'; });
 }
 
 }  // namespace gs::features

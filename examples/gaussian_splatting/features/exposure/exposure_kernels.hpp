@@ -64,7 +64,7 @@ struct expose_backward {
     const float* by_exposed;
     std::size_t pixels;
     float* by_picture;
-    train::picture_sums sums;  ///< of `warps(pixels)`
+    train::ordered_sums sums;  ///< of `warps(pixels)`
 
     template <class W>
     static std::size_t warps(std::size_t pixels) {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "../../device/device.hpp"
-#include "exposure_kernels.hpp"
 #include "../../optimize/adam_parameters.hpp"
+#include "exposure_kernels.hpp"
 
 namespace gs::features {
 
@@ -40,7 +40,7 @@ class exposures {
     const float* learn(std::size_t view, const float* picture, const float* by_exposed, std::size_t pixels,
                        float rate, const raster::list_room& room) {
         by_picture_.resize(3 * pixels);
-        const train::picture_sums sums = numbers_.sums(expose_backward::warps<warp>(pixels));
+        const train::ordered_sums sums = numbers_.sums(expose_backward::warps<warp>(pixels));
         device_.for_each_warp(sums.warps, expose_backward{picture, numbers_.row(view), by_exposed, pixels,
                                                           by_picture_.data(), sums});
         numbers_.learn(view, sums, rate, room);
@@ -48,7 +48,9 @@ class exposures {
     }
 
     /// See `normalize_exposures`.
-    void normalize() { device_.for_each_index(exposure_width, normalize_exposures{numbers_.row(0), count()}); }
+    void normalize() {
+        device_.for_each_index(exposure_width, normalize_exposures{numbers_.row(0), count()});
+    }
 
     std::vector<exposure> get() const {
         std::vector<exposure> all(count());
@@ -60,7 +62,7 @@ class exposures {
 
   private:
     Device& device_;
-    train::learned_numbers<Device, exposure_width> numbers_;
+    train::adam_parameters<Device, exposure_width> numbers_;
     buffer<float> exposed_, by_picture_;
 };
 

@@ -27,8 +27,8 @@ double square_distance(const exposure& a, const exposure& b) {
 bool neighbors_are_alike(const std::vector<exposure>& in_order) {
     double by_neighbors = 0, by_identity = 0;
     for (std::size_t i = 1; i + 1 < in_order.size(); ++i) {
-        by_neighbours += square_distance(in_order[i], mean(in_order[i - 1], in_order[i + 1]));
-        by_nothing += square_distance(in_order[i], identity_exposure);
+        by_neighbors += square_distance(in_order[i], mean(in_order[i - 1], in_order[i + 1]));
+        by_identity += square_distance(in_order[i], identity_exposure);
     }
     return by_neighbors < by_identity;
 }
@@ -41,7 +41,7 @@ std::vector<exposure> held_out_exposures(const scene& scene, const std::vector<e
     std::vector<exposure> in_order;
     for (const auto& [name, own] : by_name) in_order.push_back(own);
     std::vector<exposure> found(scene.test.size(), identity_exposure);
-    if (!neighbours_are_alike(in_order)) return found;
+    if (!neighbors_are_alike(in_order)) return found;
     std::ranges::transform(scene.test, found.begin(), [&](const view& v) {
         const auto after = by_name.lower_bound(v.name);
         if (after == by_name.begin()) return after->second;

@@ -20,7 +20,7 @@ finding masks_feature::analyze(const scene_statistics& statistics) const {
         const std::size_t pixels = v.pixels.rgba.size() / 4;
         all_pixels += pixels;
         for (std::size_t i = 0; v.pixels.has_mask && i < pixels; ++i)
-            masked_pixels += v.pixels.leaves_out(i) ? 1 : 0;
+            masked_pixels += v.pixels.is_masked(i) ? 1 : 0;
     }
     if (photos == 0) return {false, no_masks, "off"};
     return {true,

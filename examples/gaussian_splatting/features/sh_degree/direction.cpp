@@ -93,7 +93,8 @@ void add_residuals(const std::vector<observation>& seen, double ridge,
 std::array<double, 4> unexplained_with(const observed_points& points, double ridge) {
     std::vector<std::vector<std::array<double, 4>>> residuals(points.size());
     for_each_in_parallel(points.size(), [&](std::size_t p) {
-        if (points[p].size() >= scene_statistics::least_photos_of_point) add_residuals(points[p], ridge, residuals[p]);
+        if (points[p].size() >= scene_statistics::least_photos_of_point)
+            add_residuals(points[p], ridge, residuals[p]);
     });
     std::vector<double> sizes;
     for (const auto& of_point : residuals)

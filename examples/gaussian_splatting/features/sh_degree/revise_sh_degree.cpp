@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "../../core/parallel.hpp"
-#include "../../image/image.hpp"
 #include "../../engine/engine.hpp"
+#include "../../image/image.hpp"
 #include "../exposure/exposure_kernels.hpp"
 #include "direction.hpp"
 

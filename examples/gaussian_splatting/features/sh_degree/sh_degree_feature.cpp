@@ -38,7 +38,10 @@ finding sh_degree_feature::analyze(const scene_statistics& statistics) const {
     const std::string choice = "--sh-degree " + std::to_string(degree);
     std::vector<float> values{static_cast<float>(degree), 1};
     if (!found.is_known())
-        return {{}, too_few_points(found.points, "about as large in smooth parts"), choice, std::move(values),
+        return {{},
+                too_few_points(found.points, "about as large in smooth parts"),
+                choice,
+                std::move(values),
                 degree > 0};
     const auto up_to = static_cast<std::size_t>(degree == 0 ? 3 : degree);
     return {degree > 0,
@@ -58,12 +61,13 @@ void sh_degree_feature::schedule(const selected_feature& selected, train::traini
     training.result().feature_reports["direction"]["sh_degree"] = degree;
     if (selected.values.size() < 2 || selected.values[1] == 0) return;
     training.result().feature_reports["direction"]["sh_degree_at_first"] = degree;
-    schedule_revision(training, [&training](int so_far) { return revise(training, so_far); },
-                      prune_change_limit);
+    schedule_revision(
+        training, [&training](int so_far) { return revise(training, so_far); }, prune_change_limit);
 }
 
 selected_feature explicit_sh_degree(int degree) {
-    return {"direction", degree > 0, "--sh-degree " + std::to_string(degree), {static_cast<float>(degree), 0}};
+    return {
+        "direction", degree > 0, "--sh-degree " + std::to_string(degree), {static_cast<float>(degree), 0}};
 }
 
 int first_sh_degree(const selected_feature& selected) {

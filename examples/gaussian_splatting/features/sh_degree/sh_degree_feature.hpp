@@ -9,8 +9,8 @@
 
 namespace gs::features {
 
-/// View-dependent color by spherical harmonics. Values: the degree to begin with, and 1 if training revises it
-/// half-way.
+/// View-dependent color by spherical harmonics. Values: the degree to begin with, and 1 if training revises
+/// it half-way.
 class sh_degree_feature final : public feature {
   public:
     std::string_view name() const override { return "direction"; }

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "../../device/device.hpp"
-#include "../../render/geometry/effect_set.hpp"
 #include "../../optimize/adam_parameters.hpp"
+#include "../../render/geometry/effect_set.hpp"
 #include "sky_kernels.hpp"
 
 namespace gs::features {
@@ -40,7 +40,7 @@ class sky {
     /// From the gradient by a picture before what `draw` has drawn last.
     void learn(const camera& camera, const float* transmittance, const float* by_picture, float rate,
                const raster::list_room& room) {
-        const train::picture_sums sums = numbers_.sums(patches(camera));
+        const train::ordered_sums sums = numbers_.sums(patches(camera));
         raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
             device_.for_each_warp(sums.warps, sky_backward<warp, Fisheye>{raster::for_device<real>(camera),
                                                                           transmittance, by_picture, sums});
@@ -54,7 +54,7 @@ class sky {
     }
 
     Device& device_;
-    train::learned_numbers<Device, sky_width> numbers_;
+    train::adam_parameters<Device, sky_width> numbers_;
     typename Device::template buffer<float> planes_;
 };
 

@@ -9,9 +9,9 @@
 #include <glm/matrix.hpp>
 #include <optional>
 
+#include "../../core/parallel.hpp"
 #include "../../model/gaussians.hpp"
 #include "../../model/spherical_harmonics.hpp"
-#include "../../core/parallel.hpp"
 
 namespace gs::features {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "../../model/gaussians.hpp"
 #include "../../model/spherical_harmonics.hpp"
-#include "../../render/geometry/fisheye.hpp"
 #include "../../optimize/ordered_sums.hpp"
+#include "../../render/geometry/fisheye.hpp"
 
 namespace gs::features {
 
@@ -89,8 +89,8 @@ struct sky_backward {
 
     raster::device_camera<real> camera;
     const float* transmittance;
-    const float* by_picture;  ///< three planes
-    train::picture_sums sums;        ///< of `sky_patch::count` warps
+    const float* by_picture;   ///< three planes
+    train::ordered_sums sums;  ///< of `sky_patch::count` warps
 
     WARPAGG_EXEC_CHECK_DISABLE
     WARPAGG_HD void operator()(const W& w, unsigned index) const {

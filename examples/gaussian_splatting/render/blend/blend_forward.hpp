@@ -4,9 +4,9 @@
 
 #include <warpagg/atomic.hpp>
 
+#include "../tiles/tile_order.hpp"
 #include "background.hpp"
 #include "list_reader.hpp"
-#include "../tiles/tile_order.hpp"
 
 namespace gs::raster {
 

@@ -5,14 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "../../model/spherical_harmonics.hpp"
-#include "antialiasing.hpp"
 #include "../../core/bits.hpp"
+#include "../../model/spherical_harmonics.hpp"
 #include "../geometry/effect_set.hpp"
+#include "../tiles/tile_reach.hpp"
+#include "antialiasing.hpp"
 #include "gaussian_row.hpp"
 #include "geometry.hpp"
 #include "splat.hpp"
-#include "../tiles/tile_reach.hpp"
 
 namespace gs::raster {
 

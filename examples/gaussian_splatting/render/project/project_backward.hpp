@@ -6,11 +6,11 @@
 #include <cstdint>
 
 #include "../../model/spherical_harmonics.hpp"
-#include "antialiasing.hpp"
 #include "../geometry/effect_set.hpp"
+#include "../geometry/list_capacity.hpp"
+#include "antialiasing.hpp"
 #include "gaussian_row.hpp"
 #include "geometry.hpp"
-#include "../geometry/list_capacity.hpp"
 #include "splat.hpp"
 
 namespace gs::raster {
