@@ -90,7 +90,7 @@ rows output_options(settings& s) {
                               {.names = "-o,--output",
                                .commands = {inspect},
                                .value = text(s.output, "FILE"),
-                               .help = "JSON file for the fault_reports",
+                               .help = "JSON file for the findings",
                                .default_text = "none; nothing is written"},
                               {.names = "--save-iterations",
                                .commands = {train},
@@ -156,12 +156,14 @@ rows effect_options(settings& s) {
     std::string names;
     for (const auto& f : features::all_features())
         if (f->is_selectable()) names += (names.empty() ? "" : ", ") + std::string(f->name());
-    return {
-        {.names = "--effects",
-         .group = group,
-         .commands = {train},
-         .value = effect_list(s.effects),
-         .help = "Effects to simulate: auto (those that the scene needs, see inspect), all, none, or a list "
+    return grouped(
+        "Effects and colors",
+        {
+            {.names = "--effects",
+             .commands = {train},
+             .value = effect_list(s.effects),
+             .help =
+                 "Effects to simulate: auto (those that the scene needs, see inspect), all, none, or a list "
                  "of their names (" +
                  names + "); auto,+exposure,-sky adds one effect and leaves out another"},
             {.names = "--sh-degree",
@@ -205,70 +207,67 @@ rows learning_rate_options(settings& s) {
 }
 
 rows densification_options(settings& s) {
-    const std::string group = "Densification";
     train::adaptive_config& plan = s.densification.adaptive;
-    return {
-        {.names = "--densify-from-iter",
-         .group = group,
-         .commands = {train},
-         .value = whole(plan.densify_from_iter, 0, most_iterations),
-         .help = "Last iteration before densification begins",
-         .unit = "iterations"},
-        {.names = "--densify-until-iter",
-         .group = group,
-         .commands = {train},
-         .value = whole(plan.densify_until_iter, 0, most_iterations),
-         .help = "Iteration at which densification has ended",
-         .unit = "iterations",
-         .default_text = "half of the iterations, at most 15000"},
-        {.names = "--densification-interval",
-         .group = group,
-         .commands = {train},
-         .value = whole(plan.densification_interval, 1, most_iterations),
-         .help = "Iterations between two densification steps",
-         .unit = "iterations"},
-        {.names = "--densify-grad-threshold",
-         .group = group,
-         .commands = {train},
-         .value = positive(plan.densify_grad_threshold),
-         .help = "Mean gradient of a Gaussian's projected center above which the Gaussian grows, in units "
-                 "of half the image size",
-         .default_text = "8e-5 if densification ends at iteration 15000, and higher if it ends earlier"},
-        {.names = "--budget",
-         .group = group,
-         .commands = {train},
-         .value = whole(s.budget, 1, 100000000),
-         .help = "Number of Gaussians that densification grows to in even steps, whatever the gradients",
-         .unit = "Gaussians",
-         .default_text = "none; gradients decide",
-         .excludes = {"--densify-grad-threshold"}},
-        {.names = "--max-cap",
-         .group = group,
-         .commands = {train},
-         .value = whole(s.max_cap, 1, 100000000),
-         .help = "Largest number of Gaussians",
-         .unit = "Gaussians",
-         .default_text = "one for every 32 pixels of the training photos, at least 10000"},
-        {.names = "--opacity-reset-interval",
-         .group = group,
-         .commands = {train},
-         .value = whole(plan.opacity_reset_interval, 1, most_iterations),
-         .help = "Iterations between two opacity resets; none follows that densification could not "
-                 "recover from",
-         .unit = "iterations"},
-        {.names = "--revised-opacity,!--no-revised-opacity",
-         .group = group,
-         .commands = {train},
-         .value = flag(plan.revised_opacity),
-         .help = "Lowers the opacities of a Gaussian and its new copy, so that together they are as "
-                 "opaque as the Gaussian was"},
-        {.names = "--prune-share",
-         .group = group,
-         .commands = {train},
-         .value = share(plan.prune_share),
-         .help = "Share of the Gaussians that is removed after densification, those with the smallest "
-                 "accumulated positional gradient first",
-         .default_text = "0.2 if densification added Gaussians, 0 with --budget"}};
+    return grouped(
+        "Densification",
+        {{.names = "--densify-from-iter",
+          .commands = {train},
+          .value = whole(plan.densify_from_iter, 0, most_iterations),
+          .help = "Last iteration before densification begins",
+          .unit = "iterations"},
+         {.names = "--densify-until-iter",
+          .commands = {train},
+          .value = whole(plan.densify_until_iter, 0, most_iterations),
+          .help = "Iteration that ends densification",
+          .unit = "iterations",
+          .default_text = "half of the iterations, at most 15000"},
+         {.names = "--densification-interval",
+          .commands = {train},
+          .value = whole(plan.densification_interval, 1, most_iterations),
+          .help = "Iterations between two densification steps",
+          .unit = "iterations"},
+         {.names = "--densify-grad-threshold",
+          .commands = {train},
+          .value = positive(plan.densify_grad_threshold),
+          .help = "Mean gradient of a Gaussian's projected center above which the Gaussian grows, in units "
+                  "of half the image size",
+          .default_text = "8e-5 if densification ends at iteration 15000, and higher if it ends earlier"},
+         {.names = "--opacity-reset-interval",
+          .commands = {train},
+          .value = whole(plan.opacity_reset_interval, 1, most_iterations),
+          .help = "Iterations between two opacity resets; the last interval of densification has none; on a "
+                  "white background densification begins with one",
+          .unit = "iterations"}});
+}
+
+rows growth_options(settings& s) {
+    return grouped(
+        "Number and opacity of Gaussians",
+        {{.names = "--budget",
+          .commands = {train},
+          .value = whole(s.budget, 1, 100000000),
+          .help = "Number of Gaussians that densification grows to in even steps, whatever the gradients "
+                  "(Mallick et al. 2024)",
+          .unit = "Gaussians",
+          .default_text = "none; gradients decide",
+          .excludes = {"--densify-grad-threshold"}},
+         {.names = "--max-cap",
+          .commands = {train},
+          .value = whole(s.max_cap, 1, 100000000),
+          .help = "Largest number of Gaussians",
+          .unit = "Gaussians",
+          .default_text = "one for every 32 pixels of the training photos, at least 10000"},
+         {.names = "--revised-opacity,!--no-revised-opacity",
+          .commands = {train},
+          .value = flag(s.densification.adaptive.revised_opacity),
+          .help = "Lowers the opacities of a Gaussian and its new copy, so that together they are as "
+                  "opaque as the Gaussian was (Rota Bulò et al. 2024)"},
+         {.names = "--prune-share",
+          .commands = {train},
+          .value = share(s.densification.adaptive.prune_share),
+          .help = "Share of the Gaussians that is removed after densification, those with the smallest "
+                  "accumulated positional gradient first",
+          .default_text = "0.2 if densification added Gaussians, 0 with --budget"}});
 }
 
 rows evaluation_options(settings& s) {
