@@ -8,6 +8,7 @@
 #include <limits>
 #include <warpagg/core/compiler.hpp>
 
+#include "../device/device.hpp"
 #include "../model/aosoa.hpp"
 #include "../model/parameters.hpp"
 #include "../optimize/trained_parameters.hpp"
@@ -65,7 +66,7 @@ struct gather_last_steps {
 
 /// Moves all parameters of the Gaussians, with the state of Adam, to a new generation: a reordering, with
 /// Gaussians removed or repeated. Owns the memory that this takes.
-template <class Device>
+template <device::device Device>
 class parameter_gather {
     template <class T>
     using buffer = typename Device::template buffer<T>;

@@ -5,17 +5,16 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "../metrics/target_image.hpp"
 #include "../render/project/splat.hpp"
-#include "../scene/camera.hpp"
 
 namespace gs::train {
 
 /// A training view that `score_views` has drawn. All pointers are to memory of the device and are valid
 /// until the next `draw`.
 struct drawn_view {
-    const camera& shot;
+    target_image target;                 ///< the training image, on black
     const float* render;                 ///< three planes, not clamped, on black
-    const std::uint8_t* target;          ///< the training image, RGBA
     const raster::splat<float>* splats;  ///< one for each Gaussian
     const std::uint32_t* tiles;  ///< for each Gaussian, the tiles that it may touch; 0: it is not drawn
 };

@@ -19,7 +19,7 @@
 namespace gs::train {
 
 /// The Gaussians in training. A strategy may change their parameters in place.
-template <class Device>
+template <device::device Device>
 struct trained_gaussians {
     Device& device;
     trained_parameters<Device>& parameters;
@@ -30,7 +30,7 @@ struct trained_gaussians {
 };
 
 /// What `strategy::after_step` works on.
-template <class Device>
+template <device::device Device>
 struct step_context : trained_gaussians<Device> {
     std::array<float, parameter_count> rates;  ///< learning rates of this step
     /// A step is void if its tile lists did not fit. Kernels must change nothing if `room.exceeded()`.
@@ -38,7 +38,7 @@ struct step_context : trained_gaussians<Device> {
 };
 
 /// What `strategy::run` works on.
-template <class Device>
+template <device::device Device>
 struct run_context : trained_gaussians<Device> {
     /// For each Gaussian, what the steps since the last `run` collected.
     const raster::visibility* statistics;
@@ -56,7 +56,7 @@ struct run_context : trained_gaussians<Device> {
 ///
 /// The same calls with the same statistics must have the same result: random numbers come from
 /// `counter_random` with `training_facts::seed`.
-template <class Device>
+template <device::device Device>
 class strategy : public timetable {
   public:
     /// Names of the gradient columns that the strategy needs in addition to `raster::visibility`. Creating

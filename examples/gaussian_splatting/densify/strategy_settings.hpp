@@ -11,7 +11,7 @@ namespace gs::train {
 /// The name of a densification strategy (see strategies.hpp) and the settings of each one.
 struct strategy_settings {
     std::string name = "adaptive";
-    adaptive_config adaptive;
+    adaptive_config adaptive{};
 };
 
 }  // namespace gs::train

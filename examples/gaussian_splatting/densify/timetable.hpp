@@ -17,7 +17,7 @@ struct training_facts {
     bool white = false;             ///< images have transparent parts, which are shown on white
     std::size_t max_gaussians = 0;  ///< no strategy grows beyond this number
     std::uint64_t seed = 0;
-    accumulator gradient = accumulator::native;  ///< how score renders are summed
+    accumulator gradient = accumulator::native;  ///< in which score renders are summed
 };
 
 /// Result of `strategy::run`.

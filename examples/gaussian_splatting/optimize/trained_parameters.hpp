@@ -4,12 +4,13 @@
 
 #include <cstdint>
 
+#include "../device/device.hpp"
 #include "../model/parameter_memory.hpp"
 
 namespace gs::train {
 
 /// The parameters of the Gaussians in training, with the state of Adam.
-template <class Device>
+template <device::device Device>
 struct trained_parameters {
     parameter_memory<Device> values, first, second;  ///< `first` and `second`: Adam's moments
     /// For each Gaussian, the step in which it was last updated.

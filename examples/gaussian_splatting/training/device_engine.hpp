@@ -190,7 +190,7 @@ class device_engine final : public engine, device::profiler {
         drawn_view draw(std::size_t view) override {
             const photo& shot = views_[view];
             on_.draw(shot.camera, {}, on_.sh_degree_);
-            return {shot.camera, on_.renderer_.picture(), on_.views_.pixels(shot), on_.renderer_.splats(),
+            return {on_.views_.target(shot, {}), on_.renderer_.picture(), on_.renderer_.splats(),
                     on_.renderer_.tiles_of()};
         }
         const float* sum_scores(const float* scores) override {

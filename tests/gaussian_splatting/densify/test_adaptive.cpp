@@ -354,7 +354,10 @@ TEST_CASE("opacities are brought down, never up") {
     for (const auto make : engines()) {
         const auto e = make();
         e->set_model(model);
-        e->set_strategy({.adaptive = {.densify_from_iter = 7}}, {.white = true});
+        gs::train::training_setup setup;
+        setup.facts.white = true;
+        setup.densification.adaptive.densify_from_iter = 7;
+        e->begin(setup);
         e->adjust(6);
         CHECK(e->get_model().opacity == model.opacity);
         e->adjust(7);

@@ -39,8 +39,8 @@ struct pixel_errors {
     void operator()(std::size_t p) const {
         float error = 0;
         for (std::size_t c = 0; c < 3; ++c)
-            error +=
-                std::abs(drawn.render[c * pixels + p] - static_cast<float>(drawn.target[4 * p + c]) / 255);
+            error += std::abs(drawn.render[c * pixels + p] -
+                              static_cast<float>(drawn.target.rgba[4 * p + c]) / 255);
         scores[p] = std::min(error / 3, 1.0f);
         scores[pixels + p] = 1;
         scores[2 * pixels + p] = 0;
@@ -49,7 +49,7 @@ struct pixel_errors {
 
 /// A second strategy: lowers opacities in every step, and at its own interval adds a copy of the Gaussian in
 /// whose pixels the training views show the largest error.
-template <class Device>
+template <gs::device::device Device>
 class copy_worst final : public strategy<Device> {
   public:
     copy_worst(const training_facts& facts, std::vector<std::string>& calls) : facts_(facts), calls_(calls) {}
@@ -96,7 +96,7 @@ class copy_worst final : public strategy<Device> {
         for (std::size_t v = 0; v < c.views.count(); ++v) {
             const drawn_view drawn = c.views.draw(v);
             const auto pixels =
-                static_cast<std::size_t>(drawn.shot.width) * static_cast<std::size_t>(drawn.shot.height);
+                static_cast<std::size_t>(drawn.target.width) * static_cast<std::size_t>(drawn.target.height);
             scores.resize(3 * pixels);
             c.device.for_each_index(pixels, pixel_errors{drawn, pixels, scores.data()});
             const float* sums = c.views.sum_scores(scores.data());
@@ -137,7 +137,8 @@ class demanding final : public strategy<cpu> {
 
 TEST_CASE("a second strategy trains through the same interface, with its own interval, penalty and scores") {
     const gs::scene scene = small_scene();
-    device_engine<cpu> engine(make_copy_worst);
+    device_engine<cpu> made({.make_strategy = make_copy_worst});
+    engine& e = made;
     train_options o;
     o.schedule.iterations = 45;
     o.schedule.sh_degree = 1;
@@ -146,40 +147,43 @@ TEST_CASE("a second strategy trains through the same interface, with its own int
     o.gradient = gs::accumulator::fixed;
     const gs::gaussians model = gs::from_points(scene.points, 1, 500, 1);
     calls.clear();
-    engine.set_views(scene.train, {});
-    engine.set_model(model);
-    train(engine, scene, o, {[](const progress&) {}, [](int) {}, [](int) {}});
+    e.set_views(scene.train, {});
+    e.set_model(model);
+    train(e, scene, o, {[](const progress&) {}, [](int) {}, [](int) {}});
     CHECK(calls ==
           std::vector<std::string>{"run 10", "adjust 501", "run 20", "adjust 502", "run 30", "adjust 503"});
-    CHECK(engine.count() == 503);
-    const gs::gaussians trained = engine.get_model();
+    CHECK(e.count() == 503);
+    const gs::gaussians trained = e.get_model();
     for (std::size_t i = 500; i < 503; ++i) CHECK(std::isfinite(trained.opacity[i]));
 }
 
 TEST_CASE("the work of a strategy after each step is done in that step, once") {
     const gs::scene scene = small_scene();
-    device_engine<cpu> engine(make_copy_worst);
+    device_engine<cpu> made({.make_strategy = make_copy_worst});
+    engine& e = made;
     const gs::gaussians model = gs::from_points(scene.points, 0, 100, 1);
-    engine.set_views(scene.train, {});
-    engine.set_model(model);
-    engine.reserve();
+    e.set_views(scene.train, {});
+    e.set_model(model);
+    e.reserve();
     auto plan = plan_for(0);
     plan.rates = {};
     plan.rates[3] = 1e-30f;
-    for (plan.iteration = 1; plan.iteration <= last_run + 5; ++plan.iteration) engine.step(plan);
-    const gs::gaussians stepped = engine.get_model();
+    for (plan.iteration = 1; plan.iteration <= last_run + 5; ++plan.iteration) e.step(plan);
+    const gs::gaussians stepped = e.get_model();
     for (std::size_t i = 0; i < 100; ++i)
         CHECK(stepped.opacity[i] == doctest::Approx(model.opacity[i] - penalty * last_run));
 }
 
 TEST_CASE("a strategy that is unknown or needs unknown statistics is refused") {
-    const auto engine = make_cpu_engine();
-    CHECK_THROWS_WITH_AS(engine->set_strategy({.name = "magic"}, {}),
-                         "unknown densification strategy 'magic': choose one of adaptive", gs::error);
+    const auto e = make_cpu_engine();
+    training_setup setup;
+    setup.densification.name = "magic";
+    CHECK_THROWS_WITH_AS(e->begin(setup), "unknown densification strategy 'magic': choose one of adaptive",
+                         gs::error);
     const auto make_demanding = [](cpu&, const strategy_settings&,
                                    const training_facts&) -> std::unique_ptr<strategy<cpu>> {
         return std::make_unique<demanding>();
     };
-    CHECK_THROWS_WITH_AS(device_engine<cpu>{make_demanding},
+    CHECK_THROWS_WITH_AS(device_engine<cpu>({.make_strategy = make_demanding}),
                          doctest::Contains("needs the gradient column 'unheard_of'"), gs::error);
 }

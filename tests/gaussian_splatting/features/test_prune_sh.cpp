@@ -9,6 +9,7 @@
 
 #include "../training/engines.hpp"
 #include "device/cpu/cpu.hpp"
+#include "engine/sh_degree_state.hpp"
 #include "features/sh_degree/prune_sh.hpp"
 #include "training/initialise.hpp"
 
@@ -16,8 +17,6 @@ namespace {
 
 using gs::gaussians;
 using gs::train::engine;
-
-constexpr auto how = gs::accumulator::fixed;
 
 /// Colours from dark to bright by direction, in bands of every degree, of each Gaussian more than of the one
 /// before.
@@ -37,8 +36,15 @@ std::unique_ptr<engine> engine_with(make_engine make, const gs::scene& scene, co
     auto e = make();
     e->set_views(scene.train, {});
     e->set_model(model);
+    gs::train::training_setup setup;
+    setup.facts.gradient = gs::accumulator::fixed;
+    e->begin(setup);
     e->reserve();
     return e;
+}
+
+gs::train::sh_degree_state& sh_of(engine& e) {
+    return static_cast<gs::train::sh_degree_state&>(e.feature("direction"));
 }
 
 /// By how much what two engines draw of the training views differs, as a root mean square.
@@ -130,8 +136,8 @@ TEST_CASE("Gaussians lose their bands as long as views change by no more than wa
         CHECK(sh_of(*e).prune(1) == 0);
         const double differs = difference(*e, *before, scene);
         CHECK(differs > 0.01);
-        CHECK(engine_with(make, scene, one)->prune_sh(0.98 * differs, how) == 1);
-        CHECK(engine_with(make, scene, one)->prune_sh(1.05 * differs, how) == 0);
+        CHECK(sh_of(*engine_with(make, scene, one)).prune(0.98 * differs) == 1);
+        CHECK(sh_of(*engine_with(make, scene, one)).prune(1.05 * differs) == 0);
     }
 }
 
@@ -211,7 +217,6 @@ TEST_CASE("training goes on as if the bands that are not there were zero and did
             const gaussians model = half_banded(scene, 1000);
             const auto whole = engine_with(make, scene, model), e = engine_with(make, scene, model);
             auto plan = plan_for(0);
-            plan.gradient = how;
             plan.sh_degree = 3;
             const auto rates = plan.rates;
             // Momentum for all, but colours stay: where they are zero, they are so exactly.

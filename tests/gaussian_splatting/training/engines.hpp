@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -42,19 +44,24 @@ inline gs::train::step_plan plan_for(std::size_t view) {
 
 /// Densifies once, by what steps have collected, up to `cap` Gaussians. The strategy is `adaptive`: Gaussians
 /// larger than a hundredth of `extent` are split.
-inline gs::train::densify_report densify_once(gs::train::engine& e, gs::train::adaptive_config config,
-                                              std::size_t cap, double extent = 1) {
+/// Returns the number of Gaussians that were drawn and received no gradient.
+inline std::uint64_t densify_once(gs::train::engine& e, gs::train::adaptive_config config, std::size_t cap,
+                                  double extent = 1) {
     config.densify_from_iter = 0;
     config.densification_interval = 1;
-    e.set_strategy({.adaptive = config}, {.extent = extent, .max_gaussians = cap});
+    gs::train::training_setup setup;
+    setup.facts.extent = extent;
+    setup.facts.max_gaussians = cap;
+    setup.densification.adaptive = config;
+    e.begin(setup);
     return e.densify(1);
 }
 
 /// Removes this share of the Gaussians, by what steps have collected.
 inline void prune_once(gs::train::engine& e, double share) {
-    gs::train::adaptive_config config;
-    config.densify_until_iter = 0;
-    config.prune_share = share;
-    e.set_strategy({.adaptive = config}, {});
+    gs::train::training_setup setup;
+    setup.densification.adaptive.densify_until_iter = 0;
+    setup.densification.adaptive.prune_share = share;
+    e.begin(setup);
     e.densify(1);
 }

@@ -14,7 +14,7 @@ namespace gs::train {
 /// Adaptive density control (Kerbl et al. 2023, section 5.2): at intervals Gaussians with large gradients are
 /// copied or split and transparent ones removed, opacities are reset, and after the last densification a
 /// share of the Gaussians is removed. `adaptive_schedule` has the timetable.
-template <class Device>
+template <device::device Device>
 class adaptive final : public strategy<Device> {
   public:
     adaptive(Device& device, const adaptive_config& config, const training_facts& facts)

@@ -59,7 +59,7 @@ struct place_sh_first {
 };
 
 /// Removes SH coefficients, with their memory, from Gaussians whose color hardly depends on the direction.
-template <class Device>
+template <device::device Device>
 class sh_pruner {
     template <class T>
     using buffer = typename Device::template buffer<T>;
@@ -78,8 +78,8 @@ class sh_pruner {
         std::size_t values = 0;
         for (std::size_t v = 0; v < views.count(); ++v) {
             const drawn_view drawn = views.draw(v);
-            const std::size_t n =
-                3 * static_cast<std::size_t>(drawn.shot.width) * static_cast<std::size_t>(drawn.shot.height);
+            const std::size_t n = 3 * static_cast<std::size_t>(drawn.target.width) *
+                                  static_cast<std::size_t>(drawn.target.height);
             ones.resize(n);
             device_.for_each_index(n, make_one{ones.data()});
             device_.for_each_index(
