@@ -89,8 +89,8 @@ class parameter_gather {
     /// bands 1 to `sh_degree`: whole blocks, or all. These are zero where the origin has none. Does not wait.
     void run(trained_parameters<Device>& all, std::size_t count, std::size_t with_sh, int sh_degree) {
         for (std::size_t p = 0; p < parameter_count; ++p)
-            if (has_parameter(p, sh_degree)) gather(all, p, is_band(p) ? with_sh : count);
-        for (auto* arrays : {&all.values, &all.first, &all.second}) arrays->set_banded(with_sh);
+            if (has_parameter(p, sh_degree)) gather(all, p, is_view_dependent(p) ? with_sh : count);
+        for (auto* arrays : {&all.values, &all.first, &all.second}) arrays->set_gaussians_with_sh(with_sh);
         spare_steps_.resize(count);
         device_.for_each_index(count,
                                gather_last_steps{origin_.data(), all.last_step.data(), spare_steps_.data()});
@@ -109,13 +109,14 @@ class parameter_gather {
         constexpr std::size_t every = std::numeric_limits<std::size_t>::max();
         const std::array arrays{&all.values[p], &all.first[p], &all.second[p]};
         for (auto& s : spare_) s.resize(n);
-        device_.for_each_index(n, gather_parameters{count,
-                                                    is_band(p) ? all.values.banded() : every,
-                                                    origin_.data(),
-                                                    births_.data(),
-                                                    width,
-                                                    {arrays[0]->data(), arrays[1]->data(), arrays[2]->data()},
-                                                    {spare_[0].data(), spare_[1].data(), spare_[2].data()}});
+        device_.for_each_index(
+            n, gather_parameters{count,
+                                 is_view_dependent(p) ? all.values.gaussians_with_sh() : every,
+                                 origin_.data(),
+                                 births_.data(),
+                                 width,
+                                 {arrays[0]->data(), arrays[1]->data(), arrays[2]->data()},
+                                 {spare_[0].data(), spare_[1].data(), spare_[2].data()}});
         for (std::size_t k = 0; k < arrays.size(); ++k) {
             if (n < arrays[k]->size()) *arrays[k] = buffer<float>();  // gives memory back
             arrays[k]->resize(n);

@@ -25,7 +25,7 @@ class parameter_memory {
             arrays_[p].resize(has_parameter(p, sh_degree)
                                   ? in_whole_blocks(count) * width_of(static_cast<parameter>(p))
                                   : 0);
-        banded_ = count;
+        gaussians_with_sh_ = count;
     }
     /// Keeps the contents, but for bands above the degree `to`, which have no memory from now on. Those above
     /// `from` are zero.
@@ -34,15 +34,15 @@ class parameter_memory {
             if (has_parameter(p, from) == has_parameter(p, to)) continue;
             arrays_[p] = buffer();
             if (!has_parameter(p, to)) continue;
-            arrays_[p].resize(in_whole_blocks(banded_) * width_of(static_cast<parameter>(p)));
+            arrays_[p].resize(in_whole_blocks(gaussians_with_sh_) * width_of(static_cast<parameter>(p)));
             device.zero(arrays_[p].data(), arrays_[p].size());
         }
     }
     buffer& operator[](std::size_t p) { return arrays_[p]; }
-    /// How many Gaussians have bands: see `parameter_arrays`. It is for who sizes the arrays to set it.
+    /// See `parameter_arrays::gaussians_with_sh`. Whoever resizes the arrays sets it.
     /// @{
-    std::size_t banded() const { return banded_; }
-    void set_banded(std::size_t count) { banded_ = count; }
+    std::size_t gaussians_with_sh() const { return gaussians_with_sh_; }
+    void set_gaussians_with_sh(std::size_t count) { gaussians_with_sh_ = count; }
     /// @}
 
     parameter_arrays<const float> read() const { return pointers<const float>(); }
@@ -76,7 +76,7 @@ class parameter_memory {
             const buffer& from = arrays_[static_cast<std::size_t>(p)];
             std::vector<float> blocks(from.size());
             device.download(blocks.data(), from.data(), blocks.size());
-            const std::size_t rows = is_band(static_cast<std::size_t>(p)) ? banded_ : count;
+            const std::size_t rows = is_view_dependent(static_cast<std::size_t>(p)) ? gaussians_with_sh_ : count;
             from_blocks(blocks.data(), rows, stride, width_of(p), to.data() + first);
         });
         return model;
@@ -105,11 +105,11 @@ class parameter_memory {
                 a[2].data(),
                 a[3].data(),
                 {a[4].data(), a[5].data(), a[6].data(), a[7].data()},
-                banded_};
+                gaussians_with_sh_};
     }
 
     std::array<buffer, parameter_count> arrays_;
-    std::size_t banded_ = 0;
+    std::size_t gaussians_with_sh_ = 0;
 };
 
 }  // namespace gs

@@ -32,8 +32,8 @@ constexpr bool has_parameter(std::size_t p, int sh_degree) {
     return static_cast<int>(p) - static_cast<int>(parameter::sh0) <= sh_degree;
 }
 
-/// Whether it is of colours that depend on direction, which not every Gaussian has to have.
-constexpr bool is_band(std::size_t p) { return p > static_cast<std::size_t>(parameter::sh0); }
+/// Whether the parameter belongs to SH bands 1 to 3, which not every Gaussian has.
+constexpr bool is_view_dependent(std::size_t p) { return p > static_cast<std::size_t>(parameter::sh0); }
 
 /// Where the arrays lie, each in blocks: see `aosoa_index`. Values, gradients and moments have this form.
 template <class Real>
@@ -43,8 +43,9 @@ struct parameter_arrays {
     Real* quaternion = nullptr;  ///< w x y z
     Real* opacity = nullptr;     ///< logit
     Real* sh[4] = {};            ///< bands 0 to 3, coefficient-major, RGB within
-    /// So many Gaussians, the first ones, have bands 1 to 3: whole blocks, or all. Others have one colour.
-    std::size_t banded = std::numeric_limits<std::size_t>::max();
+    /// Number of Gaussians, the first ones, that have SH bands 1 to 3: whole blocks, or all. The others have
+    /// the same color in all directions.
+    std::size_t gaussians_with_sh = std::numeric_limits<std::size_t>::max();
 
     WARPAGG_HD constexpr Real* operator[](parameter p) const {
         switch (p) {

@@ -175,7 +175,7 @@ class device_engine final : public engine, device::profiler {
                     .run(on_.trained_, on_.count_, on_.sh_degree_, views, change);
                 on_.begin_generation(on_.count_);
             }
-            return on_.trained_.values.banded();
+            return on_.trained_.values.gaussians_with_sh();
         }
 
       private:
@@ -254,7 +254,7 @@ class device_engine final : public engine, device::profiler {
                               static_cast<std::size_t>(s.camera.height),
                               s.camera.fisheye ? std::size_t{1} : 0,
                               effects_.antialiasing ? std::size_t{1} : 0,
-                              trained_.values.banded(),
+                              trained_.values.gaussians_with_sh(),
                               strategy_->memory_key(s.plan.iteration)};
         features_.add_memory_keys(s, key);
         return key;

@@ -18,9 +18,8 @@ namespace {
 using gs::gaussians;
 using gs::train::engine;
 
-/// Colours from dark to bright by direction, in bands of every degree, of each Gaussian more than of the one
-/// before.
-gaussians banded_model(const gs::scene& scene, std::size_t count) {
+/// Colors with SH bands of every degree, larger for each Gaussian than for the one before.
+gaussians model_with_sh(const gs::scene& scene, std::size_t count) {
     gaussians model = gs::from_points(scene.points, 3, count, 1);
     std::mt19937 random(3);
     std::normal_distribution<float> normal;
@@ -47,7 +46,7 @@ gs::train::sh_degree_state& sh_of(engine& e) {
     return static_cast<gs::train::sh_degree_state&>(e.feature("direction"));
 }
 
-/// By how much what two engines draw of the training views differs, as a root mean square.
+/// Root mean square of the difference between what two engines render of the training views.
 double difference(engine& a, engine& b, const gs::scene& scene) {
     double sum = 0, values = 0;
     for (const gs::view& v : scene.train) {
@@ -86,9 +85,9 @@ std::size_t changed(const std::vector<float>& now, const std::vector<float>& bef
     return n;
 }
 
-/// The second half of a model's colours does not depend on direction.
-gaussians half_banded(const gs::scene& scene, std::size_t count) {
-    gaussians model = banded_model(scene, count);
+/// A model in which every second Gaussian has the same color in all directions.
+gaussians half_with_sh(const gs::scene& scene, std::size_t count) {
+    gaussians model = model_with_sh(scene, count);
     const auto rest = static_cast<std::size_t>(model.rest_width());
     for (std::size_t i = 0; i < count; i += 2) {
         std::fill_n(model.sh_rest.begin() + static_cast<std::ptrdiff_t>(i * rest), rest, 0.0f);
@@ -97,9 +96,9 @@ gaussians half_banded(const gs::scene& scene, std::size_t count) {
     return model;
 }
 
-/// One Gaussian, which is all that pixels show.
+/// A single Gaussian that fills all pixels.
 gaussians one_before_all(const gs::scene& scene) {
-    gaussians one = banded_model(scene, 1);
+    gaussians one = model_with_sh(scene, 1);
     one.mean = {0, 0, 0};
     one.log_scale = {1, 1, 1};
     one.opacity = {10};
@@ -108,29 +107,29 @@ gaussians one_before_all(const gs::scene& scene) {
 
 }  // namespace
 
-TEST_CASE("Gaussians lose their bands as long as views change by no more than was said, and no sooner") {
+TEST_CASE("prune_sh: changes views by the permitted amount at most, and uses it") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {
-        const gaussians model = banded_model(scene, 1000);
+        const gaussians model = model_with_sh(scene, 1000);
         const auto whole = engine_with(make, scene, model);
         std::size_t last = 1001;
         for (const double change : {1e-4, 3e-3, 1e-2, 1.0}) {
             CAPTURE(change);
             const auto e = engine_with(make, scene, model);
-            const std::size_t banded = sh_of(*e).prune(change);
-            CHECK(banded < last);
-            CHECK((banded == 1000 || banded % gs::block_length == 0));
+            const std::size_t with_sh = sh_of(*e).prune(change);
+            CHECK(with_sh < last);
+            CHECK((with_sh == 1000 || with_sh % gs::block_length == 0));
             const double differs = difference(*e, *whole, scene);
             CHECK(differs <= change);
             if (change == 1e-4)
-                CHECK(banded == 1000);  // a tenth is not worth it
+                CHECK(with_sh == 1000);  // less than a tenth
             else
                 CHECK(differs > 0.15 * std::min(change, 0.05));
-            last = banded;
+            last = with_sh;
         }
         CHECK(last == 0);
 
-        // Where one Gaussian is all that pixels show, what is said is what comes.
+        // With a single Gaussian the estimate is exact.
         const gaussians one = one_before_all(scene);
         const auto e = engine_with(make, scene, one), before = engine_with(make, scene, one);
         CHECK(sh_of(*e).prune(1) == 0);
@@ -141,7 +140,7 @@ TEST_CASE("Gaussians lose their bands as long as views change by no more than wa
     }
 }
 
-TEST_CASE("a Gaussian without bands has the colour that pixels of the training views show on average") {
+TEST_CASE("prune_sh: a pruned Gaussian has its mean color over the training views") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {
         const gaussians one = one_before_all(scene);
@@ -161,28 +160,28 @@ TEST_CASE("a Gaussian without bands has the colour that pixels of the training v
     }
 }
 
-TEST_CASE("all else of Gaussians that lose bands stays, they come last, and the order is kept") {
+TEST_CASE("prune_sh: moves pruned Gaussians to the end and keeps everything else") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {
-        const gaussians model = banded_model(scene, 1000);
+        const gaussians model = model_with_sh(scene, 1000);
         const auto e = engine_with(make, scene, model);
-        const std::size_t banded = sh_of(*e).prune(0.01);
-        REQUIRE(banded > 0);
-        REQUIRE(banded < 900);
+        const std::size_t with_sh = sh_of(*e).prune(0.01);
+        REQUIRE(with_sh > 0);
+        REQUIRE(with_sh < 900);
         const gaussians now = e->get_model();
         const auto from = origins(now, model);
         CHECK(changed(now.log_scale, model.log_scale, from, 1000) == 0);
         CHECK(changed(now.quaternion, model.quaternion, from, 1000) == 0);
         CHECK(changed(now.opacity, model.opacity, from, 1000) == 0);
-        CHECK(changed(now.sh_constant, model.sh_constant, from, banded) == 0);
-        CHECK(changed(now.sh_rest, model.sh_rest, from, banded) == 0);
-        const auto middle = from.begin() + static_cast<std::ptrdiff_t>(banded);
+        CHECK(changed(now.sh_constant, model.sh_constant, from, with_sh) == 0);
+        CHECK(changed(now.sh_rest, model.sh_rest, from, with_sh) == 0);
+        const auto middle = from.begin() + static_cast<std::ptrdiff_t>(with_sh);
         CHECK(std::is_sorted(from.begin(), middle));
         CHECK(std::is_sorted(middle, from.end()));
-        CHECK(std::all_of(now.sh_rest.begin() + now.rest_width() * static_cast<std::ptrdiff_t>(banded),
+        CHECK(std::all_of(now.sh_rest.begin() + now.rest_width() * static_cast<std::ptrdiff_t>(with_sh),
                           now.sh_rest.end(), [](float x) { return x == 0; }));
 
-        // As a model they are drawn alike, and what comes after gives bands back, as zeros.
+        // Renders the same after a round trip, and later densification restores the coefficients as zeros.
         const auto other = engine_with(make, scene, now);
         CHECK(difference(*e, *other, scene) == 0);
         sh_of(*e).set_degree(1);
@@ -204,35 +203,35 @@ TEST_CASE("all else of Gaussians that lose bands stays, they come last, and the 
         still.rates.fill(1e-3f);
         e->step(still);
         const gaussians learnt = e->get_model();
-        CHECK(std::any_of(learnt.sh_rest.begin() + 45 * static_cast<std::ptrdiff_t>(banded),
+        CHECK(std::any_of(learnt.sh_rest.begin() + 45 * static_cast<std::ptrdiff_t>(with_sh),
                           learnt.sh_rest.end(), [](float x) { return x != 0; }));
     }
 }
 
-TEST_CASE("training goes on as if the bands that are not there were zero and did not learn") {
+TEST_CASE("prune_sh: training continues as if the pruned coefficients were zero and not learned") {
     const gs::scene scene = small_scene();
     for (const auto make : engines())
         for (const bool updates_sh : {true, false}) {
             CAPTURE(updates_sh);
-            const gaussians model = half_banded(scene, 1000);
+            const gaussians model = half_with_sh(scene, 1000);
             const auto whole = engine_with(make, scene, model), e = engine_with(make, scene, model);
             auto plan = plan_for(0);
             plan.sh_degree = 3;
             const auto rates = plan.rates;
-            // Momentum for all, but colours stay: where they are zero, they are so exactly.
+            // All get momentum, but colors stay: zeros remain exact.
             std::fill(plan.rates.begin() + 4, plan.rates.end(), 0.0f);
             for (; plan.view < 6; ++plan.view) {
                 whole->step(plan);
                 e->step(plan);
             }
             const gaussians before = whole->get_model();
-            const std::size_t banded = sh_of(*e).prune(0);
-            CHECK(banded >= 500 - gs::block_length);
-            REQUIRE(banded < 500 + gs::block_length);
+            const std::size_t with_sh = sh_of(*e).prune(0);
+            CHECK(with_sh >= 500 - gs::block_length);
+            REQUIRE(with_sh < 500 + gs::block_length);
             const auto from = origins(e->get_model(), before);
             plan.rates = rates;
             plan.updates_sh = updates_sh;
-            for (; plan.view < (updates_sh ? 7 : 9); ++plan.view) {  // else zeros have learnt
+            for (; plan.view < (updates_sh ? 7 : 9); ++plan.view) {  // otherwise zeros would learn
                 whole->step(plan);
                 e->step(plan);
             }
@@ -243,14 +242,14 @@ TEST_CASE("training goes on as if the bands that are not there were zero and did
             CHECK(changed(a.quaternion, b.quaternion, from, 1000) == 0);
             CHECK(changed(a.opacity, b.opacity, from, 1000) == 0);
             CHECK(changed(a.sh_constant, b.sh_constant, from, 1000) == 0);
-            CHECK(changed(a.sh_rest, b.sh_rest, from, banded) == 0);
-            CHECK((changed(a.sh_rest, before.sh_rest, from, banded) > banded / 2) == updates_sh);
+            CHECK(changed(a.sh_rest, b.sh_rest, from, with_sh) == 0);
+            CHECK((changed(a.sh_rest, before.sh_rest, from, with_sh) > with_sh / 2) == updates_sh);
             CHECK(changed(a.sh_rest, before.sh_rest, from, 1000) ==
-                  changed(a.sh_rest, before.sh_rest, from, banded));
+                  changed(a.sh_rest, before.sh_rest, from, with_sh));
         }
 }
 
-TEST_CASE("bands that are not there have no memory, in values and moments, and those go that show least") {
+TEST_CASE("prune_sh: frees the memory of the smallest errors, in values and moments") {
     using device = gs::device::cpu;
     device d;
     constexpr std::size_t count = 1000;
@@ -268,10 +267,10 @@ TEST_CASE("bands that are not there have no memory, in values and moments, and t
     }
     gs::train::parameter_gather<device> gather(d);
     gs::train::sh_pruner<device> pruner(d, gather);
-    pruner.prune(of, count, 3, errors.data(), 97 * 96 / 2);  // of 97, by the sum of 0 to 96
-    CHECK(of.values.banded() == count);
+    pruner.prune(of, count, 3, errors.data(), 97 * 96 / 2);  // 97 Gaussians: errors 0 to 96
+    CHECK(of.values.gaussians_with_sh() == count);
     pruner.prune(of, count, 3, errors.data(), 500 * 499 / 2);
-    CHECK(of.values.banded() == 512);
+    CHECK(of.values.gaussians_with_sh() == 512);
     for (auto* all : {&of.values, &of.first, &of.second}) {
         std::size_t floats = 0;
         for (std::size_t p = 0; p < gs::parameter_count; ++p) floats += (*all)[p].size();

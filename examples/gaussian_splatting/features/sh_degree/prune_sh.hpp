@@ -107,7 +107,7 @@ class sh_pruner {
             sum += static_cast<double>(std::bit_cast<float>(ascending[without]));
             if (!(sum <= squares)) break;
         }
-        const std::size_t with = in_whole_blocks(count - without), before = all.values.banded();
+        const std::size_t with = in_whole_blocks(count - without), before = all.values.gaussians_with_sh();
         if (with + before / 10 > before) return;
         device_.for_each_index(count - with, clear_ranked{gaussian_of_.data(), keeps_.data()});
         device_.for_each_index(count, take_mean_color{errors, keeps_.data(), all.values.write().sh[0]});

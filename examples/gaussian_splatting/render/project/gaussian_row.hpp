@@ -25,7 +25,7 @@ struct gaussian_row {
     /// Up to which degree their colours depend on direction, of what a model has: the same in all lanes.
     template <class Real>
     WARPAGG_HD int degree_of(const parameter_arrays<Real>& gaussians, int sh_degree) const {
-        return first < gaussians.banded ? sh_degree : 0;
+        return first < gaussians.gaussians_with_sh ? sh_degree : 0;
     }
     /// N components of each, from the k-th on, in an array of `width`. Means nothing in lanes not active.
     template <int N, class Real>
