@@ -23,7 +23,7 @@ constexpr double copies_all = 1e11, splits_all = 1e-7;
 /// Sums of gradients that do not depend on the order in which threads add.
 constexpr gs::accumulator in_any_order = gs::accumulator::fixed;
 
-/// A step in each training view by rates of zero: gradients are noted and momentum is gained, nothing moves.
+/// Steps on each training view with learning rates of 0: collects statistics and moments, changes nothing.
 void look_at_all(engine& e, const gs::scene& scene, const gaussians& model, int sh_degree = 0) {
     e.set_views(scene.train, scene.test);
     e.set_model(model);
@@ -37,7 +37,7 @@ void look_at_all(engine& e, const gs::scene& scene, const gaussians& model, int 
 
 }  // namespace
 
-TEST_CASE("the most urgent grow first, and none past the cap") {
+TEST_CASE("adaptive: Gaussians with the largest gradients grow first, up to the cap") {
     const gs::scene scene = small_scene();
     const gaussians model = gs::from_points(scene.points, 0, 1000, 1);
     for (const auto make : engines()) {
@@ -48,13 +48,13 @@ TEST_CASE("the most urgent grow first, and none past the cap") {
         for (std::size_t v = 0; v < 4; ++v) e->step(plan_for(v));
         const gaussians stepped = e->get_model();
         adaptive_config config;
-        config.densify_grad_threshold = 1e-12;  // everything that was seen to move
+        config.densify_grad_threshold = 1e-12;  // every Gaussian with a gradient
         config.least_opacity = 0;
         config.revised_opacity = false;
         densify_once(*e, config, 1100, copies_all);
         CHECK(e->count() == 1100);
 
-        // Copies are exact: every Gaussian of before is there once or twice, in its order.
+        // Copies are exact: each old Gaussian appears once or twice, in order.
         const gaussians grown = e->get_model();
         std::size_t from = 0, twice = 0;
         for (std::size_t i = 0; i < grown.count(); ++i) {
@@ -72,13 +72,13 @@ TEST_CASE("the most urgent grow first, and none past the cap") {
         CHECK(from == 999);
         CHECK(twice == 100);
 
-        // Nobody has been seen since: nothing grows.
+        // No statistics since then: nothing grows.
         densify_once(*e, config, 1100, copies_all);
         CHECK(e->count() == 1100);
     }
 }
 
-TEST_CASE("a budget limits the growth of a densification to the Gaussians with the largest gradients") {
+TEST_CASE("adaptive: a budget limits growth to the Gaussians with the largest gradients") {
     const gs::scene scene = small_scene();
     const gaussians model = gs::from_points(scene.points, 0, 1000, 1);
     for (const auto make : engines()) {
@@ -87,7 +87,7 @@ TEST_CASE("a budget limits the growth of a densification to the Gaussians with t
         auto still = plan_for(0);
         still.rates = {};
         adaptive_config config;
-        config.densify_grad_threshold = 0;  // whatever moved at all
+        config.densify_grad_threshold = 0;  // every Gaussian
         config.densify_until_iter = 3;      // densifies twice
         config.least_opacity = 0;
         const auto grown = [&](std::size_t budget) {
@@ -102,7 +102,7 @@ TEST_CASE("a budget limits the growth of a densification to the Gaussians with t
         const gaussians few = grown(1080), many = grown(0);
         CHECK(few.count() == 1040);
         CHECK(many.count() == 1100);
-        // The 40 are among the 100: all that is there twice in one is in the other.
+        // The 40 copied ones are among the 100.
         const auto places_there_twice = [](const gaussians& g) {
             std::set<std::array<float, 3>> once, twice;
             for (std::size_t i = 0; i < g.count(); ++i) {
@@ -117,7 +117,7 @@ TEST_CASE("a budget limits the growth of a densification to the Gaussians with t
     }
 }
 
-TEST_CASE("a copy and its original together are as opaque as it was alone") {
+TEST_CASE("adaptive: a copy and its original together are as opaque as it was alone") {
     const gs::scene scene = small_scene();
     gaussians model = gs::from_points(scene.points, 0, 200, 1);
     for (std::size_t i = 0; i < 200; ++i) model.opacity[i] = -8 + 0.1f * static_cast<float>(i % 160);
@@ -144,7 +144,7 @@ TEST_CASE("a copy and its original together are as opaque as it was alone") {
             }
             CHECK(std::isfinite(grown.opacity[i]));
             CHECK(grown.opacity[i] == grown.opacity[i + 1]);
-            // What shines through both is what shone through one: log1p(e^logit) is -log of that.
+            // Both together transmit as much light as the one: log1p(e^logit) is -log of it.
             const double through_one = std::log1p(std::exp(static_cast<double>(grown.opacity[i])));
             if (logit < 80)
                 CHECK(2 * through_one == doctest::Approx(std::log1p(std::exp(logit))).epsilon(1e-5));
@@ -153,7 +153,7 @@ TEST_CASE("a copy and its original together are as opaque as it was alone") {
     }
 }
 
-TEST_CASE("a split leaves two that are 1.6 times smaller, near their parent") {
+TEST_CASE("adaptive: a split leaves two Gaussians 1.6 times smaller, near their origin") {
     const gs::scene scene = small_scene();
     const gaussians model = gs::from_points(scene.points, 0, 200, 1);
     for (const auto make : engines()) {
@@ -194,7 +194,7 @@ TEST_CASE("a split leaves two that are 1.6 times smaller, near their parent") {
     }
 }
 
-TEST_CASE("the transparent are dropped, and none for its size") {
+TEST_CASE("adaptive: removes transparent Gaussians, and none for its size") {
     const gs::scene scene = small_scene();
     gaussians model = gs::from_points(scene.points, 0, 300, 1);
     for (std::size_t i = 0; i < 300; i += 3) model.opacity[i] = -10;
@@ -207,14 +207,14 @@ TEST_CASE("the transparent are dropped, and none for its size") {
     }
 }
 
-TEST_CASE("pruning drops the share that the views made least of, and keeps the others to the bit") {
+TEST_CASE("adaptive: pruning removes the given share and keeps the other Gaussians bit for bit") {
     const gs::scene scene = small_scene();
     gaussians model = gs::from_points(scene.points, 1, 300, 1);
-    for (std::size_t i = 0; i < 300; i += 4) model.opacity[i] = -20;  // in no picture
+    for (std::size_t i = 0; i < 300; i += 4) model.opacity[i] = -20;  // in no image
     for (const auto make : engines()) {
         const auto e = make();
         look_at_all(*e, scene, model);
-        prune_once(*e, 0.001);  // less than one
+        prune_once(*e, 0.001);  // less than one Gaussian
         CHECK(e->count() == 300);
         look_at_all(*e, scene, model);
         prune_once(*e, 0.2);
@@ -233,11 +233,11 @@ TEST_CASE("pruning drops the share that the views made least of, and keeps the o
     }
 }
 
-TEST_CASE("pruning takes those that are pulled less before those that are pulled more") {
+TEST_CASE("adaptive: pruning removes the Gaussians with the smallest gradients") {
     const gs::scene scene = small_scene();
     gaussians model = gs::from_points(scene.points, 0, 300, 1);
-    for (std::size_t i = 0; i < 300; i += 4) model.opacity[i] = -20;    // in no picture
-    for (std::size_t i = 1; i < 300; i += 4) model.opacity[i] = -5.3f;  // hardly to be seen
+    for (std::size_t i = 0; i < 300; i += 4) model.opacity[i] = -20;    // in no image
+    for (std::size_t i = 1; i < 300; i += 4) model.opacity[i] = -5.3f;  // hardly visible
     const auto count = [](const gaussians& of, float opacity) {
         return std::ranges::count(of.opacity, opacity);
     };
@@ -248,14 +248,14 @@ TEST_CASE("pruning takes those that are pulled less before those that are pulled
         const gaussians rest = e->get_model();
         REQUIRE(rest.count() == 180);
         CHECK(count(rest, -20.0f) == 0);
-        CHECK(count(rest, -5.3f) <= 75 - 40);  // at least 40 of the other 45 that are dropped
+        CHECK(count(rest, -5.3f) <= 75 - 40);  // at least 40 of the other 45
     }
 }
 
-TEST_CASE("momentum goes along with those that pruning keeps") {
+TEST_CASE("adaptive: Gaussians that pruning keeps also keep their moments") {
     const gs::scene scene = small_scene();
     gaussians model = gs::from_points(scene.points, 1, 300, 1);
-    for (std::size_t i = 0; i < 240; i += 4) model.opacity[i] = -20;  // in no picture: to be dropped
+    for (std::size_t i = 0; i < 240; i += 4) model.opacity[i] = -20;  // in no image: to be removed
     for (const auto make : engines()) {
         const auto e = make();
         const auto trained = [&](bool prunes) {
@@ -290,7 +290,7 @@ TEST_CASE("momentum goes along with those that pruning keeps") {
     }
 }
 
-TEST_CASE("what a Gaussian missed is made up for, also by those that move up when others are dropped") {
+TEST_CASE("adaptive: Adam's catch-up steps survive the removal of other Gaussians") {
     const gs::scene scene = small_scene();
     gaussians model = gs::from_points(scene.points, 0, 1000, 1);
     std::ranges::fill(model.opacity, 6.0f);                             // those in front hide others
@@ -347,7 +347,7 @@ TEST_CASE("what a Gaussian missed is made up for, also by those that move up whe
     }
 }
 
-TEST_CASE("opacities are brought down, never up") {
+TEST_CASE("adaptive: an opacity reset lowers opacities and never raises them") {
     const gs::scene scene = small_scene();
     gaussians model = gs::from_points(scene.points, 0, 4, 1);
     model.opacity = {-9, -4.6f, 0, 9};
@@ -366,7 +366,7 @@ TEST_CASE("opacities are brought down, never up") {
     }
 }
 
-TEST_CASE("what is nearer to a training camera than the near plane is hidden, and nothing else") {
+TEST_CASE("adaptive: hides exactly the Gaussians closer to a training camera than its near plane") {
     const gs::scene scene = small_scene();
     const float near = static_cast<float>(gs::raster::near_plane), hidden = gs::logit(0);
     // Around each camera, of those to learn from and of those that are held out.
