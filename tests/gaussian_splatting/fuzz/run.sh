@@ -20,7 +20,7 @@ mkdir -p "$out"
 trainer=examples/gaussian_splatting
 sources=("$trainer"/readers/colmap/colmap_{binary,records,text}.cpp "$trainer"/image/*.cpp
     "$trainer"/readers/transforms/{json_text,transforms,transforms_pose}.cpp "$trainer"/readers/{camera_models,validation}.cpp
-    "$trainer"/scene/undistort.cpp "$trainer"/writers/ply/ply.cpp tests/gaussian_splatting/fuzz/{budget,colmap,harness,image,ply,transforms}.cpp)
+    "$trainer"/scene/camera.cpp "$trainer"/writers/ply/ply.cpp tests/gaussian_splatting/fuzz/{budget,colmap,harness,image,ply,transforms}.cpp)
 flags=(-std=c++20 -O1 -g -fno-omit-frame-pointer -I"$trainer" -Itests/gaussian_splatting/fuzz
     -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
 
