@@ -22,7 +22,7 @@ struct observation {
 /// The observations of each point.
 using observed_points = std::vector<std::vector<observation>>;
 
-/// Where a photo shows one of the points, in pixels, and how deep: see `camera::image_point`.
+/// The pixel coordinates and the depth of a point in a photo, see `camera::image_point`.
 struct place_in_photo {
     std::uint32_t point;
     double x, y, depth;
@@ -32,9 +32,9 @@ struct place_in_photo {
 /// spacings away in the image, may hide it.
 std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<coloured_point>& points);
 
-/// What the training photos have of the scene's points, by point; some thousands of the points stand for all.
-/// Left out: what is not `points_in_sight`, and where the photo is transparent or a channel is saturated.
-/// Cost: that of projecting all points into all photos.
+/// For a sample of some thousands of the scene's points, the observations in the training photos.
+/// Skips points that are not `points_in_sight`, or where the photo is transparent or a channel is
+/// saturated. Projects all points into all photos.
 observed_points observe_points(const scene& of);
 
 }  // namespace gs

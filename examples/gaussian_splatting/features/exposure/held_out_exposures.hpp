@@ -9,9 +9,10 @@
 
 namespace gs::features {
 
-/// How the test photos were exposed, as far as training photos tell: as the mean of those before and after
-/// each in the order of names, which along a walk or in a film are alike. Where exposures of training photos
-/// are predicted worse so than by no change, none changes anything. `of_training`: one a training view.
+/// Estimates the exposures of the held-out photos from those of the training photos: the mean of the
+/// previous and the next one in the order of names, since neighbors on a walk or in a film are alike.
+/// All are the identity if this rule predicts the exposures of the training photos worse than the
+/// identity does. `of_training` has one entry per training view.
 std::vector<exposure> held_out_exposures(const scene& scene, const std::vector<exposure>& of_training);
 
 }  // namespace gs::features
