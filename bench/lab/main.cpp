@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "core/error.hpp"
+#include "engine/engine.hpp"
 #include "lab.hpp"
-#include "training/engine.hpp"
 
 namespace {
 

@@ -23,6 +23,10 @@
 #include "ranking.hpp"
 #include "readers/load_scene.hpp"
 #include "scene/look_at.hpp"
+#include "scene/normalization.hpp"
+#include "writers/ply/ply.hpp"
+
+namespace gs::lab {
 
 namespace {
 
@@ -94,7 +98,7 @@ ranking_setup random_crowd(std::uint64_t seed) {
 
 ranking_setup trained(const options& o) {
     const gs::scene scene = gs::load_scene(o.scene, [](const std::string& line) { std::puts(line.c_str()); });
-    contest c;
+    ranking_setup c;
     c.model = gs::to_internal(scene.normalization, gs::read_ply(o.ply));
     if (scene.has_alpha) c.background = {1, 1, 1};
     for (std::size_t v = 0; v < std::min(o.views, scene.train.size()); ++v) {

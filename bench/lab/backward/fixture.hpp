@@ -55,7 +55,7 @@ class fixture {
         });
         pairs_.push_back([this, renderer] {
             unsigned long long n = 0;
-            device_.download(&n, renderer->profile().pairs(), 1);
+            device_.download(&n, renderer->pairs(), 1);
             return static_cast<double>(n);
         });
     }

@@ -21,6 +21,9 @@
 #include "lab.hpp"
 #include "readers/load_scene.hpp"
 #include "readers/synthetic/synthetic.hpp"
+#include "training/initialise.hpp"
+
+namespace gs::lab {
 
 namespace {
 
@@ -75,7 +78,7 @@ nlohmann::ordered_json measure(gs::train::engine& engine, const options& o) {
             ++plan.iteration;
             engine.step(plan);
         }
-        engine.wait();
+        engine.profile().wait();
         return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() /
                count;
     };
@@ -110,7 +113,9 @@ int bench(const options& o) {
     std::ranges::fill(model.opacity, 0.0f);
     engine->set_views(photos(scene, o.side), {});
     engine->set_model(model);
-    engine->set_strategy({}, {.iterations = 0});  // which collects no statistics
+    gs::train::training_setup setup;
+    setup.facts.iterations = 0;  // no step collects statistics for densification
+    engine->begin(setup);
     engine->reserve();
 
     nlohmann::ordered_json answer{{"gaussians", engine->count()},

@@ -19,6 +19,9 @@
 #include "measure.hpp"
 #include "readers/load_scene.hpp"
 #include "scene/normalization.hpp"
+#include "writers/ply/ply.hpp"
+
+namespace gs::lab {
 
 namespace {
 

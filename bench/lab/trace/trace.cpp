@@ -20,7 +20,6 @@
 #include "lab.hpp"
 #include "readers/load_scene.hpp"
 #include "scene/normalization.hpp"
-#include "trace/gpu_trace.hpp"
 #include "training/schedule.hpp"
 #include "writers/ply/ply.hpp"
 
@@ -65,7 +64,9 @@ class training {
         views_ = scene.train.size();
         engine_->set_views(scene.train, {});
         engine_->set_model(model);
-        engine_->set_strategy({}, {.iterations = 1 << 20});  // which collects statistics
+        gs::train::training_setup setup;
+        setup.facts.iterations = 1 << 20;  // every step collects statistics for densification
+        engine_->begin(setup);
         engine_->reserve();
         run(static_cast<int>(2 * views_));         // until nothing grows any more
         engine_->profile().sample_times(1 << 30);  // which takes the next one's times, and no more

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "training/engine.hpp"
+#include "engine/engine.hpp"
 
 namespace gs::lab {
 

@@ -4,6 +4,8 @@
 /// The trainer's command `train` with two more options, for the cost of accuracy and of each rung of the
 /// ladder. Writes both into metrics.json and settings.json.
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -11,7 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/command_context.hpp"
+#include "cli/commands.hpp"
+#include "cli/parse.hpp"
+#include "cli/report.hpp"
 #include "core/error.hpp"
 #include "engines.hpp"
 #include "lab.hpp"
@@ -29,14 +33,14 @@ constexpr const char* help =
     "\nThe other options are those of gaussian_splatting train:\n\n";
 
 /// Removes `option` and its value from the arguments, and returns the value.
-std::optional<std::string> take(std::vector<char*>& arguments, const std::string& option) {
+std::optional<std::string> take(std::vector<std::string>& arguments, const std::string& option) {
     for (auto at = arguments.begin(); at != arguments.end(); ++at) {
-        const std::string word = *at;
-        if (word.starts_with(option + "=")) {
+        if (at->starts_with(option + "=")) {
+            const std::string value = at->substr(option.size() + 1);
             arguments.erase(at);
-            return word.substr(option.size() + 1);
+            return value;
         }
-        if (word != option) continue;
+        if (*at != option) continue;
         if (at + 1 == arguments.end()) throw error(option + " needs a value");
         const std::string value = at[1];
         arguments.erase(at, at + 2);
@@ -65,15 +69,11 @@ void add_to_json(const std::filesystem::path& file, const nlohmann::ordered_json
 }  // namespace
 
 int train(int argc, char** argv) {
-    std::vector<char*> arguments(argv, argv + argc);
+    std::vector<std::string> arguments(argv, argv + argc);
     const auto rung = take(arguments, "--gradient"), way = take(arguments, "--accumulate");
     if (rung && way) throw error("--accumulate is for --gradient split: give one of the two options");
-    for (const std::string word : arguments)
-        if (word == "-h" || word == "--help") std::fputs(help, stdout);
-
-    // The parser skips the program's name and then reads the command's.
-    arguments.insert(arguments.begin(), arguments.front());
-    cli::settings s = cli::parse(static_cast<int>(arguments.size()), arguments.data());
+    if (std::ranges::find(arguments, "--help") != arguments.end()) std::fputs(help, stdout);
+    cli::settings s = cli::parse(arguments);
     if (s.deterministic && (rung || way))
         throw error("--deterministic means --accumulate fixed: give one option");
     const accumulator how = rung              ? find(ladder, "--gradient", *rung)
@@ -81,11 +81,11 @@ int train(int argc, char** argv) {
                             : s.deterministic ? fixed
                                               : native;
     if (!lab_accumulators::supports_backdrop(how)) {
-        auto& sky = s.effects.said[static_cast<std::size_t>(effects::effect::sky)];
-        if (sky.value_or(false)) throw error("only --gradient split and --accumulate fixed can train a sky");
-        sky = false;
+        if (s.effects.explicit_choice("sky").value_or(false))
+            throw error("only --gradient split and --accumulate fixed can train a sky");
+        s.effects.explicit_choices["sky"] = false;
     }
-    cli::train(s, uses_gpu(s.device) ? make_cuda_engine() : make_cpu_engine(), how);
+    cli::train(s, uses_gpu(cli::name_of(s.device)) ? make_cuda_engine() : make_cpu_engine(), how);
 
     const nlohmann::ordered_json chosen{{"gradient", rung.value_or("split")},
                                         {"accumulate", way.value_or(s.deterministic ? "fixed" : "native")}};

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
+
+#include "../engine/engine.hpp"
+#include "../render/gradients/accumulator.hpp"
 #include "settings.hpp"
 
 namespace gs::cli {
@@ -9,6 +13,8 @@ namespace gs::cli {
 /// The commands. Each throws `error` for bad input and then leaves no output behind.
 /// @{
 void train(const settings& s);
+/// Trains with this engine and one of its accumulators, whatever `s` says about the two.
+void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient);
 void evaluate(const settings& s);
 void render(const settings& s);
 void inspect(const settings& s);

@@ -24,7 +24,6 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     o.densification = s.densification;
     o.max_cap = s.max_cap.value_or(std::max(train::default_cap(scene), s.budget.value_or(0)));
     o.seed = s.seed;
-    o.gradient = s.deterministic ? accumulator::fixed : accumulator::native;
     o.background = context.background(scene.has_alpha && !features.is_on("exposure"));
     o.save_iterations = s.save_iterations;
     o.save_iterations.insert(s.schedule.iterations);
@@ -48,7 +47,7 @@ gaussians first_model(const scene& scene, const train::train_options& o) {
 class training_run {
   public:
     /// Loads the scene, resolves its effects, and gives the first model to the engine.
-    explicit training_run(const settings& s);
+    training_run(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient);
     training_run(const training_run&) = delete;
     training_run& operator=(const training_run&) = delete;
 
@@ -76,14 +75,15 @@ class training_run {
     training_measures measures_;
 };
 
-training_run::training_run(const settings& s)
+training_run::training_run(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient)
     : s_(s),
       context_(s),
-      engine_(context_.make_engine()),
+      engine_(std::move(engine)),
       scene_(context_.load()),
       options_(options_of(s, scene_, context_, resolve_effects(s, scene_, context_))),
       output_(s.output),
       bar_(s.quiet) {
+    options_.gradient = gradient;
     gaussians model = first_model(scene_, options_);
     options_.features.prepare(scene_, model);
     engine_->set_views(scene_.train, scene_.test, options_.schedule.num_downscales);
@@ -193,7 +193,11 @@ fs::path training_run::renders_folder() const {
 }  // namespace
 
 void train(const settings& s) {
-    training_run run(s);
+    train(s, command_context(s).make_engine(), s.deterministic ? accumulator::fixed : accumulator::native);
+}
+
+void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient) {
+    training_run run(s, std::move(engine), gradient);
     run.train();
     run.measure();
     run.write_reports();

@@ -9,7 +9,7 @@
 #include "render/gradients/gradient_sums.hpp"
 #include "train/engines.hpp"
 #include "training/initialise.hpp"
-#include "training/trainer.hpp"
+#include "training/training.hpp"
 
 namespace {
 
@@ -20,9 +20,9 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene, accumulator 
     gs::train::train_options o;
     o.schedule.iterations = 120;
     o.schedule.sh_degree_interval = 40;
-    o.schedule.densify_from_iter = 40;
-    o.schedule.densification_interval = 30;
-    o.schedule.densify_grad_threshold = 1e-5;
+    o.densification.adaptive.densify_from_iter = 40;
+    o.densification.adaptive.densification_interval = 30;
+    o.densification.adaptive.densify_grad_threshold = 1e-5;
     o.max_cap = 4000;
     o.gradient = how;
     e.set_views(scene.train, {}, o.schedule.num_downscales);
@@ -34,6 +34,14 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene, accumulator 
 bool are_the_same(const gs::gaussians& a, const gs::gaussians& b) {
     return a.mean == b.mean && a.log_scale == b.log_scale && a.quaternion == b.quaternion &&
            a.opacity == b.opacity && a.sh_constant == b.sh_constant && a.sh_rest == b.sh_rest;
+}
+
+/// Starts a run with this accumulator.
+void begin(gs::train::engine& e, accumulator how) {
+    gs::train::training_setup setup;
+    setup.facts.gradient = how;
+    e.begin(setup);
+    e.reserve();
 }
 
 }  // namespace
@@ -61,16 +69,13 @@ TEST_CASE("lab: only the trainer's accumulators train a sky, the others refuse")
     const auto e = gs::lab::make_cpu_engine();
     e->set_views(scene.train, {}, 0);
     e->set_model(model);
-    e->reserve();
     for (const auto& [name, how] : gs::lab::variants) {
         CAPTURE(name);
-        gs::train::step_plan plan = plan_for(0);
-        plan.gradient = how;
-        plan.sky_rate = 0.01f;
+        begin(*e, how);
         if (gs::lab::lab_accumulators::supports_backdrop(how))
-            CHECK_NOTHROW(e->step(plan));
+            CHECK_NOTHROW(e->step(plan_for(0)));
         else
-            CHECK_THROWS_WITH_AS(e->step(plan), doctest::Contains("learned background"), gs::error);
+            CHECK_THROWS_WITH_AS(e->step(plan_for(0)), doctest::Contains("learned background"), gs::error);
     }
 }
 
@@ -79,10 +84,8 @@ TEST_CASE("lab: the trainer's engine refuses an accumulator that it does not hav
     const auto e = gs::train::make_cpu_engine();
     e->set_views(scene.train, {}, 0);
     e->set_model(gs::from_points(scene.points, 0, 500, 1));
-    e->reserve();
-    gs::train::step_plan plan = plan_for(0);
-    plan.gradient = gs::lab::exact;
-    CHECK_THROWS_WITH_AS(e->step(plan), doctest::Contains("2 accumulators"), gs::error);
+    begin(*e, gs::lab::exact);
+    CHECK_THROWS_WITH_AS(e->step(plan_for(0)), doctest::Contains("2 accumulators"), gs::error);
 }
 
 TEST_CASE("lab: exact sums take images of any number of patches") {
