@@ -156,10 +156,15 @@ int bench(const options& o) {
     spheres.resolution = o.resolution;
     spheres.seed = o.seed;
 
-    ordered_json json{
-        {"bench", "stability"}, {"device", make()->profile().device_name()}, {"driver", driver_version()},
-        {"nvcc", WARPAGG_NVCC}, {"compiler", WARPAGG_COMPILER},    {"commit", WARPAGG_COMMIT},
-        {"seed", o.seed},       {"resolution", o.resolution},      {"iterations", o.iterations}};
+    ordered_json json{{"bench", "stability"},
+                      {"device", make()->profile().device_name()},
+                      {"driver", driver_version()},
+                      {"nvcc", WARPAGG_NVCC},
+                      {"compiler", WARPAGG_COMPILER},
+                      {"commit", WARPAGG_COMMIT},
+                      {"seed", o.seed},
+                      {"resolution", o.resolution},
+                      {"iterations", o.iterations}};
     std::printf("%-18s %10s %10s %10s %10s %10s %8s %8s\n", "case", "Gaussians", "training", "held out",
                 ".ply", "skipped", "seconds", "sound");
     bool all_sound = true;

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "../metrics/target_image.hpp"
-#include "../render/project/splat.hpp"
+#include "../render/geometry/splat.hpp"
 
 namespace gs::train {
 

@@ -76,7 +76,8 @@ class parameter_memory {
             const buffer& from = arrays_[static_cast<std::size_t>(p)];
             std::vector<float> blocks(from.size());
             device.download(blocks.data(), from.data(), blocks.size());
-            const std::size_t rows = is_view_dependent(static_cast<std::size_t>(p)) ? gaussians_with_sh_ : count;
+            const std::size_t rows =
+                is_view_dependent(static_cast<std::size_t>(p)) ? gaussians_with_sh_ : count;
             from_blocks(blocks.data(), rows, stride, width_of(p), to.data() + first);
         });
         return model;

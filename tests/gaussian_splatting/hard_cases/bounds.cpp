@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "cases.hpp"
-#include "render/project/splat.hpp"
+#include "render/geometry/splat.hpp"
 
 namespace hard_cases {
 

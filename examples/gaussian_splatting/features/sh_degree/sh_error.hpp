@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "../../render/project/project_backward.hpp"
-#include "../../render/project/splat.hpp"
+#include "../../render/geometry/splat.hpp"
 
 namespace gs::train {
 

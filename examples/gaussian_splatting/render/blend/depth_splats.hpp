@@ -5,7 +5,7 @@
 #include "../../model/aosoa.hpp"
 #include "../project/geometry.hpp"
 #include "../project/project_backward.hpp"
-#include "../project/splat.hpp"
+#include "../geometry/splat.hpp"
 
 namespace gs::raster {
 

@@ -12,7 +12,7 @@
 #include "antialiasing.hpp"
 #include "gaussian_row.hpp"
 #include "geometry.hpp"
-#include "splat.hpp"
+#include "../geometry/splat.hpp"
 
 namespace gs::raster {
 

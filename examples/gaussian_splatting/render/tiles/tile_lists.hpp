@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <warpagg/core/compiler.hpp>
 
-#include "../project/splat.hpp"
+#include "../geometry/splat.hpp"
 
 namespace gs::raster {
 

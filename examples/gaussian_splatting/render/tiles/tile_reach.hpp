@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "../../core/lane_math.hpp"
-#include "../project/splat.hpp"
+#include "../geometry/splat.hpp"
 
 namespace gs::raster {
 
