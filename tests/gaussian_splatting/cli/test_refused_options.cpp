@@ -8,7 +8,7 @@
 
 #include "run_program.hpp"
 #include "small_training.hpp"
-#include "training/engine.hpp"
+#include "engine/engine.hpp"
 
 using namespace gs_test;
 

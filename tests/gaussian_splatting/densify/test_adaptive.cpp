@@ -27,9 +27,9 @@ constexpr gs::accumulator in_any_order = gs::accumulator::fixed;
 void look_at_all(engine& e, const gs::scene& scene, const gaussians& model, int sh_degree = 0) {
     e.set_views(scene.train, scene.test);
     e.set_model(model);
+    e.begin(setup_with(in_any_order));
     e.reserve();
     auto still = plan_for(0);
-    still.gradient = in_any_order;
     still.sh_degree = sh_degree;
     still.rates = {};
     for (still.view = 0; still.view < scene.train.size(); ++still.view) e.step(still);
@@ -264,7 +264,7 @@ TEST_CASE("adaptive: Gaussians that pruning keeps also keep their moments") {
             auto plan = plan_for(0);
             plan.sh_degree = 1;
             plan.rates.fill(0.01f);
-            plan.gradient = in_any_order;
+            e->begin(setup_with(in_any_order));
             e->step(plan);
             return e->get_model();
         };

@@ -9,22 +9,41 @@
 #include <random>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "../../../examples/gaussian_splatting/core/error.hpp"
-#include "../../../examples/gaussian_splatting/features/decide.hpp"
-#include "../../../examples/gaussian_splatting/model/spherical_harmonics.hpp"
-#include "../../../examples/gaussian_splatting/readers/load_scene.hpp"
-#include "../../../examples/gaussian_splatting/readers/synthetic/synthetic_parameters.hpp"
+#include "core/error.hpp"
+#include "features/depth/depth_agreement.hpp"
+#include "features/feature.hpp"
+#include "features/sh_degree/direction.hpp"
+#include "features/sky/sky_fit.hpp"
+#include "model/spherical_harmonics.hpp"
+#include "readers/load_scene.hpp"
+#include "readers/synthetic/synthetic_parameters.hpp"
+#include "scene/photo_brightness.hpp"
+#include "scene/scene_statistics.hpp"
 
 namespace {
 
-using namespace gs::effects;
+using namespace gs::features;
 
 gs::scene made(const std::string& parameters) {
     gs::load_options o;
     o.data = "synthetic:" + parameters;
     return gs::load_scene(o, {});
+}
+
+/// What a feature finds in the photos.
+finding analyzed(std::string_view name, const gs::scene& scene) {
+    for (const auto& f : all_features())
+        if (f->name() == name) return f->analyze(gs::scene_statistics(scene));
+    FAIL("there is no feature " << name);
+    return {};
+}
+
+direction_statistics direction_of(const gs::scene& scene) {
+    return measure_direction(gs::scene_statistics(scene));
 }
 
 }  // namespace
@@ -51,18 +70,21 @@ TEST_CASE("a scene calls for what it was made with, and for nothing else") {
         {"alpha,gloss=0.6,exposure=0.3,passers=0.1", {"direction", "exposure", "masks", "background"}}};
     for (const auto& c : cases) {
         INFO(c.scene);
-        const auto found = decide(gather(made(c.scene)));
-        for (const decision& d : found) {
-            INFO(d.name);
-            REQUIRE(d.called_for);
-            CHECK(*d.called_for == c.effects.contains(d.name));
+        const gs::scene scene = made(c.scene);
+        const gs::scene_statistics statistics(scene);
+        REQUIRE(all_features().size() == 8);
+        for (const auto& f : all_features()) {
+            INFO(f->name());
+            const finding found = f->analyze(statistics);
+            REQUIRE(found.recommended);
+            CHECK(*found.recommended == c.effects.contains(std::string(f->name())));
         }
     }
 }
 
 TEST_CASE("a sky is what it was made of, and begins from that") {
     const gs::scene scene = made("spheres,sky=0.8");
-    const sky_evidence found = find_sky(scene, {});
+    const sky_fit found = fit_sky(scene, {});
     CHECK(found.share > 0.3);
     CHECK(found.share > 0.99 * found.empty);
     double square = 0, values = 0;
@@ -84,43 +106,59 @@ TEST_CASE("a sky is what it was made of, and begins from that") {
         }
     }
     CHECK(std::sqrt(square / values) < 0.02);
-    CHECK(find_sky(made("spheres,sky=0.04"), {}).brightness < 0.08);
+    CHECK(fit_sky(made("spheres,sky=0.04"), {}).brightness < 0.08);
     gs::scene bare = scene;
     bare.points.clear();
-    CHECK_FALSE(find_sky(bare, {}).is_asked);
+    CHECK_FALSE(fit_sky(bare, {}).is_asked);
     CHECK_THROWS_WITH_AS(made("alpha,sky=1"), doctest::Contains("it has no sky"), gs::error);
 }
 
 TEST_CASE("a scene without points is not told what it needs") {
     gs::scene scene = made("alpha,gloss=0.6");
     scene.points.clear();
-    const auto found = decide(gather(scene));
-    for (const decision& d : found) {
-        INFO(d.name);
-        const std::set<std::string> of_files = {"background", "masks", "depth", "lens"};
-        CHECK(d.called_for.has_value() == of_files.contains(d.name));
+    const gs::scene_statistics statistics(scene);
+    for (const auto& f : all_features()) {
+        INFO(f->name());
+        const std::set<std::string_view> of_files = {"background", "masks", "depth", "lens"};
+        CHECK(f->analyze(statistics).recommended.has_value() == of_files.contains(f->name()));
     }
-    CHECK(sh_degree(gather(scene)) == 3);
+    CHECK(measure_direction(statistics).degree() == 3);
+    CHECK(analyzed("direction", scene).choice == "--sh-degree 3");
     // With points of which next to none tells there is nothing to tell it by, and with a few more there is.
-    evidence few = gather(scene);
+    direction_statistics few = measure_direction(statistics);
     few.has_points = true;
     for (const auto& [points, degree] : {std::pair{0, 0}, {9, 0}, {10, 3}, {49, 3}}) {
-        few.direction_points = static_cast<std::size_t>(points);
-        CHECK(sh_degree(few) == degree);
-        CHECK(decide(few)[0].choice == "--sh-degree " + std::to_string(degree));
-        CHECK_FALSE(decide(few)[0].called_for);
+        few.points = static_cast<std::size_t>(points);
+        CHECK(few.degree() == degree);
+        CHECK_FALSE(few.is_known());
+    }
+    const gs::scene glossy = made("spheres,gloss=0.6");
+    for (const auto& [every, degree] : {std::pair{EVERY0, 0}, {EVERY1, 3}}) {
+        gs::scene sparse = glossy;
+        sparse.points.clear();
+        for (std::size_t i = 0; i < glossy.points.size(); i += every)
+            sparse.points.push_back(glossy.points[i]);
+        const direction_statistics told = direction_of(sparse);
+        CAPTURE(told.points);
+        REQUIRE_FALSE(told.is_known());
+        CHECK((told.points < 10) == (degree == 0));
+        const finding found = analyzed("direction", sparse);
+        CHECK(found.choice == "--sh-degree " + std::to_string(degree));
+        CHECK_FALSE(found.recommended);
+        CHECK(found.if_unknown == (degree > 0));
     }
 }
 
 TEST_CASE("what is matte needs no degree, and what mirrors a sky needs several") {
-    CHECK(sh_degree(gather(made("spheres"))) == 0);
-    CHECK(sh_degree(gather(made("spheres,gloss=0.8"))) >= 2);
+    CHECK(direction_of(made("spheres")).degree() == 0);
+    CHECK(direction_of(made("spheres,gloss=0.8")).degree() >= 2);
 }
 
 TEST_CASE("exposures are found to 0.7 %, on average") {
     // Each photo's own, by the formula of the synthetic scenes.
     gs::scene plain = made("spheres"), varied = made("spheres,exposure=0.3");
-    const exposure_estimate found = exposures(observe_points(varied), varied.train.size());
+    const gs::photo_brightness found =
+        gs::estimate_brightness(gs::observe_points(varied), varied.train.size());
     double mean = 0, square = 0;
     std::vector<double> off;
     for (std::size_t v = 0; v < varied.train.size(); ++v) {
@@ -135,7 +173,7 @@ TEST_CASE("exposures are found to 0.7 %, on average") {
                 ++n;
             }
         REQUIRE(n > 0);
-        off.push_back(found.brighter[v] - brighter / n);
+        off.push_back(found.log2[v] - brighter / n);
         mean += off.back();
     }
     REQUIRE(off.size() > 30);
@@ -153,20 +191,20 @@ TEST_CASE(
     for (std::size_t v = 1; v < views; ++v) truth[v] = 0.98 * truth[v - 1] + noise(0.1);
     double mean = 0;
     for (const double x : truth) mean += x / views;
-    std::vector<std::vector<observation>> points;
+    gs::observed_points points;
     for (std::size_t v = 0; v + at_once <= views; ++v)
         for (std::size_t k = 0; k < points_at_once; ++k) {
             points.emplace_back();
             for (std::size_t i = v; i < v + at_once; ++i) {
-                observation& o = points.back().emplace_back();
+                gs::observation& o = points.back().emplace_back();
                 o.view = static_cast<std::uint32_t>(i);
                 o.colour = glm::vec3(static_cast<float>(0.3 * std::exp2(truth[i] - mean + noise(0.0003))));
             }
         }
-    const exposure_estimate found = exposures(points, views);
+    const gs::photo_brightness found = gs::estimate_brightness(points, views);
     double square = 0;
     for (std::size_t v = at_once; v < views - at_once; ++v)  // the first and the last share too little
-        square += std::pow(found.brighter[v] - (truth[v] - mean), 2) / views;
+        square += std::pow(found.log2[v] - (truth[v] - mean), 2) / views;
     CHECK(std::sqrt(square) < 0.01);
 }
 
@@ -195,7 +233,7 @@ TEST_CASE("depth maps become the inverse depths of what photos show, and wrong o
     scene.train[0].depths = {};
     for (std::uint16_t& x : scene.train[1].depths.values) x = static_cast<std::uint16_t>(65535 - x);
     scene.train[2].depths.values.assign(scene.train[2].depths.values.size(), 0);
-    const depth_evidence found = compare_depths(scene);
+    const depth_agreement found = compare_depths(scene);
     CHECK(found.photos == 6);
     CHECK(found.with_map == 5);
     CHECK(found.told == 4);
@@ -207,7 +245,7 @@ TEST_CASE("depth maps become the inverse depths of what photos show, and wrong o
         CHECK((found.fits[v].scale > 0) == (v > 2));
         if (v <= 2) continue;
         std::vector<double> off;
-        for (const place_in_photo& p : points_in_sight(photo.camera, scene.points)) {
+        for (const gs::place_in_photo& p : gs::points_in_sight(photo.camera, scene.points)) {
             const auto i =
                 static_cast<std::size_t>(static_cast<int>(p.y) * photo.depths.width + static_cast<int>(p.x));
             off.push_back(std::abs(static_cast<double>(found.fits[v].scale) * photo.depths.values[i] +
@@ -217,9 +255,11 @@ TEST_CASE("depth maps become the inverse depths of what photos show, and wrong o
         std::ranges::nth_element(off, off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2));
         CHECK(off[off.size() / 2] < 0.015);
     }
-    CHECK(*decide(gather(scene))[5].called_for);
+    const finding agreeing = analyzed("depth", scene);
+    REQUIRE(agreeing.recommended);
+    CHECK(*agreeing.recommended);
     scene.points.clear();
-    CHECK_FALSE(decide(gather(scene))[5].called_for);
+    CHECK_FALSE(analyzed("depth", scene).recommended);
 }
 
 TEST_CASE("a parameter of a synthetic scene that is wrong is named") {

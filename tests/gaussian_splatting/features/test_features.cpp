@@ -3,33 +3,37 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
+#include <optional>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
-#include "../../../examples/gaussian_splatting/core/error.hpp"
-#include "../../../examples/gaussian_splatting/device/cpu/cpu.hpp"
-#include "../../../examples/gaussian_splatting/evaluation/fit_exposure.hpp"
-#include "../../../examples/gaussian_splatting/evaluation/held_out_views.hpp"
-#include "../../../examples/gaussian_splatting/features/depth/depth_agreement.hpp"
-#include "../../../examples/gaussian_splatting/features/exposure/exposures.hpp"
-#include "../../../examples/gaussian_splatting/features/exposure/held_out_exposures.hpp"
-#include "../../../examples/gaussian_splatting/features/sh_degree/revise_sh_degree.hpp"
-#include "../../../examples/gaussian_splatting/features/simulate.hpp"
-#include "../../../examples/gaussian_splatting/features/sky/sky.hpp"
-#include "../../../examples/gaussian_splatting/losses/inverse_depth/depth_gradient.hpp"
-#include "../../../examples/gaussian_splatting/readers/load_scene.hpp"
-#include "../../../examples/gaussian_splatting/render/geometry/effect_set.hpp"
-#include "../../../examples/gaussian_splatting/training/initialise.hpp"
-#include "../../../examples/gaussian_splatting/training/training.hpp"
 #include "../training/engines.hpp"
-
-using namespace gs::effects;
+#include "core/error.hpp"
+#include "device/cpu/cpu.hpp"
+#include "engine/sh_degree_state.hpp"
+#include "evaluation/fit_exposure.hpp"
+#include "evaluation/held_out_views.hpp"
+#include "features/depth/depth_agreement.hpp"
+#include "features/exposure/exposures.hpp"
+#include "features/exposure/held_out_exposures.hpp"
+#include "features/resolve.hpp"
+#include "features/sh_degree/revise_sh_degree.hpp"
+#include "features/sh_degree/sh_degree_feature.hpp"
+#include "features/sky/sky.hpp"
+#include "losses/inverse_depth/depth_gradient.hpp"
+#include "readers/load_scene.hpp"
+#include "render/geometry/effect_set.hpp"
+#include "training/initialise.hpp"
+#include "training/training.hpp"
 
 namespace {
+
+using namespace gs::features;
 
 gs::scene made(const char* parameters) {
     gs::load_options o;
@@ -52,77 +56,119 @@ std::vector<float> random_picture(std::mt19937& random, std::size_t values) {
     return picture;
 }
 
+/// Of the selectable features.
+const selected_feature& outcome(const feature_set& features, std::size_t i) {
+    REQUIRE(features.all().size() == 6);
+    return features.all()[i];
+}
+
+/// What training begins with.
+int sh_degree_of(const feature_set& features) {
+    const selected_feature& direction = outcome(features, 0);
+    const int degree = first_sh_degree(direction);
+    CHECK(direction.on == (degree > 0));
+    return degree;
+}
+
+bool revises_sh_degree(const feature_set& features) {
+    const std::vector<float>& values = outcome(features, 0).values;
+    return values.size() > 1 && values[1] == 1;
+}
+
+/// The factor of each photo, which is the same for all channels; none without the feature.
+std::vector<float> gains_of(const feature_set& features) {
+    std::vector<float> gains;
+    for (const exposure& e : exposures_from(features.values_if_on("exposure"))) {
+        const float x = e[0];
+        CHECK(e == exposure{x, 0, 0, 0, 0, x, 0, 0, 0, 0, x, 0});
+        gains.push_back(x);
+    }
+    return gains;
+}
+
+std::vector<float> flattened_fits(const std::vector<gs::depth_fit>& fits) {
+    std::vector<float> values;
+    for (const gs::depth_fit& fit : fits) values.insert(values.end(), {fit.scale, fit.offset});
+    return values;
+}
+
 }  // namespace
 
 TEST_CASE("what is simulated is what the scene calls for, or what was said") {
     const gs::scene spheres = made("spheres"), glossy = made("spheres,gloss=0.6,exposure=0.3");
     const auto simulated = [](const gs::scene& scene, const char* selection, std::optional<int> degree = {}) {
-        return simulate(scene, parse_selection(selection), degree);
+        return resolve(scene, parse_selection(selection),
+                       degree ? std::vector{explicit_sh_degree(*degree)} : std::vector<selected_feature>{});
     };
-    const simulation matte = simulated(spheres, "auto");
-    CHECK(matte.sh_degree == 0);
-    CHECK(matte.reviews_bands);
-    CHECK(matte.exposures.empty());
-    CHECK_FALSE(matte.antialiasing);
-    REQUIRE(matte.outcomes.size() == 6);
-    for (const auto& o : matte.outcomes) CHECK_FALSE(o.on);
-    CHECK(matte.outcomes[1].reason.find("brighter or darker") != std::string::npos);
-
-    const simulation much = simulated(glossy, "auto,-exposure,+antialiasing");
-    CHECK(much.sh_degree > 0);
-    CHECK(much.reviews_bands);
-    CHECK(much.exposures.empty());
-    CHECK(much.outcomes[1].reason == "--effects auto,-exposure,+antialiasing");
-    CHECK(much.antialiasing);
-    const simulation exposed = simulated(glossy, "auto,-direction");
-    CHECK(exposed.sh_degree == 0);
-    CHECK_FALSE(exposed.reviews_bands);
-    CHECK(*std::ranges::max_element(exposed.exposures) > 1.2f);
-    CHECK(*std::ranges::min_element(exposed.exposures) < 0.8f);
-
-    CHECK(simulated(spheres, "all").sh_degree == 3);
-    CHECK(simulated(spheres, "all").exposures == std::vector<float>(48, 1.0f));
-    CHECK_FALSE(simulated(spheres, "all").reviews_bands);
-    CHECK(simulated(glossy, "none").sh_degree == 0);
-    CHECK(simulated(spheres, "+direction,-exposure,-antialiasing,-sky,-masks,-depth").sh_degree == 3);
-    const simulation listed = simulated(spheres, "exposure,direction");
-    CHECK_FALSE(listed.exposures.empty());
-    CHECK(listed.sh_degree == 3);
-    CHECK_FALSE(listed.antialiasing);
-    CHECK(simulated(glossy, "auto", 1).sh_degree == 1);
-    CHECK_FALSE(simulated(glossy, "auto", 0).outcomes[0].on);
-    const simulation settled =
-        simulated(spheres, "auto,-exposure,-antialiasing,-sky,-masks,-depth", 2);  // nothing to look for
-    CHECK(settled.sh_degree == 2);
-    CHECK_FALSE(settled.reviews_bands);
-    CHECK(settled.outcomes[0].reason == "--sh-degree 2");
-
-    const simulation under_sky = simulated(made("spheres,sky=0.7"), "auto");
-    CHECK(under_sky.outcomes[3].on);
-    CHECK(under_sky.sky.size() == gs::sky_width);
-    CHECK(std::abs(under_sky.sky[0]) > 0.1f);
-    CHECK(matte.sky.empty());
-    CHECK(simulated(spheres, "all").sky == std::vector<float>(gs::sky_width, 0.0f));
-    CHECK(simulated(made("alpha"), "all").sky.empty());
-    CHECK(simulated(made("alpha"), "all").outcomes[3].reason == "photos have transparent parts");
-    CHECK(simulated(spheres, "all").outcomes[4].reason == "no mask leaves anything out of a training photo");
-    const simulation masked = simulated(made("spheres,passers=0.1"), "auto");
-    CHECK(masked.outcomes[4].on);
-    CHECK(masked.outcomes[4].reason.starts_with("48 of 48 photos have masks, which leave out "));
-
-    CHECK(simulated(spheres, "all").outcomes[5].reason == "no training photo has a depth map");
-    CHECK(simulated(spheres, "all").depth_fits.empty());
-    const gs::scene estimated = made("spheres,views=4,points=1000,depths=0.02");
-    CHECK(simulated(estimated, "none").depth_fits.empty());
-    for (const char* text : {"auto", "depth"}) {
-        const simulation deep = simulated(estimated, text);
-        CHECK(deep.outcomes[5].on);
-        REQUIRE(deep.depth_fits.size() == 4);
-        for (const gs::depth_fit& fit : deep.depth_fits) CHECK(fit.scale > 0);
+    const feature_set matte = simulated(spheres, "auto");
+    CHECK(sh_degree_of(matte) == 0);
+    CHECK(revises_sh_degree(matte));
+    CHECK(gains_of(matte).empty());
+    CHECK_FALSE(matte.is_on("antialiasing"));
+    REQUIRE(matte.all().size() == 6);
+    for (std::size_t i = 0; const char* name :
+                            {"direction", "exposure", "antialiasing", "sky", "masks", "depth"}) {
+        CHECK(matte.all()[i].name == name);
+        CHECK_FALSE(matte.all()[i++].on);
     }
-    const simulation wrong = simulated(made("spheres,views=4,depths=10"), "all");
-    CHECK_FALSE(wrong.outcomes[5].on);
-    CHECK(wrong.outcomes[5].reason.starts_with(
+    CHECK(outcome(matte, 1).reason.find("brighter or darker") != std::string::npos);
+
+    const feature_set much = simulated(glossy, "auto,-exposure,+antialiasing");
+    CHECK(sh_degree_of(much) > 0);
+    CHECK(revises_sh_degree(much));
+    CHECK(gains_of(much).empty());
+    CHECK(outcome(much, 1).reason == "--effects auto,-exposure,+antialiasing");
+    CHECK(much.is_on("antialiasing"));
+    const feature_set exposed = simulated(glossy, "auto,-direction");
+    CHECK(sh_degree_of(exposed) == 0);
+    CHECK_FALSE(revises_sh_degree(exposed));
+    CHECK(std::ranges::max(gains_of(exposed)) > 1.2f);
+    CHECK(std::ranges::min(gains_of(exposed)) < 0.8f);
+
+    CHECK(sh_degree_of(simulated(spheres, "all")) == 3);
+    CHECK(gains_of(simulated(spheres, "all")) == std::vector<float>(48, 1.0f));
+    CHECK_FALSE(revises_sh_degree(simulated(spheres, "all")));
+    CHECK(sh_degree_of(simulated(glossy, "none")) == 0);
+    CHECK(sh_degree_of(simulated(spheres, "+direction,-exposure,-antialiasing,-sky,-masks,-depth")) == 3);
+    const feature_set listed = simulated(spheres, "exposure,direction");
+    CHECK_FALSE(gains_of(listed).empty());
+    CHECK(sh_degree_of(listed) == 3);
+    CHECK_FALSE(listed.is_on("antialiasing"));
+    CHECK(sh_degree_of(simulated(glossy, "auto", 1)) == 1);
+    CHECK_FALSE(outcome(simulated(glossy, "auto", 0), 0).on);
+    const feature_set settled =
+        simulated(spheres, "auto,-exposure,-antialiasing,-sky,-masks,-depth", 2);  // nothing to look for
+    CHECK(sh_degree_of(settled) == 2);
+    CHECK_FALSE(revises_sh_degree(settled));
+    CHECK(outcome(settled, 0).reason == "--sh-degree 2");
+
+    const feature_set under_sky = simulated(made("spheres,sky=0.7"), "auto");
+    CHECK(outcome(under_sky, 3).on);
+    CHECK(under_sky.values_if_on("sky").size() == gs::sky_width);
+    CHECK(std::abs(under_sky.values_if_on("sky")[0]) > 0.1f);
+    CHECK(matte.values_if_on("sky").empty());
+    CHECK(simulated(spheres, "all").values_if_on("sky") == std::vector<float>(gs::sky_width, 0.0f));
+    CHECK(simulated(made("alpha"), "all").values_if_on("sky").empty());
+    CHECK(outcome(simulated(made("alpha"), "all"), 3).reason == "photos have transparent parts");
+    CHECK(outcome(simulated(spheres, "all"), 4).reason == "no mask leaves anything out of a training photo");
+    const feature_set masked = simulated(made("spheres,passers=0.1"), "auto");
+    CHECK(outcome(masked, 4).on);
+    CHECK(outcome(masked, 4).reason.starts_with("48 of 48 photos have masks, which leave out "));
+
+    CHECK(outcome(simulated(spheres, "all"), 5).reason == "no training photo has a depth map");
+    CHECK(simulated(spheres, "all").values_if_on("depth").empty());
+    const gs::scene estimated = made("spheres,views=4,points=1000,depths=0.02");
+    CHECK(simulated(estimated, "none").values_if_on("depth").empty());
+    for (const char* text : {"auto", "depth"}) {
+        const feature_set deep = simulated(estimated, text);
+        CHECK(outcome(deep, 5).on);
+        const std::vector<float> fits = deep.values_if_on("depth");
+        REQUIRE(fits.size() == 8);
+        for (std::size_t i = 0; i < 8; i += 2) CHECK(fits[i] > 0);
+    }
+    const feature_set wrong = simulated(made("spheres,views=4,depths=10"), "all");
+    CHECK_FALSE(outcome(wrong, 5).on);
+    CHECK(outcome(wrong, 5).reason.starts_with(
         "4 of 4 photos have depth maps, of which 0 agree with the points; the median correlation is "));
 }
 
@@ -133,13 +179,13 @@ TEST_CASE("a selection of effects that is none is refused") {
         CHECK(refusal(text) == "");
     }
     CHECK(refusal("glare") ==
-          "--effects: there is no effect 'glare'; there are direction, exposure, antialiasing, sky, masks, "
+          "--effects: there is no effect 'glare'; the effects are direction, exposure, antialiasing, sky, masks, "
           "depth");
-    CHECK(parse_selection("auto").takes(effect::masks));
-    CHECK(parse_selection("masks").takes(effect::masks));
-    CHECK_FALSE(parse_selection("none").takes(effect::masks));
-    CHECK_FALSE(parse_selection("all,-masks").takes(effect::masks));
-    CHECK(parse_selection("all,-masks").takes(effect::depth));
+    CHECK(parse_selection("auto").allows("masks"));
+    CHECK(parse_selection("masks").allows("masks"));
+    CHECK_FALSE(parse_selection("none").allows("masks"));
+    CHECK_FALSE(parse_selection("all,-masks").allows("masks"));
+    CHECK(parse_selection("all,-masks").allows("depth"));
     for (const char* text : {"auto,exposure", "exposure,+direction", "exposure,auto", ""}) {
         CAPTURE(text);
         CHECK(refusal(text).starts_with("--effects"));
@@ -155,7 +201,7 @@ TEST_CASE("gradients by the picture and by the exposure are those of central dif
         const auto picture = random_picture(random, 3 * pixels), weights = random_picture(random, 3 * pixels);
         // Of the sum of weights and exposed values, by an exposure that was learnt.
         gs::features::exposures<device_type> exposures(device);
-        exposures.set({gs::features::identity_exposure, gs::features::identity_exposure});
+        exposures.set({identity_exposure, identity_exposure});
         const auto show = [&](const std::vector<float>& of) {
             const float* shown = exposures.show(1, of.data(), pixels);
             return std::vector<float>(shown, shown + 3 * pixels);
@@ -163,7 +209,7 @@ TEST_CASE("gradients by the picture and by the exposure are those of central dif
         CHECK(show(picture) == picture);
         for (int i = 0; i < 30; ++i) exposures.learn(1, picture.data(), weights.data(), pixels, 0.02f, {});
         const auto values = exposures.get();
-        CHECK(values[0] == gs::features::identity_exposure);
+        CHECK(values[0] == identity_exposure);
         for (const float x : {values[1][0], values[1][5], values[1][10]})
             CHECK(x == doctest::Approx(0.4).epsilon(
                            1e-3));  // each step is of the rate: all gradients are positive
@@ -181,7 +227,7 @@ TEST_CASE("gradients by the picture and by the exposure are those of central dif
             CHECK((loss(more) - loss(picture)) * 2 ==
                   doctest::Approx(static_cast<double>(by[i])).epsilon(1e-4));
         }
-        exposures.centre();
+        exposures.normalize();
         const auto centred = exposures.get();
         for (std::size_t k = 0; k < 12; ++k)
             CHECK(0.5f * (centred[0][k] + centred[1][k]) ==
@@ -193,7 +239,7 @@ TEST_CASE("gradients by the picture and by the exposure are those of central dif
 TEST_CASE("a step without room, or whose gradient is not finite, leaves the exposure") {
     gs::device::cpu device;
     gs::features::exposures<gs::device::cpu> exposures(device);
-    exposures.set({gs::features::identity_exposure});
+    exposures.set({identity_exposure});
     const auto before = exposures.get();
     const std::vector<float> picture(3, 0.5f), nothing(3, std::nanf(""));
     const std::uint64_t needed = 2;
@@ -234,10 +280,10 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
             return sum;
         };
         gs::train::adam_parameters<gs::device::cpu, gs::sky_width> numbers(device);
-        const auto sums = numbers.sums(gs::train::sky_patch<warp, false>::count(width, height));
+        const auto sums = numbers.sums(sky_patch<warp, false>::count(width, height));
         gs::raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
             device.for_each_warp(
-                sums.warps, gs::train::sky_backward<warp, Fisheye>{
+                sums.warps, sky_backward<warp, Fisheye>{
                                 gs::raster::for_device<warpagg::value_t<warp, float>>(camera), through.data(),
                                 weights.data(), sums});
         });
@@ -323,13 +369,14 @@ TEST_CASE("quality: with depth maps, few photos with few points make a better sc
                 o.max_cap = 4000;
                 o.seed = seed;
                 o.gradient = gs::accumulator::fixed;  // the same whenever it is run: runs differ by a dB
-                o.depth_fits = fits;
+                if (!fits.empty())
+                    o.features = feature_set({{"depth", true, "", flattened_fits(fits)}});
                 e->set_views(scene.train, scene.test, o.schedule.num_downscales);
                 e->set_model(gs::from_points(scene.points, 0, 4000, seed));
                 gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
                 return gs::evaluate::measure_held_out_views(*e, scene, {}, {}).psnr();
             };
-            const depth_evidence found = compare_depths(scene);
+            const depth_agreement found = compare_depths(scene);
             CHECK(found.agreeing >= 3);
             gain += psnr_with(found.fits) / 4 - psnr_with({}) / 4;
         }
@@ -348,17 +395,24 @@ TEST_CASE("photos of different exposures are fitted, and their mean stays") {
             o.schedule.iterations = 400;
             o.schedule.sh_degree = 0;
             o.max_cap = 4000;
-            if (exposes) o.exposures.assign(scene.train.size(), gs::features::identity_exposure);
+            if (exposes)
+                o.features = feature_set(
+                    {{"exposure", true, "",
+                      flattened(std::vector(scene.train.size(), identity_exposure))}});
             e->set_views(scene.train, {}, o.schedule.num_downscales);
             e->set_model(gs::from_points(scene.points, 0, 3000, 1));
             gs::train::train_events events{[&](const gs::train::progress& p) { psnr[exposes] = p.psnr; },
                                            [](int) {}, [](int) {}};
-            const auto result = gs::train::train(*e, scene, o, events);
-            CHECK(result.exposures.size() == (exposes ? scene.train.size() : 0));
-            if (!exposes) continue;
+            gs::train::train(*e, scene, o, events);
+            const auto learned = exposures_from(e->feature("exposure").values());
+            CHECK(learned.size() == scene.train.size());
+            if (!exposes) {
+                CHECK(learned == std::vector(scene.train.size(), identity_exposure));
+                continue;
+            }
             CHECK(psnr[1] > psnr[0] + 3);
             double mean = 0, square = 0;
-            for (const auto& x : result.exposures) {
+            for (const auto& x : learned) {
                 mean += static_cast<double>(x[5]);
                 square += static_cast<double>(x[5] * x[5]);
             }
@@ -411,16 +465,23 @@ TEST_CASE("bands go, with their memory, where training is told so, and come as z
             o.schedule.sh_degree_interval = 5;
             o.schedule.sh_lr = 1e-9;
             o.max_cap = 4000;
-            o.review_bands = [&](int sh_degree) {
-                CHECK(sh_degree == 2);
-                return degree;
-            };
             e->set_views(scene.train, {}, o.schedule.num_downscales);
             gs::gaussians model = gs::from_points(scene.points, 2, 3000, 1);
             std::ranges::fill(model.sh_rest, 0.01f);
             e->set_model(model);
             const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
-            CHECK(gs::train::train(*e, scene, o, quiet).sh_degree == degree);
+            gs::train::training training(*e, scene, o, quiet);
+            int reviews = 0;
+            schedule_revision(
+                training,
+                [&](int sh_degree) {
+                    ++reviews;
+                    CHECK(sh_degree == 2);
+                    return degree;
+                },
+                {});
+            CHECK(training.run().sh_degree == degree);
+            CHECK(reviews == 1);
             const gs::gaussians after = e->get_model();
             CHECK(after.sh_degree == degree);
             const auto rest = static_cast<std::size_t>(after.rest_width());
@@ -447,18 +508,18 @@ TEST_CASE("a review adds bands that what is left of photos calls for, and drops 
             e->set_model(gs::from_points(scene.points, 0, 2000, 1));
             const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
             gs::train::train(*e, scene, o, quiet);
-            const band_review left = review_bands(*e, scene, {}, 0);
+            const sh_review left = revise_sh_degree(*e, scene, {}, 0);
             CHECK((glossy ? left.sh_degree >= 2 : left.sh_degree == 0));
             CHECK_FALSE(left.change);
             CHECK(left.unexplained[0] > 0);
             if (glossy) continue;
-            sh_of(*e).set_degree(2);
-            CHECK(review_bands(*e, scene, {}, 2).sh_degree == 0);
+            dynamic_cast<gs::train::sh_degree_state&>(e->feature("direction")).set_degree(2);
+            CHECK(revise_sh_degree(*e, scene, {}, 2).sh_degree == 0);
             gs::gaussians model = e->get_model();
             for (std::size_t i = 0; i < model.sh_rest.size(); ++i)
                 if (i % 24 < 9) model.sh_rest[i] = 0.02f;  // the band of degree 1
             e->set_model(model);
-            const band_review kept = review_bands(*e, scene, {}, 2);
+            const sh_review kept = revise_sh_degree(*e, scene, {}, 2);
             CHECK(kept.sh_degree == 1);
             REQUIRE(kept.change);
             CHECK(*kept.change > band_change_limit);
@@ -469,12 +530,12 @@ TEST_CASE("test photos are exposed as their neighbours, if training photos are")
     gs::scene scene;
     for (const char* name : {"e", "a", "c", "g"}) scene.train.emplace_back().name = name;
     for (const char* name : {"0", "b", "d", "z"}) scene.test.emplace_back().name = name;
-    const auto gain = [](float x) { return gs::features::exposure{x, 0, 0, 0, 0, x, 0, 0, 0, 0, x, 0}; };
+    const auto gain = [](float x) { return exposure{x, 0, 0, 0, 0, x, 0, 0, 0, 0, x, 0}; };
     const std::vector walk{gain(1.2f), gain(0.8f), gain(1), gain(1.4f)};
-    CHECK(gs::evaluate::held_out_exposures(scene, walk) ==
+    CHECK(held_out_exposures(scene, walk) ==
           std::vector{gain(0.8f), gain(0.5f * (0.8f + 1)), gain(0.5f * (1 + 1.2f)), gain(1.4f)});
     const std::vector jumps{gain(0.6f), gain(0.8f), gain(1.4f), gain(1.2f)};
-    CHECK(gs::evaluate::test_exposures(scene, jumps) == std::vector(4, gs::features::identity_exposure));
+    CHECK(held_out_exposures(scene, jumps) == std::vector(4, identity_exposure));
 }
 
 TEST_CASE("what test views are shown with is what they are measured with") {
@@ -485,14 +546,14 @@ TEST_CASE("what test views are shown with is what they are measured with") {
         e->set_model(gs::from_points(scene.points, 0, 1000, 1));
         std::vector<float> plain, darker;
         const double before = e->measure(1, {}, &plain).psnr();
-        auto half = std::vector(scene.test.size(), gs::features::identity_exposure);
+        auto half = std::vector(scene.test.size(), identity_exposure);
         half[1] = {0.5f, 0, 0, 0.1f, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0};
-        e->set_test_exposures(half);
+        e->feature("exposure").set_held_out_values(flattened(half));
         CHECK(e->measure(1, {}, &darker).psnr() < before);
         for (std::size_t i = 0; i < plain.size(); ++i)
             CHECK(darker[i] == doctest::Approx(0.5f * plain[i] + (i < plain.size() / 3 ? 0.1f : 0.0f)));
         CHECK(e->measure(0, {}, &darker).psnr() != before);
-        e->set_test_exposures({});
+        e->feature("exposure").set_held_out_values({});
         CHECK(e->measure(1, {}).psnr() == before);
     }
 }

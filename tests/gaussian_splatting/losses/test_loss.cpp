@@ -91,19 +91,25 @@ struct outcome {
     double loss;
 };
 
+/// Makes this loss whatever the name.
+template <class Loss>
+std::unique_ptr<gs::train::loss<float>> named(cpu& device, const std::string&) {
+    return gs::train::make_loss<Loss>(device);
+}
+
 /// Three deterministic steps with this loss.
-outcome steps_with(gs::train::loss_factory<cpu> make) {
+outcome steps_with(std::unique_ptr<gs::train::loss<float>> (*make)(cpu&, const std::string&)) {
     const gs::scene scene = small_scene();
-    gs::train::device_engine<cpu> engine;
-    engine.set_loss(make);
+    gs::train::device_engine<cpu> engine({.make_loss = make});
     engine.set_views(scene.train, {}, 0);
     engine.set_model(gs::from_points(scene.points, 0, 300, 1));
-    engine.reserve();
+    static_cast<gs::train::engine&>(engine).begin(setup_with(gs::accumulator::fixed));
+    static_cast<gs::train::engine&>(engine).reserve();
     auto plan = plan_for(0);
-    plan.gradient = gs::accumulator::fixed;
     for (plan.iteration = 1; plan.iteration <= 3; ++plan.iteration) engine.step(plan);
-    return {engine.get_model(), engine.take_report().faults[static_cast<std::size_t>(fault_kind::sum)].count,
-            engine.take_report().loss.loss};
+    const gs::train::step_report report = engine.take_report();
+    return {engine.get_model(), report.faults[static_cast<std::size_t>(fault_kind::sum)].count,
+            report.loss.loss};
 }
 
 double largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
@@ -174,16 +180,18 @@ TEST_CASE("losses: masked pixels have no gradient, and incomplete renders do not
 }
 
 TEST_CASE("losses: an unknown name is an error that lists the names") {
+    gs::train::training_setup setup;
+    setup.loss = "l3";
     for (const auto make : engines())
-        CHECK_THROWS_WITH_AS(make()->set_loss("l3"),
+        CHECK_THROWS_WITH_AS(make()->begin(setup),
                              doctest::Contains("no loss is called \"l3\"; choose one of: l1_ssim"),
                              gs::error);
 }
 
 TEST_CASE("gradient_scale: a loss of another scale trains deterministically as well") {
-    const outcome plain = steps_with(gs::train::make_loss<gs::train::l1_ssim<cpu, float>>);
-    const outcome large = steps_with(gs::train::make_loss<scaled<10, 10>>);
-    const outcome small = steps_with(gs::train::make_loss<scaled<-10, -10>>);
+    const outcome plain = steps_with(named<gs::train::l1_ssim<cpu, float>>);
+    const outcome large = steps_with(named<scaled<10, 10>>);
+    const outcome small = steps_with(named<scaled<-10, -10>>);
     CHECK(plain.unfit_sums == 0);
     for (const outcome* other : {&large, &small}) {
         CHECK(other->unfit_sums == 0);
@@ -194,8 +202,8 @@ TEST_CASE("gradient_scale: a loss of another scale trains deterministically as w
 }
 
 TEST_CASE("gradient_scale: sums beyond the headroom of a scale that is too small are reported") {
-    const outcome plain = steps_with(gs::train::make_loss<gs::train::l1_ssim<cpu, float>>);
-    const outcome wrong = steps_with(gs::train::make_loss<scaled<30, 0>>);
+    const outcome plain = steps_with(named<gs::train::l1_ssim<cpu, float>>);
+    const outcome wrong = steps_with(named<scaled<30, 0>>);
     CHECK(wrong.unfit_sums == 3);  // in each step
     CHECK(largest_difference(wrong.model.opacity, plain.model.opacity) > 1e-2);
     for (const float x : wrong.model.mean) CHECK(std::isfinite(x));

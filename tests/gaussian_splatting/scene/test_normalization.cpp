@@ -10,7 +10,11 @@
 #include <string>
 
 #include "../../support/temporary_folder.hpp"
+#include "evaluation/held_out_views.hpp"
+#include "readers/load_scene.hpp"
+#include "training/initialise.hpp"
 #include "training/training.hpp"
+#include "writers/ply/ply.hpp"
 
 namespace {
 

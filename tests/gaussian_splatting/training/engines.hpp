@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/engine.hpp"
+#include "engine/sh_degree_state.hpp"
 #include "readers/load_scene.hpp"
 #include "training/schedule.hpp"
 
@@ -40,6 +41,17 @@ inline gs::train::step_plan plan_for(std::size_t view) {
     p.view = view;
     p.rates = s.rates_at(1);
     return p;
+}
+
+/// A training run with these sums of gradients, and the defaults otherwise.
+inline gs::train::training_setup setup_with(gs::accumulator sums) {
+    gs::train::training_setup setup;
+    setup.facts.gradient = sums;
+    return setup;
+}
+
+inline gs::train::sh_degree_state& sh_of(gs::train::engine& e) {
+    return dynamic_cast<gs::train::sh_degree_state&>(e.feature("direction"));
 }
 
 /// Densifies once, by what steps have collected, up to `cap` Gaussians. The strategy is `adaptive`: Gaussians

@@ -9,8 +9,10 @@
 #include "core/error.hpp"
 #include "device/cpu/cpu.hpp"
 #include "engines.hpp"
-#include "features/depth/depth_agreement.hpp"
+#include "features/depth/depth_feature.hpp"
+#include "features/exposure/exposure_feature.hpp"
 #include "features/sh_degree/revise_sh_degree.hpp"
+#include "features/sh_degree/sh_degree_feature.hpp"
 #include "render/gradients/gradient_sums.hpp"
 #include "training/initialise.hpp"
 #include "training/training.hpp"
@@ -34,12 +36,18 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene) {
     gs::gaussians model = gs::from_points(scene.points, o.schedule.sh_degree, 500, 1);
     model.antialiased = true;
     model.sky.assign(gs::sky_width, 0.0f);
-    o.exposures.assign(scene.train.size(), gs::features::identity_exposure);
-    o.depth_fits = gs::effects::compare_depths(scene).fits;
-    o.review_bands = [&](int degree) { return gs::effects::review_bands(e, scene, {}, degree).sh_degree; };
-    o.band_change = 0.005;
+    o.features = gs::features::feature_set(
+        {{"exposure", true, "", gs::features::exposure_feature().neutral_values(scene)},
+         {"depth", true, "", gs::features::depth_feature().neutral_values(scene)}});
     e.set_model(model);
-    gs::train::train(e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
+    const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
+    gs::train::training training(e, scene, o, quiet);
+    o.features.schedule(training);
+    const auto revise = [&](int degree) {
+        return gs::features::revise_sh_degree(e, scene, {}, degree).sh_degree;
+    };
+    gs::features::schedule_revision(training, revise, 0.005);
+    training.run();
     return e.get_model();
 }
 

@@ -28,6 +28,13 @@ double psnr_between(const std::vector<float>& a, const std::vector<float>& b) {
     return -10 * std::log10(square / static_cast<double>(a.size()) + 1e-20);
 }
 
+/// Values of the feature "depth" with the same scale for every training view.
+std::vector<float> depth_fits(const gs::scene& scene, float scale) {
+    std::vector<float> values;
+    for (std::size_t v = 0; v < scene.train.size(); ++v) values.insert(values.end(), {scale, 0.0f});
+    return values;
+}
+
 }  // namespace
 
 TEST_CASE("a model comes back from the device as it went, at every degree") {
@@ -151,7 +158,8 @@ TEST_CASE("views that were not shrunk are not to be had") {
         const auto e = make();
         e->set_views(scene.train, {}, 1);
         e->reserve(1);
-        CHECK_THROWS_WITH_AS(e->set_downscales(2), "views were set for 1 shrinkings, not 2", gs::error);
+        CHECK_THROWS_WITH_AS(e->reserve(2),
+                             "the training views have 2 sizes, so they cannot be halved 2 times", gs::error);
     }
 }
 
@@ -251,26 +259,23 @@ TEST_CASE("a picture too large to be numbered is refused") {
 TEST_CASE("what a photo has no depth map for, or one that does not agree, is learnt as if there were none") {
     gs::scene scene = small_scene("synthetic:spheres,depths=0");
     scene.train[1].depths = {};
-    const std::vector<gs::depth_fit> none(scene.train.size()), fits(scene.train.size(), {1e-5f, 0});
     for (const auto make : engines()) {
         const auto e = make();
         e->set_views(scene.train, scene.test, 1);
-        const auto after = [&](std::size_t view, float weight, const std::vector<gs::depth_fit>& all,
-                               int downscales) {
-            e->set_depth_fits(all);
+        const auto after = [&](std::size_t view, bool learns, float scale, int downscales) {
             e->set_model(gs::from_points(scene.points, 0, 3000, 1));
+            gs::train::training_setup setup = setup_with(gs::accumulator::fixed);
+            if (learns) setup.features["depth"] = depth_fits(scene, scale);
+            e->begin(setup);
             e->reserve(downscales);
-            gs::train::step_plan plan = plan_for(view);
-            plan.gradient = gs::accumulator::fixed;
-            plan.depth_weight = weight;
-            e->step(plan);
+            e->step(plan_for(view));
             return e->get_model();
         };
         for (const int downscales : {0, 1}) {
             CAPTURE(downscales);
-            CHECK(same(after(1, 1, fits, downscales), after(1, 0, fits, downscales)));
-            CHECK(same(after(0, 1, none, downscales), after(0, 0, fits, downscales)));
-            CHECK_FALSE(same(after(0, 1, fits, downscales), after(0, 0, fits, downscales)));
+            CHECK(same(after(1, true, 1e-5f, downscales), after(1, false, 1e-5f, downscales)));
+            CHECK(same(after(0, true, 0, downscales), after(0, false, 1e-5f, downscales)));
+            CHECK_FALSE(same(after(0, true, 1e-5f, downscales), after(0, false, 1e-5f, downscales)));
         }
     }
 }
@@ -287,15 +292,16 @@ TEST_CASE("a step whose lists do not fit changes nothing, and is counted") {
         e->set_model(small);
         e->reserve();
         e->set_model(large);
-        e->set_depth_fits(std::vector<gs::depth_fit>(scene.train.size(), {1e-5f, 0}));
-        gs::train::step_plan plan = plan_for(0);
-        plan.depth_weight = 1;
+        gs::train::training_setup setup;
+        setup.features["depth"] = depth_fits(scene, 1e-5f);
+        e->begin(setup);
+        const gs::train::step_plan plan = plan_for(0);
         e->step(plan);
         CHECK(e->take_report().skipped == 1);
         CHECK(same(e->get_model(), large));
         e->reserve();
         e->step(plan);
-        CHECK(e->take_report().skipped == 1);
+        CHECK(e->take_report().skipped == 0);
         CHECK_FALSE(same(e->get_model(), large));
     }
 }

@@ -67,7 +67,7 @@ TEST_CASE("a sound step leaves nothing to find") {
     for (const auto make : engines()) {
         const auto e = ready(make, scene, few(scene));
         e->step(plan_for(0));
-        for (const finding& f : e->take_report().faults) CHECK(f.count == 0);
+        for (const fault_report& f : e->take_report().faults) CHECK(f.count == 0);
     }
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("a gradient that is not finite is left out, and found where it appears
             e->step(plan);
         }
         const auto found = e->take_report().faults;
-        const finding& f = of(found, fault_kind::gradient);
+        const fault_report& f = of(found, fault_kind::gradient);
         CHECK(f.count >= 3);   // an element or more, each time
         CHECK(f.count <= 12);  // of one Gaussian's four
         CHECK(f.iteration == 41);
@@ -124,8 +124,8 @@ TEST_CASE("a sum that fixed point cannot hold is left out, and found where it ap
     for (const auto make : engines())
         for (const bool is_bright : {true, false}) {
             const auto e = ready(make, scene, is_bright ? bright : sound);
+            e->begin(setup_with(gs::accumulator::fixed));
             auto plan = plan_for(0);
-            plan.gradient = gs::accumulator::fixed;
             plan.iteration = 5;
             e->step(plan);
             plan.iteration = 6;
@@ -149,7 +149,7 @@ TEST_CASE("a rate that would drive a parameter out of range moves nothing") {
         plan.rates[static_cast<std::size_t>(gs::parameter::opacity)] = infinity;
         e->step(plan);
         const auto found = e->take_report().faults;
-        const finding& f = of(found, fault_kind::parameter);
+        const fault_report& f = of(found, fault_kind::parameter);
         CHECK(f.count > 0);
         CHECK(f.iteration == 9);
         CHECK(f.parameter == gs::parameter::opacity);

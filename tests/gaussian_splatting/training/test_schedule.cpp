@@ -18,14 +18,6 @@ TEST_CASE("rates of the positions fall a hundredfold, by the scene's extent") {
     CHECK(s.rates_at(1)[5] == doctest::Approx(s.rates_at(1)[4] / 10));
 }
 
-TEST_CASE("the weight of depths falls a hundredfold") {
-    schedule s;
-    s.iterations = 100;
-    CHECK(s.depth_weight_at(0) == 1);
-    CHECK(s.depth_weight_at(50) == doctest::Approx(0.1));
-    CHECK(s.depth_weight_at(100) == doctest::Approx(0.01));
-}
-
 TEST_CASE("a degree of spherical harmonics every interval") {
     schedule s;
     s.sh_degree = 2;

@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "densify/adaptive/adaptive_schedule.hpp"
+#include "engine/sh_degree_state.hpp"
+#include "features/sh_degree/sh_degree_feature.hpp"
 #include "training/training.hpp"
 
 namespace {
@@ -16,7 +20,7 @@ using gs::train::densify_config;
 using gs::train::step_plan;
 
 /// Has nothing but a number of Gaussians, which grow as they may, and notes what it was told to do.
-class recorder final : public gs::train::engine {
+class recorder final : public gs::train::engine, gs::device::profiler {
   public:
     struct made_step {
         step_plan plan;
@@ -25,28 +29,28 @@ class recorder final : public gs::train::engine {
     std::vector<made_step> steps;
     std::vector<densify_config> densifications;
     std::vector<int> sizes_reserved;
-    std::vector<std::size_t> counts;  ///< after each densification
-    std::size_t dropped = 0;          ///< in each
+    std::vector<std::size_t> counts;          ///< after each densification
+    std::size_t dropped = 0;                  ///< in each
+    std::vector<std::size_t> pruned_after;    ///< so many steps
+    std::vector<std::size_t> adjusted_after;  ///< so many steps
+    std::vector<int> degrees;
+    std::vector<std::size_t> pruned_sh_after;  ///< so many steps
 
-    explicit recorder(std::size_t count) : count_(count) {}
+    explicit recorder(std::size_t count) : sh_(*this) {
+        count_ = count;
+        profiler_ = this;
+    }
 
-    std::string device_name() const override { return "none"; }
     void set_views(const std::vector<gs::view>&, const std::vector<gs::view>&, int) override {}
     void set_model(const gs::gaussians&) override {}
     gs::gaussians get_model() override { return {}; }
-    std::size_t count() const override { return count_; }
-    void set_downscales(int times) override { downscales_ = times; }
-    void step(const step_plan& plan) override {
-        CHECK(sizes_reserved.back() == downscales_);
-        steps.push_back({plan, downscales_});
+    void begin(const gs::train::training_setup& setup) override {
+        schedule_ = std::make_unique<gs::train::adaptive_schedule>(setup.densification.adaptive, setup.facts);
+        timetable_ = schedule_.get();
     }
-    const gs::train::timetable& set_strategy(const gs::train::strategy_settings& settings,
-                                             const gs::train::training_facts& facts) override {
-        schedule_ = std::make_unique<gs::train::adaptive_schedule>(settings.adaptive, facts);
-        return *schedule_;
-    }
-    std::vector<std::size_t> pruned_after;  ///< so many steps
-    gs::train::densify_report densify(int iteration) override {
+    void reserve(int downscales) override { sizes_reserved.push_back(downscales); }
+    void step(const step_plan& plan) override { steps.push_back({plan, sizes_reserved.back()}); }
+    std::uint64_t densify(int iteration) override {
         if (schedule_->densifies(iteration)) {
             const densify_config c = schedule_->densify_config_at(iteration, count_);
             densifications.push_back(c);
@@ -58,49 +62,52 @@ class recorder final : public gs::train::engine {
             CHECK(pruned_after.empty());
             pruned_after.push_back(steps.size());
         }
-        return {count_};
+        return 0;
     }
-    std::vector<std::size_t> adjusted_after;  ///< so many steps
     void adjust(int iteration) override {
         CHECK(static_cast<std::size_t>(iteration) == steps.size());
         adjusted_after.push_back(steps.size());
     }
-    std::vector<gs::train::exposure> exposures() override { return {}; }
-    void set_exposures(const std::vector<gs::train::exposure>&) override {}
-    void set_test_exposures(const std::vector<gs::train::exposure>&) override {}
-    void centre_exposures() override {}
-    void set_depth_fits(const std::vector<gs::depth_fit>&) override {}
-    void reserve() override { sizes_reserved.push_back(downscales_); }
-    gs::train::loss_report take_report().loss override { return {}; }
-    std::uint64_t take_report().skipped override { return 0; }
-    gs::train::fault_reports take_report().faults override { return {}; }
+    gs::train::step_report take_report() override { return {}; }
+    gs::train::feature_state& feature(std::string_view) override { return sh_; }
     std::vector<float> render(const gs::camera&, const std::array<float, 3>&, int) override { return {}; }
-    std::vector<int> degrees;
-    void set_sh_degree(int degree) override { degrees.push_back(degree); }
-    std::vector<std::size_t> pruned_sh_after;  ///< so many steps
-    std::size_t prune_sh(double change, gs::gradient_policy) override {
-        CHECK(change == 0.01);
-        CHECK((pruned_after.empty() || pruned_after.back() <= steps.size()));
-        pruned_sh_after.push_back(steps.size());
-        return 0;
-    }
     gs::train::image_quality measure(std::size_t, const std::array<float, 3>&, std::vector<float>*) override {
         return {};
     }
+
+  private:
+    struct sh_state final : gs::train::sh_degree_state {
+        explicit sh_state(recorder& r) : on(r) {}
+        void set_degree(int degree) override { on.degrees.push_back(degree); }
+        std::size_t prune(double change) override {
+            CHECK(change == 0.01);
+            CHECK((on.pruned_after.empty() || on.pruned_after.back() <= on.steps.size()));
+            on.pruned_sh_after.push_back(on.steps.size());
+            return 0;
+        }
+        recorder& on;
+    };
+
+    std::string device_name() const override { return "none"; }
     void sample_times(int) override {}
     gs::device::stage_times times() override { return {}; }
     std::uint64_t pairs() override { return 0; }
     std::size_t peak_device_bytes() const override { return 0; }
     void wait() override {}
 
-  private:
     std::unique_ptr<gs::train::adaptive_schedule> schedule_;
-    std::size_t count_;
-    int downscales_ = 7;  // of some training before
+    sh_state sh_;
+};
+
+/// A revision of the SH degree, if there is one.
+struct revision {
+    std::function<int(int)> degree;
+    std::optional<double> prune_change;
 };
 
 /// What happens in 21 iterations, densifying after 4, 6, ..., 14.
-recorder trained(gs::train::train_options o, std::size_t gaussians = 50, std::size_t dropped = 0) {
+std::unique_ptr<recorder> trained(gs::train::train_options o, std::size_t gaussians = 50,
+                                  std::size_t dropped = 0, const revision& revision = {}) {
     gs::scene scene;
     scene.train.resize(3);
     o.schedule.iterations = 21;
@@ -110,12 +117,14 @@ recorder trained(gs::train::train_options o, std::size_t gaussians = 50, std::si
     adaptive.densification_interval = 2;
     adaptive.densify_until_iter = 15;
     o.max_cap = 100;
-    recorder made(gaussians);
-    made.dropped = dropped;
+    auto made = std::make_unique<recorder>(gaussians);
+    made->dropped = dropped;
     const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
-    gs::train::train(made, scene, o, quiet);
-    CHECK(made.steps.size() == 21);
-    CHECK(made.densifications.size() == 6);
+    gs::train::training training(*made, scene, o, quiet);
+    if (revision.degree) gs::features::schedule_revision(training, revision.degree, revision.prune_change);
+    training.run();
+    CHECK(made->steps.size() == 21);
+    CHECK(made->densifications.size() == 6);
     return made;
 }
 
@@ -124,13 +133,13 @@ recorder trained(gs::train::train_options o, std::size_t gaussians = 50, std::si
 TEST_CASE(
     "by default every step learns all, a fifth from photos of half the size, and growth is free up to the "
     "cap") {
-    const recorder made = trained({});
+    const auto made = trained({});
     for (std::size_t i = 0; i < 21; ++i) {
-        CHECK(made.steps[i].downscales == (i < 4 ? 1 : 0));
-        CHECK(made.steps[i].plan.updates_sh);
+        CHECK(made->steps[i].downscales == (i < 4 ? 1 : 0));
+        CHECK(made->steps[i].plan.updates_sh);
     }
-    CHECK(made.adjusted_after.size() == 21);
-    for (const densify_config& c : made.densifications) {
+    CHECK(made->adjusted_after.size() == 21);
+    for (const densify_config& c : made->densifications) {
         CHECK(c.cap == 100);
         CHECK(c.most_births == densify_config{}.most_births);
         CHECK(c.revised_opacity);
@@ -142,61 +151,61 @@ TEST_CASE("photos grow by the schedule, and lists are sized anew for them") {
     gs::train::train_options o;
     o.schedule.num_downscales = 2;
     o.schedule.resolution_schedule = 6;
-    const recorder made = trained(o);
-    for (std::size_t i = 0; i < 20; ++i) CHECK(made.steps[i].downscales == (i < 6 ? 2 : i < 12 ? 1 : 0));
+    const auto made = trained(o);
+    for (std::size_t i = 0; i < 20; ++i) CHECK(made->steps[i].downscales == (i < 6 ? 2 : i < 12 ? 1 : 0));
 }
 
 TEST_CASE("colours that depend on direction learn every so many steps") {
     gs::train::train_options o;
     o.schedule.sh_update_interval = 4;
-    const recorder made = trained(o);
-    for (std::size_t i = 0; i < 20; ++i) CHECK(made.steps[i].plan.updates_sh == ((i + 1) % 4 == 0));
+    const auto made = trained(o);
+    for (std::size_t i = 0; i < 20; ++i) CHECK(made->steps[i].plan.updates_sh == ((i + 1) % 4 == 0));
 }
 
 TEST_CASE("a budget is grown to evenly from where training stands, whatever is dropped, and below the cap") {
     gs::train::train_options o;
     o.densification.adaptive.budget = 60;
     o.densification.adaptive.revised_opacity = false;
-    const recorder made = trained(o, 30);
-    CHECK(made.counts == std::vector<std::size_t>{35, 40, 45, 50, 55, 60});
-    for (const densify_config& c : made.densifications) {
+    const auto made = trained(o, 30);
+    CHECK(made->counts == std::vector<std::size_t>{35, 40, 45, 50, 55, 60});
+    for (const densify_config& c : made->densifications) {
         CHECK(c.gradient == 0);
         CHECK_FALSE(c.revised_opacity);
     }
-    CHECK(trained(o, 30, 5).counts == std::vector<std::size_t>{30, 31, 34, 38, 44, 55});
-    CHECK(trained(o, 70).counts == std::vector<std::size_t>(6, 70));
+    CHECK(trained(o, 30, 5)->counts == std::vector<std::size_t>{30, 31, 34, 38, 44, 55});
+    CHECK(trained(o, 70)->counts == std::vector<std::size_t>(6, 70));
     o.densification.adaptive.budget = 120;
-    CHECK(trained(o, 30).densifications.back().cap == 100);
+    CHECK(trained(o, 30)->densifications.back().cap == 100);
 }
 
 TEST_CASE("pruning comes once the views have been round after densification") {
     gs::train::train_options o;
-    CHECK(trained(o).pruned_after.empty());
+    CHECK(trained(o)->pruned_after.empty());
     o.densification.adaptive.prune_share = 0.25;
-    const recorder made = trained(o);  // densifies before 15; three views
-    CHECK(made.pruned_after == std::vector<std::size_t>{18});
-    CHECK(made.sizes_reserved.size() == 1 + 1 + 6 + 1);
+    const auto made = trained(o);  // densifies before 15; three views
+    CHECK(made->pruned_after == std::vector<std::size_t>{18});
+    CHECK(made->sizes_reserved.size() == 1 + 1 + 6 + 1);
 }
 
 TEST_CASE("Gaussians lose bands once none comes or goes, and bands have been reviewed and had their time") {
     gs::train::train_options o;
-    CHECK(trained(o).pruned_sh_after.empty());
-    o.band_change = 0.01;
+    CHECK(trained(o)->pruned_sh_after.empty());
+    const revision keeps{[](int degree) { return degree; }, 0.01};
     o.schedule.sh_degree = 1;
     o.schedule.sh_degree_interval = 2;
-    CHECK(trained(o).pruned_sh_after == std::vector<std::size_t>{15});  // densifies before
+    CHECK(trained(o, 50, 0, keeps)->pruned_sh_after == std::vector<std::size_t>{15});  // densifies before
     o.densification.adaptive.prune_share = 0.25;
-    CHECK(trained(o).pruned_sh_after == std::vector<std::size_t>{18});  // prunes
+    CHECK(trained(o, 50, 0, keeps)->pruned_sh_after == std::vector<std::size_t>{18});  // prunes
     o.schedule.sh_degree_interval = 10;
     for (const int degree : {0, 1, 2}) {
         CAPTURE(degree);
-        o.review_bands = [degree](int) { return degree; };
-        const recorder made = trained(o);
-        CHECK(made.degrees == std::vector{degree});
+        const auto made = trained(o, 50, 0, {[degree](int) { return degree; }, 0.01});
+        CHECK(made->degrees == std::vector{degree});
         // Reviewed after 20: none are there, or new ones have no time before the end.
-        CHECK(made.pruned_sh_after == std::vector<std::size_t>(degree == 1 ? 1 : 0, 20));
+        CHECK(made->pruned_sh_after == std::vector<std::size_t>(degree == 1 ? 1 : 0, 20));
     }
     o.densification.adaptive.prune_share = 0;
     o.schedule.sh_degree_interval = 6;  // reviewed after 12, with two new ones the last time
-    CHECK(trained(o).pruned_sh_after == std::vector<std::size_t>{18});
+    const revision adds{[](int) { return 2; }, 0.01};
+    CHECK(trained(o, 50, 0, adds)->pruned_sh_after == std::vector<std::size_t>{18});
 }
