@@ -59,7 +59,7 @@ void check_metrics(const json& metrics) {
 
 }  // namespace
 
-TEST_CASE("train writes a model, measures and renders; evaluate and render read them") {
+TEST_CASE("train writes a model, measures and renders, and evaluate and render read them") {
     const temporary_folder folder;
     const fs::path output = folder / "deep/results", model = model_of(output, 60);
     const outcome trained =

@@ -42,10 +42,6 @@ std::unique_ptr<engine> engine_with(make_engine make, const gs::scene& scene, co
     return e;
 }
 
-gs::train::sh_degree_state& sh_of(engine& e) {
-    return static_cast<gs::train::sh_degree_state&>(e.feature("direction"));
-}
-
 /// Root mean square of the difference between what two engines render of the training views.
 double difference(engine& a, engine& b, const gs::scene& scene) {
     double sum = 0, values = 0;

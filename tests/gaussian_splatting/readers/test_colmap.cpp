@@ -604,7 +604,7 @@ TEST_CASE("a photo never shrinks below one pixel") {
     CHECK(scene.train[0].pixels.height == 1);
 }
 
-TEST_CASE("smaller copies of the photos take their cameras along; other sizes are wrong") {
+TEST_CASE("smaller copies of the photos take their cameras along, and other sizes are wrong") {
     const temporary_folder folder;
     write_scene(folder.path());
     write_photos(folder / "images_2", plain_model(), 20, 15);

@@ -79,7 +79,7 @@ double distance_from_identity(const glm::dmat3& matrix) {
 
 }  // namespace
 
-TEST_CASE("a Blender camera looks along -z with y up; ours along +z with y down") {
+TEST_CASE("a Blender camera looks along -z with y up, ours along +z with y down") {
     const temporary_folder folder;
     write_json(folder / "transforms_train.json", transforms(folder.path(), "train", 2));
     const gs::scene scene = load(folder.path());
@@ -220,7 +220,7 @@ TEST_CASE("masks of a transforms file leave out where they are black") {
     json file = transforms(folder.path(), "train", 2);
     file["frames"][1]["mask_path"] = "masks/second.png";
     write_json(folder / "transforms_train.json", file);
-    CHECK(says(error_of_loading(folder.path()), {"frame 1", "masks/second.png", "no file"}));
+    CHECK(says(error_of_loading(folder.path()), {"frame 1", "masks/second.png", "does not exist"}));
     const gs::camera c = [&] {
         auto options = options_for(folder.path());
         options.masks = false;
@@ -319,8 +319,8 @@ TEST_CASE("transforms files that say something impossible") {
          [](json& f) { f["camera_angle_x"] = "wide"; },
          {"frame 0", "camera_angle_x", "not a number"}},
         {"focal", [](json& f) { f["frames"][1]["fl_x"] = -1; }, {"frame 1", "focal length"}},
-        {"width", [](json& f) { f["w"] = 0; }, {"frame 0", "w is 0", "no size"}},
-        {"height", [](json& f) { f["h"] = 1e30; }, {"frame 0", "h is 1", "no size"}},
+        {"width", [](json& f) { f["w"] = 0; }, {"frame 0", "w is 0", "whole number from 1"}},
+        {"height", [](json& f) { f["h"] = 1e30; }, {"frame 0", "h is 1", "whole number from 1"}},
         {"no pose",
          [](json& f) { f["frames"][1].erase("transform_matrix"); },
          {"frame 1", "train_1", "transform_matrix is missing"}},

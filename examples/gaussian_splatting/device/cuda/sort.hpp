@@ -84,6 +84,45 @@ __device__ inline std::uint32_t count_before(const std::uint32_t* known, unsigne
     }
 }
 
+/// Ranks each key among the keys of its warp with the same digit, and adds these to the warp's counts. All
+/// lanes of the warp call it together.
+template <class Key>
+__device__ __forceinline__ void rank_in_warp(const Key (&key)[keys_a_thread], unsigned shift,
+                                             std::uint32_t (&counts)[digits],
+                                             std::uint32_t (&rank)[keys_a_thread]) {
+#pragma unroll
+    for (unsigned k = 0; k < keys_a_thread; ++k) {
+        const std::uint32_t digit = digit_of(key[k], shift);
+        unsigned peers = every_lane;
+#pragma unroll
+        for (unsigned bit = 0; bit < digit_bits; ++bit) {
+            const bool one = digit >> bit & 1;
+            const unsigned ones = __ballot_sync(every_lane, one);
+            peers &= one ? ones : ~ones;
+        }
+        rank[k] = counts[digit] + lanes_before(peers);
+        __syncwarp();
+        if (is_last_of(peers)) counts[digit] = rank[k] + 1;
+        __syncwarp();
+    }
+}
+
+/// Writes the sorted pairs of a tile, the first of which is number `first` of n, to their places. `moved`
+/// has, by digit, how far a pair moves. All threads of the block call it together.
+template <class Key, class Value>
+__device__ __forceinline__ void write_sorted(const Key* sorted_keys, const Value* sorted_values,
+                                             const std::uint32_t* moved, unsigned shift, unsigned first,
+                                             unsigned n, Key* to_keys, Value* to_values) {
+#pragma unroll
+    for (unsigned k = 0; k < keys_a_thread; ++k) {
+        const unsigned place = k * sorting_threads + threadIdx.x;
+        if (first + place >= n) break;
+        const std::uint32_t to = moved[digit_of(sorted_keys[place], shift)] + place;
+        to_keys[to] = sorted_keys[place];
+        to_values[to] = sorted_values[place];
+    }
+}
+
 /// Moves the pairs to where they are once sorted by one digit: one block for a tile of them.
 template <class Key, class Value>
 __global__ void __launch_bounds__(sorting_threads)
@@ -111,21 +150,7 @@ __global__ void __launch_bounds__(sorting_threads)
         const unsigned i = mine + k * warp_size;
         key[k] = i < n ? keys[i] : ~Key{0};
     }
-#pragma unroll
-    for (unsigned k = 0; k < keys_a_thread; ++k) {
-        const std::uint32_t digit = digit_of(key[k], shift);
-        unsigned peers = every_lane;
-#pragma unroll
-        for (unsigned bit = 0; bit < digit_bits; ++bit) {
-            const bool one = digit >> bit & 1;
-            const unsigned ones = __ballot_sync(every_lane, one);
-            peers &= one ? ones : ~ones;
-        }
-        rank[k] = counts[warp][digit] + lanes_before(peers);
-        __syncwarp();
-        if (is_last_of(peers)) counts[warp][digit] = rank[k] + 1;
-        __syncwarp();
-    }
+    rank_in_warp(key, shift, counts[warp], rank);
     __syncthreads();
 
     // From here on a thread stands for a value of the digit.
@@ -157,14 +182,7 @@ __global__ void __launch_bounds__(sorting_threads)
         if (i < n) sorted_values[place] = values[i];
     }
     __syncthreads();
-#pragma unroll
-    for (unsigned k = 0; k < keys_a_thread; ++k) {
-        const unsigned place = k * sorting_threads + threadIdx.x;
-        if (first + place >= n) break;
-        const std::uint32_t to = moved[digit_of(sorted_keys[place], shift)] + place;
-        to_keys[to] = sorted_keys[place];
-        to_values[to] = sorted_values[place];
-    }
+    write_sorted(sorted_keys, sorted_values, moved, shift, first, n, to_keys, to_values);
 }
 
 }  // namespace gs::device::detail

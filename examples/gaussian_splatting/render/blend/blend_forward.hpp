@@ -87,9 +87,18 @@ struct blend_forward {
                 });
             }
         }
+        write_pixels(w, p, state, end);
+        add_pairs(w, walked * rows * W::size);
+    }
 
+  private:
+    /// Writes the color, the transmittance and the last splat of each pixel.
+    template <class W, class Patch>
+    WARPAGG_HD void write_pixels(const W& w, const Patch& p, const value_t<W, Real> (&state)[Cut::rows][4],
+                                 const value_t<W, unsigned> (&end)[Cut::rows]) const {
+        using real = value_t<W, Real>;
         const auto plane = static_cast<unsigned>(lists.width * lists.height);
-        for (unsigned k = 0; k < rows; ++k) {
+        for (unsigned k = 0; k < Cut::rows; ++k) {
             const auto pixel = p.pixel + k * p.step;
             const real T = warpagg::math::abs(state[k][0]);
             for (unsigned c = 0; c < 3; ++c)
@@ -98,10 +107,8 @@ struct blend_forward {
             w.store(transmittance, pixel, T, p.inside[k]);
             w.store(last, pixel, end[k], p.inside[k]);
         }
-        add_pairs(w, walked * rows * W::size);
     }
 
-  private:
     template <class W>
     WARPAGG_HD void add_pairs(const W& w, unsigned evaluated) const {
         unsigned long long* to = pairs;
