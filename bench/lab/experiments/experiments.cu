@@ -29,7 +29,7 @@ namespace commit = warpagg::commit;
 constexpr unsigned records = 1u << 20, blocks = 132 * 16, threads = 128, steps_per_warp = 2048, seed = 12345;
 constexpr int rounds = 7, n = 9, stride = 12;
 
-__device__ void scatter(const cuda_warp& w, float (&sums)[n]) {
+__device__ void scatter(const warp& w, float (&sums)[n]) {
     reduce::reduce_over_warp<warpagg::operation::sum>(
         reduce::scatter{}, w, [&](int i) { return sums[i]; }, sums);
 }
@@ -37,14 +37,14 @@ __device__ void scatter(const cuda_warp& w, float (&sums)[n]) {
 /// An idea adds the values of `batch` steps, each to its own record.
 struct nothing {
     static constexpr int batch = 1;
-    __device__ void operator()(const cuda_warp&, float* const (&)[1], const float (&)[1][n],
+    __device__ void operator()(const warp&, float* const (&)[1], const float (&)[1][n],
                                const bool (&)[1]) const {}
 };
 
 template <class Policy>
 struct by_policy {
     static constexpr int batch = 1;
-    __device__ void operator()(const cuda_warp& w, float* const (&to)[1], const float (&v)[1][n],
+    __device__ void operator()(const warp& w, float* const (&to)[1], const float (&v)[1][n],
                                const bool (&active)[1]) const {
         warpagg::warp_reduce_atomic(w, to[0], v[0], active[0], Policy{});
     }
@@ -53,7 +53,7 @@ struct by_policy {
 /// The masks in a branch of their own.
 struct masked_in_a_branch {
     static constexpr int batch = 1;
-    __device__ void operator()(const cuda_warp& w, float* const (&to)[1], const float (&v)[1][n],
+    __device__ void operator()(const warp& w, float* const (&to)[1], const float (&v)[1][n],
                                const bool (&active)[1]) const {
         const std::uint32_t votes = w.ballot(w.opaque(active[0]));
         if (votes == 0) return;
@@ -71,7 +71,7 @@ struct masked_in_a_branch {
 /// Nothing is masked where all lanes are active.
 struct unmasked_if_full {
     static constexpr int batch = 1;
-    __device__ void operator()(const cuda_warp& w, float* const (&to)[1], const float (&v)[1][n],
+    __device__ void operator()(const warp& w, float* const (&to)[1], const float (&v)[1][n],
                                const bool (&active)[1]) const {
         const std::uint32_t votes = w.ballot(w.opaque(active[0]));
         if (votes == 0) return;
@@ -101,7 +101,7 @@ struct batched {
             return record + i;
         }
     };
-    __device__ void operator()(const cuda_warp& w, float* const (&to)[B], const float (&v)[B][n],
+    __device__ void operator()(const warp& w, float* const (&to)[B], const float (&v)[B][n],
                                const bool (&active)[B]) const {
         records_of where;
         float all[B * n];
@@ -119,7 +119,7 @@ struct batched {
 template <int B>
 struct presummed {
     static constexpr int batch = B;
-    __device__ void operator()(const cuda_warp& w, float* const (&to)[B], const float (&v)[B][n],
+    __device__ void operator()(const warp& w, float* const (&to)[B], const float (&v)[B][n],
                                const bool (&active)[B]) const {
         float all[n] = {};
         bool any = false;
@@ -134,7 +134,7 @@ struct presummed {
 /// Rows to shared memory, and three lanes sum each.
 struct through_shared_memory {
     static constexpr int batch = 1;
-    __device__ void operator()(const cuda_warp& w, float* const (&to)[1], const float (&v)[1][n],
+    __device__ void operator()(const warp& w, float* const (&to)[1], const float (&v)[1][n],
                                const bool (&active)[1]) const {
         constexpr int row = 33;
         __shared__ float rows[threads / 32][n * row];
@@ -173,7 +173,7 @@ struct tensor_cores {
     }
     __device__ static float rest(float x) { return x - __uint_as_float(__float_as_uint(x) & 0xffff0000u); }
 
-    __device__ void operator()(const cuda_warp& w, float* const (&to)[1], const float (&v)[1][n],
+    __device__ void operator()(const warp& w, float* const (&to)[1], const float (&v)[1][n],
                                const bool (&active)[1]) const {
         if (!w.any(active[0])) return;
         const unsigned group = w.lane() / 4, in_group = w.lane() % 4;
@@ -204,7 +204,7 @@ struct tensor_cores {
 /// The record to memory by one bulk reduction from shared memory.
 struct bulk_commit {
     static constexpr int batch = 1;
-    __device__ void operator()(const cuda_warp& w, float* const (&to)[1], const float (&v)[1][n],
+    __device__ void operator()(const warp& w, float* const (&to)[1], const float (&v)[1][n],
                                const bool (&active)[1]) const {
         __shared__ alignas(16) float staged[threads / 32][stride];
         float* const mine = staged[threadIdx.x / 32];
@@ -233,7 +233,7 @@ __device__ std::uint32_t next(std::uint32_t& random) { return random = random * 
 template <class Idea>
 __global__ void run(float* memory, std::uint32_t active_below, unsigned steps) {
     constexpr int batch = Idea::batch;
-    const cuda_warp w;
+    const warp w;
     const unsigned thread = blockIdx.x * blockDim.x + threadIdx.x;
     std::uint32_t record = seed ^ (thread / 32 * 747796405u), lane = seed ^ (thread * 2891336453u);
     float values[n] = {};

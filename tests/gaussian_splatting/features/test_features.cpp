@@ -106,8 +106,8 @@ TEST_CASE("what is simulated is what the scene calls for, or what was said") {
     CHECK(gains_of(matte).empty());
     CHECK_FALSE(matte.is_on("antialiasing"));
     REQUIRE(matte.all().size() == 6);
-    for (std::size_t i = 0; const char* name :
-                            {"direction", "exposure", "antialiasing", "sky", "masks", "depth"}) {
+    for (std::size_t i = 0;
+         const char* name : {"direction", "exposure", "antialiasing", "sky", "masks", "depth"}) {
         CHECK(matte.all()[i].name == name);
         CHECK_FALSE(matte.all()[i++].on);
     }
@@ -179,7 +179,8 @@ TEST_CASE("a selection of effects that is none is refused") {
         CHECK(refusal(text) == "");
     }
     CHECK(refusal("glare") ==
-          "--effects: there is no effect 'glare'; the effects are direction, exposure, antialiasing, sky, masks, "
+          "--effects: there is no effect 'glare'; the effects are direction, exposure, antialiasing, sky, "
+          "masks, "
           "depth");
     CHECK(parse_selection("auto").allows("masks"));
     CHECK(parse_selection("masks").allows("masks"));
@@ -283,9 +284,9 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
         const auto sums = numbers.sums(sky_patch<warp, false>::count(width, height));
         gs::raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
             device.for_each_warp(
-                sums.warps, sky_backward<warp, Fisheye>{
-                                gs::raster::for_device<warpagg::value_t<warp, float>>(camera), through.data(),
-                                weights.data(), sums});
+                sums.warps,
+                sky_backward<warp, Fisheye>{gs::raster::for_device<warpagg::value_t<warp, float>>(camera),
+                                            through.data(), weights.data(), sums});
         });
         for (const unsigned k : {0u, 4u, 20u, 47u}) {
             double by = 0;
@@ -369,8 +370,7 @@ TEST_CASE("quality: with depth maps, few photos with few points make a better sc
                 o.max_cap = 4000;
                 o.seed = seed;
                 o.gradient = gs::accumulator::fixed;  // the same whenever it is run: runs differ by a dB
-                if (!fits.empty())
-                    o.features = feature_set({{"depth", true, "", flattened_fits(fits)}});
+                if (!fits.empty()) o.features = feature_set({{"depth", true, "", flattened_fits(fits)}});
                 e->set_views(scene.train, scene.test, o.schedule.num_downscales);
                 e->set_model(gs::from_points(scene.points, 0, 4000, seed));
                 gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
@@ -397,8 +397,7 @@ TEST_CASE("photos of different exposures are fitted, and their mean stays") {
             o.max_cap = 4000;
             if (exposes)
                 o.features = feature_set(
-                    {{"exposure", true, "",
-                      flattened(std::vector(scene.train.size(), identity_exposure))}});
+                    {{"exposure", true, "", flattened(std::vector(scene.train.size(), identity_exposure))}});
             e->set_views(scene.train, {}, o.schedule.num_downscales);
             e->set_model(gs::from_points(scene.points, 0, 3000, 1));
             gs::train::train_events events{[&](const gs::train::progress& p) { psnr[exposes] = p.psnr; },
@@ -472,14 +471,13 @@ TEST_CASE("bands go, with their memory, where training is told so, and come as z
             const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
             gs::train::training training(*e, scene, o, quiet);
             int reviews = 0;
-            schedule_revision(
-                training,
-                [&](int sh_degree) {
-                    ++reviews;
-                    CHECK(sh_degree == 2);
-                    return degree;
-                },
-                {});
+            schedule_revision(training,
+                              [&](int sh_degree) {
+                                  ++reviews;
+                                  CHECK(sh_degree == 2);
+                                  return degree;
+                              },
+                              {});
             CHECK(training.run().sh_degree == degree);
             CHECK(reviews == 1);
             const gs::gaussians after = e->get_model();
