@@ -253,6 +253,7 @@ class device_engine final : public engine, device::profiler {
                               static_cast<std::size_t>(s.camera.width),
                               static_cast<std::size_t>(s.camera.height),
                               s.camera.fisheye ? std::size_t{1} : 0,
+                              views_.train(level_)[s.plan.view].masked ? std::size_t{1} : 0,
                               effects_.antialiasing ? std::size_t{1} : 0,
                               trained_.values.gaussians_with_sh(),
                               strategy_->memory_key(s.plan.iteration)};
