@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/engine.hpp"
 #include "run_program.hpp"
 #include "small_training.hpp"
-#include "engine/engine.hpp"
 
 using namespace gs_test;
 

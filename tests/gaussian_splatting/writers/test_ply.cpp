@@ -351,8 +351,7 @@ TEST_CASE("ply: a header that is no header is refused") {
     check_refused("ply\n", {"no end_header"});
     check_refused("ply\nformat binary_little_endian 1.0\nend_header\n", {"'vertex'"});
     check_refused("ply\nformat binary_little_endian 1.0\nelement vertex 3\nend_header\n", {"'vertex'"});
-    check_refused(with_replaced(text, "property float y", "propeller float y"),
-                  {"unknown", "'propeller"});
+    check_refused(with_replaced(text, "property float y", "propeller float y"), {"unknown", "'propeller"});
     check_refused(with_replaced(text, "element vertex 1\n", ""), {"'property"});
     check_refused(with_replaced(text, "float y", "half y"), {"'y'", "'half'"});
     check_refused(with_replaced(text, "float y", "list uchar float y"), {"'y'", "'list'"});

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "../../render/project/project_backward.hpp"
 #include "../../render/geometry/splat.hpp"
+#include "../../render/project/project_backward.hpp"
 
 namespace gs::train {
 

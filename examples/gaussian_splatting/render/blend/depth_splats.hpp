@@ -3,9 +3,9 @@
 #pragma once
 
 #include "../../model/aosoa.hpp"
+#include "../geometry/splat.hpp"
 #include "../project/geometry.hpp"
 #include "../project/project_backward.hpp"
-#include "../geometry/splat.hpp"
 
 namespace gs::raster {
 

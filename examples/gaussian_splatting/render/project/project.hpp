@@ -8,11 +8,11 @@
 #include "../../core/bits.hpp"
 #include "../../model/spherical_harmonics.hpp"
 #include "../geometry/effect_set.hpp"
+#include "../geometry/splat.hpp"
 #include "../tiles/tile_reach.hpp"
 #include "antialiasing.hpp"
 #include "gaussian_row.hpp"
 #include "geometry.hpp"
-#include "../geometry/splat.hpp"
 
 namespace gs::raster {
 

@@ -8,10 +8,10 @@
 #include "../../model/spherical_harmonics.hpp"
 #include "../geometry/effect_set.hpp"
 #include "../geometry/list_capacity.hpp"
+#include "../geometry/splat.hpp"
 #include "antialiasing.hpp"
 #include "gaussian_row.hpp"
 #include "geometry.hpp"
-#include "../geometry/splat.hpp"
 
 namespace gs::raster {
 
