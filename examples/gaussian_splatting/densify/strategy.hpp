@@ -34,7 +34,7 @@ template <device::device Device>
 struct step_context : trained_gaussians<Device> {
     std::array<float, parameter_count> rates;  ///< learning rates of this step
     /// A step is void if its tile lists did not fit. Kernels must change nothing if `room.exceeded()`.
-    raster::list_room room;
+    raster::list_capacity room;
 };
 
 /// What `strategy::run` works on.

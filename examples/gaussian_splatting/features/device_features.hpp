@@ -29,10 +29,6 @@ class device_features {
             (add<Features>(device), ...);
         }(static_cast<table*>(nullptr));
     }
-    /// Adds a feature that is not in the table.
-    void add(std::string name, std::unique_ptr<part> feature) {
-        parts_.emplace_back(std::move(name), std::move(feature));
-    }
 
     part& named(std::string_view name) {
         const auto found = std::ranges::find(parts_, name, &named_part::first);
@@ -97,8 +93,8 @@ class device_features {
     template <class Feature>
     void add(typename Renderer::device_type& device) {
         if constexpr (requires { typename Feature::template on_device<Renderer>; })
-            add(std::string(Feature().name()),
-                std::make_unique<typename Feature::template on_device<Renderer>>(device));
+            parts_.emplace_back(Feature().name(),
+                                std::make_unique<typename Feature::template on_device<Renderer>>(device));
     }
 
     std::vector<named_part> parts_;

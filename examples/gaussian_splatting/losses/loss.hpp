@@ -46,7 +46,7 @@ class loss {
     /// and blue, of the target's size, as is the render. The result is valid until the next call.
     /// Also adds the loss and the square error to `sums()`, unless `room.exceeded()`: then the
     /// render is incomplete and the step does not count.
-    virtual const Real* gradient(const Real* render, const raster::list_room& room) = 0;
+    virtual const Real* gradient(const Real* render, const raster::list_capacity& room) = 0;
 
     /// The largest magnitude of one value of the gradient for the current target, up to a small
     /// factor: for a mean over n pixels of a function with slope s, about s / n. Deterministic

@@ -106,7 +106,7 @@ struct ssim_compare {
     ssim_window<Real> window;
     int rows;        ///< per strip
     double* totals;  ///< by `comparison_total`
-    raster::list_room room;
+    raster::list_capacity room;
 
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>

@@ -38,7 +38,7 @@ class image_comparison {
 
     /// Compares a render, three planes on the device, with the target, and adds the result to the
     /// totals unless the lists of the view did not fit. Pixels that a mask excludes do not count.
-    void compare(const Real* render, const raster::list_room& room = {}) {
+    void compare(const Real* render, const raster::list_capacity& room = {}) {
         target_.masked ? compare_with<true>(render, room) : compare_with<false>(render, room);
     }
 
@@ -69,7 +69,7 @@ class image_comparison {
 
   private:
     template <bool Masked>
-    void compare_with(const Real* render, const raster::list_room& room) {
+    void compare_with(const Real* render, const raster::list_capacity& room) {
         using first_pass = sum_and_difference<Real, Masked>;
         const auto& [red, green, blue] = target_.background;
         device_.for_each_warp(first_pass::template count<typename Device::warp>(maps_.planes),

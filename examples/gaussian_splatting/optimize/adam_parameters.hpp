@@ -49,7 +49,7 @@ class adam_parameters {
         return {sums_.data(), warps};
     }
     /// A step of row i, unless the lists of the view did not fit. Sets the sums to zero.
-    void learn(std::size_t i, const ordered_sums& sums, float rate, const raster::list_room& room) {
+    void learn(std::size_t i, const ordered_sums& sums, float rate, const raster::list_capacity& room) {
         const int t = ++steps_[i];
         const double by_first = 1 - std::pow(static_cast<double>(adam_from_sums::beta1), t);
         const double by_second = 1 - std::pow(static_cast<double>(adam_from_sums::beta2), t);

@@ -148,7 +148,7 @@ class renderer {
             if (backdrop_.planes == nullptr) {
                 sums = blend_backward_by(kernel{}, picture_gradient, largest).data();
             } else if constexpr (Variant::supports_backdrop) {
-                using before_colours = typename Variant::template kernel<Real, Cut, colour_a_pixel<Real>>;
+                using before_colours = typename Variant::template kernel<Real, Cut, image_background<Real>>;
                 sums = blend_backward_by(before_colours{}, picture_gradient, largest).data();
             } else {
                 throw error("this accumulator has no gradient for an image in front of a learned background");
@@ -177,7 +177,7 @@ class renderer {
     /// What is left of light from behind all splats, by pixel of the last `forward`.
     const Real* transmittance() const { return transmittance_.data(); }
     /// Whether the last view's instances fit.
-    list_room room() const { return {needed_.data(), capacity_}; }
+    list_capacity room() const { return {needed_.data(), capacity_}; }
     /// On the device: pixel-Gaussian pairs evaluated by all `forward`s so far.
     const unsigned long long* pairs() const { return pairs_.data(); }
 
@@ -202,7 +202,7 @@ class renderer {
             return blended{background,   picture_.data(),     transmittance_.data(),
                            last_.data(), checkpoints_.data(), picture_gradient};
         };
-        if constexpr (std::is_same_v<decltype(kernel.view.background), colour_a_pixel<Real>>)
+        if constexpr (std::is_same_v<decltype(kernel.view.background), image_background<Real>>)
             kernel.view = view(backdrop_);
         else
             kernel.view = view(background_);
@@ -302,8 +302,8 @@ class renderer {
     std::size_t count_ = 0;
     camera camera_{};
     int sh_degree_ = 0;
-    one_colour<Real> background_{};
-    colour_a_pixel<Real> backdrop_{};
+    constant_background<Real> background_{};
+    image_background<Real> backdrop_{};
 };
 
 }  // namespace gs::raster

@@ -14,7 +14,7 @@ namespace gs::train {
 
 /// Notes how long the lists of a view are. One index.
 struct note_length {
-    raster::list_room room;
+    raster::list_capacity room;
     std::uint64_t* length;
 
     WARPAGG_HD void operator()(std::size_t) const { *length = *room.needed; }

@@ -15,7 +15,7 @@ namespace gs::train {
 /// Ends a step: counts it if it was skipped, notes how long its lists were, and checks the loss and whether
 /// all sums fitted. One index.
 struct close_step {
-    raster::list_room room;
+    raster::list_capacity room;
     std::uint64_t* skipped;
     std::uint64_t* length;  ///< of the view's lists
     const double* sums;     ///< see `loss::sums`

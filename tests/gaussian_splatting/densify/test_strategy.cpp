@@ -25,7 +25,7 @@ constexpr float penalty = 0.125f;
 /// Subtracts a constant from all opacities, which are logits. One index for each Gaussian.
 struct lower_all {
     float* opacity;
-    gs::raster::list_room room;
+    gs::raster::list_capacity room;
     void operator()(std::size_t i) const {
         if (!room.exceeded()) opacity[i] -= penalty;
     }

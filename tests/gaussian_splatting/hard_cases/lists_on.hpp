@@ -227,8 +227,8 @@ class lists_on {
         made.p = shape.p;
         made.q = shape.q;
         made.r = shape.r;
-        made.slope_x = shape.slope_x;
-        made.slope_y = shape.slope_y;
+        made.dx_per_dy = shape.dx_per_dy;
+        made.dy_per_dx = shape.dy_per_dx;
         made.red = static_cast<Real>(s.colour[0]);
         made.green = static_cast<Real>(s.colour[1]);
         made.blue = static_cast<Real>(s.colour[2]);

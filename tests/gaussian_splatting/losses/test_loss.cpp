@@ -65,7 +65,7 @@ class scaled final : public gs::train::loss<float> {
         gradient_.resize(3 * static_cast<std::size_t>(target.width) *
                          static_cast<std::size_t>(target.height));
     }
-    const float* gradient(const float* render, const gs::raster::list_room& room) override {
+    const float* gradient(const float* render, const gs::raster::list_capacity& room) override {
         const float* gradient = loss_.gradient(render, room);
         device_.for_each_index(gradient_.size(),
                                scale_values{gradient, std::ldexp(1.0f, Exponent), gradient_.data()});

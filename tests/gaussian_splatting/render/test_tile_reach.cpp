@@ -25,8 +25,8 @@ splat<float> random_splat(std::mt19937& random) {
     s.p = std::exp2(-10 * unit(random));
     s.q = std::exp2(-10 * unit(random));
     s.r = (unit(random) < 0.2f ? 0 : 4 * unit(random) - 2) * s.p;
-    s.slope_x = -s.r * s.q / (s.p * s.p + s.r * s.r);
-    s.slope_y = -s.r / s.q;
+    s.dx_per_dy = -s.r * s.q / (s.p * s.p + s.r * s.r);
+    s.dy_per_dx = -s.r / s.q;
     s.reach = 8 * unit(random);
     return s;
 }
@@ -40,8 +40,8 @@ double least_of_all(const splat<float>& f, unsigned x0, unsigned x1, unsigned y0
     for (unsigned row = y0; row < y1; ++row)
         for (unsigned column = x0; column < x1; ++column) {
             const double x = offset(column, f.x), y = offset(row, f.y), side = tile_size - 1;
-            least = std::min(least, gs::raster::least_exponent<double>(f.p, f.q, f.r, f.slope_x, f.slope_y, x,
-                                                                       x + side, y, y + side));
+            least = std::min(least, gs::raster::least_exponent<double>(
+                                        f.p, f.q, f.r, f.dx_per_dy, f.dy_per_dx, x, x + side, y, y + side));
         }
     return least;
 }
@@ -88,7 +88,7 @@ TEST_CASE("lanes look for tiles each for itself") {
         bool expected[8];
         for (int lane = 0; lane < 8; ++lane) {
             const splat<float> s = random_splat(random);
-            const float of_splat[8] = {s.x, s.y, s.p, s.q, s.r, s.slope_x, s.slope_y, s.reach};
+            const float of_splat[8] = {s.x, s.y, s.p, s.q, s.r, s.dx_per_dy, s.dy_per_dx, s.reach};
             for (int k = 0; k < 8; ++k) values[k].set(lane, of_splat[k]);
             const auto below = [&](unsigned end) { return static_cast<unsigned>(random() % end); };
             x0.set(lane, below(40));
@@ -101,7 +101,7 @@ TEST_CASE("lanes look for tiles each for itself") {
         }
         splat<real> s{};
         s.x = values[0], s.y = values[1], s.p = values[2], s.q = values[3], s.r = values[4];
-        s.slope_x = values[5], s.slope_y = values[6], s.reach = values[7];
+        s.dx_per_dy = values[5], s.dy_per_dx = values[6], s.reach = values[7];
         const auto found = reaches_any_tile(w, s, x0, x1, y0, y1, asked);
         CAPTURE(i);
         for (int lane = 0; lane < 8; ++lane) CHECK(found[lane] == expected[lane]);

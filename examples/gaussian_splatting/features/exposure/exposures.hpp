@@ -38,7 +38,7 @@ class exposures {
 
     /// From the gradient by what `show` returned to that by its picture; learns from it.
     const float* learn(std::size_t view, const float* picture, const float* by_exposed, std::size_t pixels,
-                       float rate, const raster::list_room& room) {
+                       float rate, const raster::list_capacity& room) {
         by_picture_.resize(3 * pixels);
         const train::ordered_sums sums = numbers_.sums(expose_backward::warps<warp>(pixels));
         device_.for_each_warp(sums.warps, expose_backward{picture, numbers_.row(view), by_exposed, pixels,

@@ -39,7 +39,7 @@ class sky {
 
     /// From the gradient by a picture before what `draw` has drawn last.
     void learn(const camera& camera, const float* transmittance, const float* by_picture, float rate,
-               const raster::list_room& room) {
+               const raster::list_capacity& room) {
         const train::ordered_sums sums = numbers_.sums(patches(camera));
         raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
             device_.for_each_warp(sums.warps, sky_backward<warp, Fisheye>{raster::for_device<real>(camera),

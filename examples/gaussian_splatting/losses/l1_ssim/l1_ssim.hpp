@@ -28,7 +28,7 @@ class l1_ssim final : public loss<Real> {
                          static_cast<std::size_t>(target.height));
     }
 
-    const Real* gradient(const Real* render, const raster::list_room& room) override {
+    const Real* gradient(const Real* render, const raster::list_capacity& room) override {
         comparison_.compare(render, room);
         comparison_.is_masked() ? differentiate<true>() : differentiate<false>();
         return gradient_.data();

@@ -11,7 +11,7 @@ namespace gs::raster {
 /// What lies behind all splats, where `at` a pixel's place in a plane: one colour, or one a pixel.
 /// @{
 template <class Real>
-struct one_colour {
+struct constant_background {
     vec3<Real> colour;
 
     template <class W>
@@ -21,7 +21,7 @@ struct one_colour {
     }
 };
 template <class Real>
-struct colour_a_pixel {
+struct image_background {
     const Real* planes;  ///< three, as the picture's
 
     template <class W>

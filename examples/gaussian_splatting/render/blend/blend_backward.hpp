@@ -27,7 +27,7 @@ using sum_in_memory = typename sum_of<Real, Policy>::type;
 /// @}
 
 /// What the backward blending reads beside the lists: what the forward one came to, and what comes back.
-template <class Real, class Backdrop = one_colour<Real>>
+template <class Real, class Backdrop = constant_background<Real>>
 struct blended {
     Backdrop background;
     const Real* picture;        ///< three planes
@@ -44,7 +44,8 @@ struct blended {
 /// pixels lie in a column, where u is the same: it is multiplied into the sums once. `Split`: one warp a
 /// patch and segment, else one a patch. `AskFirst`: skip what no pixel of the patch sees before any of it is
 /// computed (the paper, Figure 8).
-template <class Real, class Cut, bool Split, class Policy, bool AskFirst, class Backdrop = one_colour<Real>>
+template <class Real, class Cut, bool Split, class Policy, bool AskFirst,
+          class Backdrop = constant_background<Real>>
 struct blend_backward {
     using policy = Policy;
 

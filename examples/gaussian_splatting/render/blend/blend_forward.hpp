@@ -12,7 +12,7 @@ namespace gs::raster {
 
 /// Front to back over each tile's list: C = sum c_i alpha_i T_i + T b, T_i = prod (1 - alpha_j) (Kerbl et al.
 /// 2023, equation 3). One warp a patch. A pixel ends where a splat would bring T below `least_transmittance`.
-template <class Real, class Cut, class Backdrop = one_colour<Real>>
+template <class Real, class Cut, class Backdrop = constant_background<Real>>
 struct blend_forward {
     tile_lists<Real> lists;
     tile_order order;

@@ -16,9 +16,9 @@ inline constexpr double pixel_variance = 0.3;
 /// first, so nothing overflows either. NaN where the vectors are not finite.
 template <class Real>
 struct ellipse {
-    Real p, q, r;           ///< see `splat`
-    Real slope_x, slope_y;  ///< see `splat`
-    Real width, height;     ///< half the bounding box's sides where the exponent is 1
+    Real p, q, r;               ///< see `splat`
+    Real dx_per_dy, dy_per_dx;  ///< see `splat`
+    Real width, height;         ///< half the bounding box's sides where the exponent is 1
 
     ellipse() = default;
     WARPAGG_HD ellipse(const vec3<Real>& ax, const vec3<Real>& ay) {
@@ -39,15 +39,15 @@ struct ellipse {
         const Real k = sqrt(two_ln2);
         width = k * size_x * sqrt(xx);
         height = k * size_y * sqrt(yy);
-        slope_x = xy / yy / ratio;
-        slope_y = xy / xx * ratio;
+        dx_per_dy = xy / yy / ratio;
+        dy_per_dx = xy / xx * ratio;
         p = 1 / width;
         q = sqrt(xx / (two_ln2 * determinant)) / across;
-        r = -q * slope_y;
+        r = -q * dy_per_dx;
     }
 
     WARPAGG_HD flag_of<Real> is_sound() const {
-        return is_finite(width) && is_finite(height) && is_finite(q) && is_finite(r) && is_finite(slope_x);
+        return is_finite(width) && is_finite(height) && is_finite(q) && is_finite(r) && is_finite(dx_per_dy);
     }
 };
 

@@ -15,11 +15,11 @@ inline constexpr int tile_size = 16;  ///< pixels along a side of a tile, the un
 template <class Real>
 struct alignas(16) alignas(Real) splat {
     // The first eight say which pixels it reaches.
-    Real x, y;              ///< pixels
-    Real p, q, r;           ///< Cholesky factor of the inverse covariance over 2 ln 2
-    Real slope_x, slope_y;  ///< the dx of least exponent at a given dy, over dy; and the other way round
-    Real reach;             ///< log2(opacity / least_alpha); zero or less draws nothing
-    Real strength;          ///< log2(opacity)
+    Real x, y;                  ///< pixels
+    Real p, q, r;               ///< Cholesky factor of the inverse covariance over 2 ln 2
+    Real dx_per_dy, dy_per_dx;  ///< the dx of least exponent at a given dy, over dy; and the other way round
+    Real reach;                 ///< log2(opacity / least_alpha); zero or less draws nothing
+    Real strength;              ///< log2(opacity)
     Real red, green, blue;
 };
 
@@ -44,15 +44,15 @@ struct whitened {
 /// The least exponent over the offsets [x0, x1] × [y0, y1]. The form is convex: the minimum is at the centre
 /// if the box holds it, else on one of the two sides that face it. Each lane may have a splat of its own.
 template <class V>
-WARPAGG_HD V least_exponent(const V& p, const V& q, const V& r, const V& slope_x, const V& slope_y,
+WARPAGG_HD V least_exponent(const V& p, const V& q, const V& r, const V& dx_per_dy, const V& dy_per_dx,
                             const V& x0, const V& x1, const V& y0, const V& y1) {
     using warpagg::math::not_above;
     using warpagg::math::not_below;
     const V zero(0);
     const V x = not_above(not_below(zero, x0), x1);  // the side's abscissa, or zero inside
     const V y = not_above(not_below(zero, y0), y1);
-    const V y_on = not_above(not_below(slope_y * x, y0), y1);
-    const V x_on = not_above(not_below(slope_x * y, x0), x1);
+    const V y_on = not_above(not_below(dy_per_dx * x, y0), y1);
+    const V x_on = not_above(not_below(dx_per_dy * y, x0), x1);
     return warpagg::math::min(whitened<V>(p, q, r, x, y_on).exponent(),
                               whitened<V>(p, q, r, x_on, y).exponent());
 }

@@ -17,7 +17,7 @@ namespace gs::raster {
 struct native_sums {
     /// Whether a kernel exists for a `Backdrop` other than one color.
     static constexpr bool supports_backdrop = true;
-    template <class Real, class Cut, class Backdrop = one_colour<Real>>
+    template <class Real, class Cut, class Backdrop = constant_background<Real>>
     using kernel =
         blend_backward<Real, Cut, true, warpagg::policy<warpagg::reduce::scatter, warpagg::idle::assume_busy>,
                        true, Backdrop>;
@@ -32,7 +32,7 @@ struct sums_kept_in {
     using kept =
         std::conditional_t<std::is_same_v<Real, float>, warpagg::accumulate::between_warps<Accumulate>,
                            warpagg::accumulate::native>;
-    template <class Real, class Cut, class Backdrop = one_colour<Real>>
+    template <class Real, class Cut, class Backdrop = constant_background<Real>>
     using kernel =
         blend_backward<Real, Cut, true,
                        warpagg::policy<warpagg::reduce::scatter, warpagg::idle::assume_busy, kept<Real>>,

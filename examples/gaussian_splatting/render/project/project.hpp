@@ -57,10 +57,10 @@ struct project {
         w.store(corners, 2 * i, drawn(d.x0 | d.y0 << number(16u)), inside);
         w.store(corners, 2 * i + 1, drawn(d.x1 | d.y1 << number(16u)), inside);
         const splat<real>& s = d.shape;
-        const real values[splat_width] = {drawn(s.x),       drawn(s.y),     drawn(s.p),
-                                          drawn(s.q),       drawn(s.r),     drawn(s.slope_x),
-                                          drawn(s.slope_y), drawn(s.reach), drawn(s.strength),
-                                          drawn(s.red),     drawn(s.green), drawn(s.blue)};
+        const real values[splat_width] = {drawn(s.x),         drawn(s.y),     drawn(s.p),
+                                          drawn(s.q),         drawn(s.r),     drawn(s.dx_per_dy),
+                                          drawn(s.dy_per_dx), drawn(s.reach), drawn(s.strength),
+                                          drawn(s.red),       drawn(s.green), drawn(s.blue)};
         w.store_packed(reinterpret_cast<Real*>(splats), i * splat_width, values, inside);
     }
 
@@ -89,8 +89,8 @@ struct project {
         s.p = f.shape.p;
         s.q = f.shape.q;
         s.r = f.shape.r;
-        s.slope_x = f.shape.slope_x;
-        s.slope_y = f.shape.slope_y;
+        s.dx_per_dy = f.shape.dx_per_dy;
+        s.dy_per_dx = f.shape.dy_per_dx;
         const real far = warpagg::math::sqrt(s.reach);
         bound(far * f.shape.width, far * f.shape.height, d);
         row.active = reaches_any_tile(w, s, d.x0, d.x1, d.y0, d.y1, row.active);

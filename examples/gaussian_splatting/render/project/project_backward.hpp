@@ -75,8 +75,8 @@ struct project_backward {
     const std::uint32_t* tiles;
     const Real* sums;  ///< `record_stride` a Gaussian
     Sink sink;
-    visibility* seen;  ///< null: nobody wants to know
-    list_room room;    ///< of the view
+    visibility* seen;    ///< null: nobody wants to know
+    list_capacity room;  ///< of the view
 
     WARPAGG_HD void operator()(const W& w, unsigned warp_index) const {
         if (sink.idle()) return;
@@ -186,7 +186,7 @@ struct project_backward {
         return (d - direction * glm::dot(direction, d)) * sight.inverse_length;
     }
 
-    /// A step that is left out (see `list_room`), or a gradient that is, says nothing of the Gaussian.
+    /// A step that is left out (see `list_capacity`), or a gradient that is, says nothing of the Gaussian.
     WARPAGG_HD void note(const W& w, const value_t<W, unsigned>& i, const mask_t<W>& drawn,
                          const mask_t<W>& active, const vec2<real>& centre) const {
         if (room.exceeded()) return;

@@ -30,7 +30,7 @@ WARPAGG_HD flag_of<Real> reaches_tiles(const splat<Real>& s, const Index& first_
         return warpagg::math::convert<scalar>(tile * Index(tile_size)) + constant<Real>(0.5);
     };
     const Real side = constant<Real>(tile_size - 1);
-    return least_exponent<Real>(s.p, s.q, s.r, s.slope_x, s.slope_y, centre(first_column) - s.x,
+    return least_exponent<Real>(s.p, s.q, s.r, s.dx_per_dy, s.dy_per_dx, centre(first_column) - s.x,
                                 centre(last_column) - s.x + side, centre(first_row) - s.y,
                                 centre(last_row) - s.y + side) <= s.reach;
 }
