@@ -10,16 +10,15 @@
 #include <vector>
 
 #include "../core/error.hpp"
-#include "../densify/strategies.hpp"
 #include "../engine/engine.hpp"
 #include "../engine/sh_degree_state.hpp"
 #include "../features/device_features.hpp"
 #include "../features/sh_degree/prune_sh.hpp"
-#include "../losses/losses.hpp"
 #include "../metrics/image_comparison.hpp"
 #include "../optimize/adam.hpp"
 #include "../render/renderer.hpp"
 #include "device_views.hpp"
+#include "engine_parts.hpp"
 #include "list_sizer.hpp"
 #include "step_monitor.hpp"
 
@@ -32,14 +31,6 @@ struct clamp_picture {
     WARPAGG_HD void operator()(std::size_t i) const {
         to[i] = warpagg::math::min(warpagg::math::max(from[i], 0.0f), 1.0f);
     }
-};
-
-/// What an engine creates by name, from the tables of the doors unless a caller says otherwise.
-template <device::device Device>
-struct engine_parts {
-    std::unique_ptr<loss<float>> (*make_loss)(Device&, const std::string& name) =
-        [](Device& device, const std::string& name) { return find_loss<Device>(name)(device); };
-    strategy_factory<Device> make_strategy = train::make_strategy<Device>;
 };
 
 /// An `engine` on a device: the order of the kernels, and the memory that they share.

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "../training/engine_with_parts.hpp"
 #include "../training/engines.hpp"
 #include "core/error.hpp"
 #include "device/cpu/cpu.hpp"
-#include "training/device_engine.hpp"
 #include "training/initialise.hpp"
 #include "training/training.hpp"
 
@@ -137,8 +137,8 @@ class demanding final : public strategy<cpu> {
 
 TEST_CASE("a second strategy trains through the same interface, with its own interval, penalty and scores") {
     const gs::scene scene = small_scene();
-    device_engine<cpu> made({.make_strategy = make_copy_worst});
-    engine& e = made;
+    const auto made = make_engine_with({.make_strategy = make_copy_worst});
+    engine& e = *made;
     train_options o;
     o.schedule.iterations = 45;
     o.schedule.sh_degree = 1;
@@ -159,8 +159,8 @@ TEST_CASE("a second strategy trains through the same interface, with its own int
 
 TEST_CASE("the work of a strategy after each step is done in that step, once") {
     const gs::scene scene = small_scene();
-    device_engine<cpu> made({.make_strategy = make_copy_worst});
-    engine& e = made;
+    const auto made = make_engine_with({.make_strategy = make_copy_worst});
+    engine& e = *made;
     const gs::gaussians model = gs::from_points(scene.points, 0, 100, 1);
     e.set_views(scene.train, {});
     e.set_model(model);
@@ -184,6 +184,6 @@ TEST_CASE("a strategy that is unknown or needs unknown statistics is refused") {
                                    const training_facts&) -> std::unique_ptr<strategy<cpu>> {
         return std::make_unique<demanding>();
     };
-    CHECK_THROWS_WITH_AS(device_engine<cpu>({.make_strategy = make_demanding}),
+    CHECK_THROWS_WITH_AS(make_engine_with({.make_strategy = make_demanding}),
                          doctest::Contains("needs the gradient column 'unheard_of'"), gs::error);
 }

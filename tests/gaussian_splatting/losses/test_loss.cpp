@@ -7,11 +7,11 @@
 #include <random>
 #include <vector>
 
+#include "../training/engine_with_parts.hpp"
 #include "../training/engines.hpp"
 #include "core/error.hpp"
 #include "device/cpu/cpu.hpp"
 #include "losses/losses.hpp"
-#include "training/device_engine.hpp"
 #include "training/initialise.hpp"
 
 namespace {
@@ -100,11 +100,12 @@ std::unique_ptr<gs::train::loss<float>> named(cpu& device, const std::string&) {
 /// Three deterministic steps with this loss.
 outcome steps_with(std::unique_ptr<gs::train::loss<float>> (*make)(cpu&, const std::string&)) {
     const gs::scene scene = small_scene();
-    gs::train::device_engine<cpu> engine({.make_loss = make});
+    const auto made = make_engine_with({.make_loss = make});
+    gs::train::engine& engine = *made;
     engine.set_views(scene.train, {}, 0);
     engine.set_model(gs::from_points(scene.points, 0, 300, 1));
-    static_cast<gs::train::engine&>(engine).begin(setup_with(gs::accumulator::fixed));
-    static_cast<gs::train::engine&>(engine).reserve();
+    engine.begin(setup_with(gs::accumulator::fixed));
+    engine.reserve();
     auto plan = plan_for(0);
     for (plan.iteration = 1; plan.iteration <= 3; ++plan.iteration) engine.step(plan);
     const gs::train::step_report report = engine.take_report();
