@@ -10,6 +10,7 @@
 
 #include "../densify/strategy_settings.hpp"
 #include "../densify/timetable.hpp"
+#include "../losses/loss.hpp"
 #include "../render/gradients/accumulator.hpp"
 #include "step_plan.hpp"
 
@@ -19,7 +20,7 @@ namespace gs::train {
 struct training_setup {
     training_facts facts;
     strategy_settings densification;
-    std::string loss = "l1_ssim";
+    std::string loss = default_loss;
     /// The features that are on, by name, with the values that they begin from.
     std::map<std::string, std::vector<float>, std::less<>> features;
 

@@ -28,7 +28,7 @@ struct train_options {
     train::schedule schedule;
     strategy_settings densification;
     std::size_t max_cap = 0;  ///< most Gaussians
-    std::string loss = "l1_ssim";
+    std::string loss = default_loss;
     std::uint64_t seed = 0;
     accumulator gradient = accumulator::native;
     background_choice background;
