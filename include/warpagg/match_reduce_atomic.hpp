@@ -85,9 +85,9 @@ WARPAGG_HD void commit_by_key(const W& w, Base base, const value_t<W, unsigned>&
                               const mask_t<W>& active) {
     using record = commit::contiguous_record<V>;
     if constexpr (std::is_same_v<Base, V*> && commit::detail::packs<Op, Commit, W, record, V>) {
-        if constexpr (N % Commit::neighbours == 0) {
+        if constexpr (N % Commit::neighbors == 0) {
             if (commit::is_packed<Op, Commit, V>(w, record{base})) {
-                commit::detail::by_groups<Commit::neighbours, 0>(w, base + std::size_t{key} * N, v, active);
+                commit::detail::by_groups<Commit::neighbors, 0>(w, base + std::size_t{key} * N, v, active);
                 return;
             }
         }

@@ -75,9 +75,9 @@ struct contiguous {
 /// component takes one instruction, as with `scalar`. Each component is atomic by itself.
 template <unsigned K>
 struct packed {
-    static_assert(K == 2 || K == 4, "packed<K> takes K = 2 or 4 neighbours");
+    static_assert(K == 2 || K == 4, "packed<K> takes K = 2 or 4 neighbors");
     static constexpr auto axis = warpagg::axis::commit;
-    static constexpr unsigned neighbours = K;  ///< components per instruction
+    static constexpr unsigned neighbors = K;  ///< components per instruction
 };
 /// Adds to a block's copy of the destination in shared memory, which is added to global memory
 /// once: see stage.hpp. The destination is a record of a `stage`.

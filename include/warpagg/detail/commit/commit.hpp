@@ -42,7 +42,7 @@ WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, class Commit, class V, warp W, class Dst>
 WARPAGG_HD bool is_packed(const W& w, Dst dst) {
     if constexpr (detail::packs<Op, Commit, W, Dst, V>) {
-        return w.template packs<Commit::neighbours>(dst(0));
+        return w.template packs<Commit::neighbors>(dst(0));
     } else {
         return false;
     }
@@ -55,7 +55,7 @@ template <class Op, class Commit, warp W, class Dst, class V, int N>
 WARPAGG_HD void each_lane(const W& w, Dst dst, const V (&v)[N], const mask_t<W>& active) {
     if constexpr (detail::packs<Op, Commit, W, Dst, V>) {
         if (is_packed<Op, Commit, V>(w, dst)) {
-            detail::by_groups<Commit::neighbours, 0>(w, dst(0), v, active);
+            detail::by_groups<Commit::neighbors, 0>(w, dst(0), v, active);
             return;
         }
     }

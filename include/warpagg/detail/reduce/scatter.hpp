@@ -51,7 +51,7 @@ WARPAGG_HD constexpr int held_after_step(int n, unsigned distance) {
 
 /// What the lane holds at place K after the step of Distance: of the values at 2K and 2K + 1 before, it keeps
 /// the first and sends the other to its partner if its bit of Distance is clear, and the other way round if
-/// it is set. A last value without a neighbour is combined by both. Each value is asked for when it is
+/// it is set. A last value without a neighbor is combined by both. Each value is asked for when it is
 /// needed, and a recursion has few of them at a time: on SIMD lanes, registers are fewer than values. No
 /// loop, since nvcc would split one on `upper` and so put the shuffles into divergent branches.
 WARPAGG_EXEC_CHECK_DISABLE

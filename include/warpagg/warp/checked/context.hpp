@@ -48,6 +48,7 @@ class context {
         unpoison(stack, size);
         tsan_fiber_ = sanitizers::create_fiber();
         owns_fiber_ = true;
+        ignores_ = false;
 #if defined(WARPAGG_FIBER_SWITCH_X86_64)
         constexpr std::size_t kept = 6;
         auto** top = reinterpret_cast<void**>((reinterpret_cast<std::uintptr_t>(stack) + size) / 16 * 16);
@@ -70,7 +71,7 @@ class context {
         if (tsan_fiber_ == nullptr) tsan_fiber_ = sanitizers::current_fiber();
         to.came_from_ = this;
         void* fake_stack = nullptr;
-        sanitizers::start_switch(&fake_stack, to.bottom_, to.size_, to.tsan_fiber_);
+        sanitizers::start_switch(&fake_stack, to.bottom_, to.size_, to.tsan_fiber_, ignores_);
 #if defined(WARPAGG_FIBER_SWITCH_X86_64)
         switch_stack(&pointer_, to.pointer_);
 #else
@@ -83,7 +84,7 @@ class context {
     void arrived(void* fake_stack = nullptr) {
         const void* bottom = nullptr;
         std::size_t size = 0;
-        sanitizers::finish_switch(fake_stack, &bottom, &size);
+        sanitizers::finish_switch(fake_stack, &bottom, &size, owns_fiber_, ignores_);
         if (came_from_->bottom_ == nullptr) {  // the thread's own stack, seen for the first time
             came_from_->bottom_ = bottom;
             came_from_->size_ = size;
@@ -106,6 +107,7 @@ class context {
     std::size_t size_ = 0;
     void* tsan_fiber_ = nullptr;
     bool owns_fiber_ = false;
+    bool ignores_ = false;
 };
 
 }  // namespace warpagg::emulator::detail

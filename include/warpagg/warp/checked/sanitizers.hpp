@@ -30,7 +30,9 @@
 #include <sanitizer/tsan_interface.h>
 extern "C" {
 void AnnotateIgnoreReadsBegin(const char* file, int line);
+void AnnotateIgnoreReadsEnd(const char* file, int line);
 void AnnotateIgnoreWritesBegin(const char* file, int line);
+void AnnotateIgnoreWritesEnd(const char* file, int line);
 }
 #endif
 
@@ -75,27 +77,36 @@ inline bool& forked() {
     return yes;
 }
 
-/// Called right before a switch.
+/// Called right before a switch. `ignores`: what `finish_switch` set for the fiber that is left.
 WARPAGG_NO_SANITIZE inline void start_switch([[maybe_unused]] void** fake_stack,
                                              [[maybe_unused]] const void* bottom,
-                                             [[maybe_unused]] std::size_t size,
-                                             [[maybe_unused]] void* fiber) {
+                                             [[maybe_unused]] std::size_t size, [[maybe_unused]] void* fiber,
+                                             [[maybe_unused]] bool& ignores) {
 #if defined(WARPAGG_ASAN)
     __sanitizer_start_switch_fiber(fake_stack, bottom, size);
 #endif
 #if defined(WARPAGG_TSAN)
+    // A fiber that ends while it ignores accesses is an error to ThreadSanitizer.
+    if (ignores) {
+        AnnotateIgnoreReadsEnd(__FILE__, __LINE__);
+        AnnotateIgnoreWritesEnd(__FILE__, __LINE__);
+        ignores = false;
+    }
     __tsan_switch_to_fiber(fiber, 0);
 #endif
 }
-/// Called right after a switch; returns the stack that was left.
+/// Called right after a switch; returns the stack that was left. `lane`: a fiber was entered, not
+/// the thread's own stack. Sets `ignores` if ThreadSanitizer ignores what the fiber accesses now.
 WARPAGG_NO_SANITIZE inline void finish_switch([[maybe_unused]] void* fake_stack,
                                               [[maybe_unused]] const void** bottom,
-                                              [[maybe_unused]] std::size_t* size) {
+                                              [[maybe_unused]] std::size_t* size, [[maybe_unused]] bool lane,
+                                              [[maybe_unused]] bool& ignores) {
 #if defined(WARPAGG_ASAN)
     __sanitizer_finish_switch_fiber(fake_stack, bottom, size);
 #endif
 #if defined(WARPAGG_TSAN)
-    if (forked()) {
+    if (lane && forked()) {
+        ignores = true;
         AnnotateIgnoreReadsBegin(__FILE__, __LINE__);
         AnnotateIgnoreWritesBegin(__FILE__, __LINE__);
     }
