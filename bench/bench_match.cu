@@ -38,7 +38,7 @@ __global__ void add(T* memory, draw how, unsigned among) {
         if (how == draw::own) {
             key = ((ours >> 12) + w.lane() * 7919u) % keys;  // 32 different keys a warp
         } else if (how == draw::rising) {
-            key = ((ours >> 12) + w.lane()) % keys;  // neighbours
+            key = ((ours >> 12) + w.lane()) % keys;  // neighbors
         } else if (how == draw::rising_far) {
             key = ((ours >> 17) + w.lane() * (keys / 32)) % keys;
         } else if (how == draw::among) {
@@ -56,7 +56,7 @@ struct distribution {
     unsigned among;
 };
 constexpr distribution distributions[] = {
-    {"32 neighbours, rising", draw::rising, 0},
+    {"32 neighbors, rising", draw::rising, 0},
     {"32 apart, rising", draw::rising_far, 0},
     {"32 different", draw::own, 0},
     {"among 2^20", draw::among, 1u << 20},

@@ -17,7 +17,7 @@
 #include "core/error.hpp"
 #include "driver.hpp"
 #include "stress_scenes.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 #include "writers/ply/ply.hpp"
 
 namespace {
@@ -65,7 +65,7 @@ bool all_finite(const gs::gaussians& m) {
            all_finite(m.opacity) && all_finite(m.sh_constant) && all_finite(m.sh_rest);
 }
 
-bool pictures_are_finite(gs::train::engine& engine, const std::vector<gs::view>& views) {
+bool renders_are_finite(gs::train::engine& engine, const std::vector<gs::view>& views) {
     return std::ranges::all_of(views,
                                [&](const gs::view& v) { return all_finite(engine.render(v.camera, {})); });
 }
@@ -129,7 +129,7 @@ void run(trial& t, gs::train::engine& engine, ordered_json& row) {
     row["training_psnr"] = mean_psnr(engine, 0, trained);
     row["held_out_psnr"] = mean_psnr(engine, trained, all);
     row["finite_parameters"] = all_finite(model);
-    row["finite_pictures"] = pictures_are_finite(engine, views);
+    row["finite_renders"] = renders_are_finite(engine, views);
 
     const temporary_file file;
     gs::write_ply(file.path(), gs::to_world(scene.normalization, model));
@@ -140,7 +140,7 @@ void run(trial& t, gs::train::engine& engine, ordered_json& row) {
 }
 
 bool is_sound(const ordered_json& row) {
-    return !row.contains("error") && row["finite_parameters"] && row["finite_pictures"] &&
+    return !row.contains("error") && row["finite_parameters"] && row["finite_renders"] &&
            row["ply_in_place"] && !std::isnan(row["training_psnr"].get<double>()) &&
            !std::isnan(row["ply_training_psnr"].get<double>());
 }

@@ -67,7 +67,7 @@ inline void zoom(trial& t, double first, double last) {
 /// On a circle among the spheres, just clear of them, with 90 degrees to see across.
 inline void go_inside(trial& t) {
     replace_cameras(t, [](const gs::camera& c, double) {
-        const double angle = std::atan2(c.centre().y, c.centre().x), across = angle + 2.4;
+        const double angle = std::atan2(c.center().y, c.center().x), across = angle + 2.4;
         return gs::look_at({0.55 * std::cos(angle), 0.55 * std::sin(angle), 0.32},
                            {0.6 * std::cos(across), 0.6 * std::sin(across), -0.2}, {0, 0, 1}, c.width,
                            0.5 * c.width);
@@ -80,7 +80,7 @@ inline void displace(trial& t, double offset, double scale) {
     for (auto* views : {&t.scene.train, &t.scene.test})
         for (gs::view& v : *views)
             v.camera.translation = scale * (v.camera.translation - v.camera.rotation * t.offset);
-    for (gs::coloured_point& p : t.scene.points) p.position = scale * (p.position + t.offset);
+    for (gs::colored_point& p : t.scene.points) p.position = scale * (p.position + t.offset);
 }
 
 inline const std::vector<hard_case>& hard_cases() {

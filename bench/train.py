@@ -86,10 +86,10 @@ def plot(arguments):
     from matplotlib import pyplot
     result = json.loads(pathlib.Path(arguments.file).read_text())
     figure, axis = pyplot.subplots(figsize=(8, 5))
-    for colour, (name, same) in enumerate(by("options", result["runs"]).items()):
+    for color, (name, same) in enumerate(by("options", result["runs"]).items()):
         for i, one in enumerate(same):
             rows = curve(one)
-            axis.plot([r["seconds"] for r in rows], [r["psnr"] for r in rows], ".-", color=f"C{colour}", linewidth=1,
+            axis.plot([r["seconds"] for r in rows], [r["psnr"] for r in rows], ".-", color=f"C{color}", linewidth=1,
                       label=None if i else name)
     axis.set(xlabel=f"seconds in the loop, {result['runs'][0]['device']}", ylabel="held-out PSNR, dB",
              title=result["runs"][0]["scene"])

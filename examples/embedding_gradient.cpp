@@ -14,7 +14,7 @@ constexpr unsigned width = 64;  // floats in a row
 constexpr unsigned held = 8;    // floats of a row that a lane holds
 
 /// A row in parts, one a lane. The `Lanes` that share a stretch of it take its floats in turns, so that they
-/// read and add neighbours.
+/// read and add neighbors.
 template <unsigned Lanes>
 struct parts {
     static constexpr unsigned per_row = width / held;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 
-/// The update step of k-means on colours: per cluster, the sum of its pixels' red, green and blue, and their
+/// The update step of k-means on colors: per cluster, the sum of its pixels' red, green and blue, and their
 /// number. The four lie in one record.
 
 #include "common/compare.hpp"
@@ -29,8 +29,8 @@ struct add_to_clusters {
     }
 };
 
-/// Clusters as neighbouring pixels have them: mostly the same.
-std::vector<unsigned> picture(unsigned n, unsigned clusters) {
+/// Clusters as neighboring pixels have them: mostly the same.
+std::vector<unsigned> render(unsigned n, unsigned clusters) {
     std::vector<unsigned> v = example::uniform(n, clusters);
     for (unsigned i = 1; i < n; ++i)
         if (example::random_below(8) != 0) v[i] = v[i - 1];
@@ -55,6 +55,6 @@ int main(int argc, char** argv) {
         };
         update("8 clusters, noise", example::uniform(n, 8), 8);
         update("256 clusters, noise", example::uniform(n, 256), 256);
-        update("256 clusters, a picture", picture(n, 256), 256);
+        update("256 clusters, a image", render(n, 256), 256);
     });
 }

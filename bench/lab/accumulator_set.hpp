@@ -11,7 +11,7 @@ namespace gs::lab {
 /// whose lanes have no gradient computes no sums.
 template <class Policy, bool SkipsIdle>
 struct whole_lists {
-    static constexpr bool supports_backdrop = false;
+    static constexpr bool supports_background_image = false;
     template <class Real, class Cut>
     using kernel = raster::blend_backward<Real, raster::pixel_a_lane<Cut>, false, Policy, SkipsIdle>;
 };

@@ -9,7 +9,7 @@
 
 Each point is a process of its own, and so its peak of memory. Of each curve the table gives the exponent (the slope
 of the logarithms, by least squares), that of the part where it grows (its last third), and the largest step between
-neighbours, as the time's ratio over the size's: above 1 an iteration takes more than its share, and a cliff shows.
+neighbors, as the time's ratio over the size's: above 1 an iteration takes more than its share, and a cliff shows.
 """
 import argparse
 import json

@@ -5,7 +5,7 @@
 
 namespace {
 
-/// A thread adds 4 neighbouring floats of a row. Neighbouring threads have neighbouring parts of a row, and
+/// A thread adds 4 neighboring floats of a row. Neighboring threads have neighboring parts of a row, and
 /// then those of the next row: narrow rows meet in a warp, and those with the same index are summed first.
 __global__ void index_add(float* table, const std::int64_t* index, const float4* rows, std::int64_t n,
                           unsigned parts) {

@@ -152,7 +152,7 @@ TEST_CASE("accesses that are no race") {
     std::vector<unsigned char> bytes(64);
     std::vector<double> values(64);
     is_clean({}, [&](const checked& w) {
-        w.store(bytes.data(), w.lane(), static_cast<unsigned char>(1), true);  // neighbouring bytes
+        w.store(bytes.data(), w.lane(), static_cast<unsigned char>(1), true);  // neighboring bytes
         w.load(bytes.data(), 40, true);                                        // all read
         w.store(values.data(), w.lane(), 1.0, true);
         w.store(values.data(), w.lane(), w.load(values.data(), w.lane(), true), true);  // its own

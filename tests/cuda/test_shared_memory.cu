@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 
-/// Destinations in shared memory, where the instructions for several neighbours do not go: with few active
+/// Destinations in shared memory, where the instructions for several neighbors do not go: with few active
 /// lanes, with keys, and pairs of halves of which one is zero.
 
 #include <cuda_fp16.h>

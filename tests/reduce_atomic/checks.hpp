@@ -15,19 +15,19 @@ namespace {
 /// What is done with the values of a case's lanes.
 struct rule {
     unsigned alone_below = 0;                      ///< with fewer active lanes, each adds its own values
-    unsigned alone_below_if_packed = alone_below;  ///< the same where their commit packs neighbours
+    unsigned alone_below_if_packed = alone_below;  ///< the same where their commit packs neighbors
     bool touched_when_idle = false;
-    unsigned packed_neighbours = 4;  ///< how many it packs, in records that are aligned to as many
+    unsigned packed_neighbors = 4;  ///< how many it packs, in records that are aligned to as many
 };
 constexpr rule always_alone{33};
 
 template <class Commit>
-constexpr unsigned neighbours_of = 1;
+constexpr unsigned neighbors_of = 1;
 template <unsigned K>
-constexpr unsigned neighbours_of<warpagg::commit::packed<K>> = K;
+constexpr unsigned neighbors_of<warpagg::commit::packed<K>> = K;
 template <class T, int N, class Policy, class Resolved = warpagg::detail::resolved_policy<T, N, Policy>>
 constexpr rule as_chosen{Resolved::gate::lanes, Resolved::gate::lanes_if_packed, false,
-                         neighbours_of<typename Resolved::ungated_commit>};
+                         neighbors_of<typename Resolved::ungated_commit>};
 
 template <class T, class Op = operation::sum>
 struct problem {
@@ -75,7 +75,7 @@ struct problem {
         expectation<T> expected(before);
         for (unsigned c = 0; c < cases; ++c) {
             const bool packed =
-                may_pack && r.packed_neighbours > 1 && where.at(c, 0) % r.packed_neighbours == 0;
+                may_pack && r.packed_neighbors > 1 && where.at(c, 0) % r.packed_neighbors == 0;
             const unsigned alone_below = packed ? r.alone_below_if_packed : r.alone_below;
             for (unsigned i = 0; i < n; ++i) expect(c, i, alone_below, r.touched_when_idle, expected);
         }

@@ -43,7 +43,7 @@ inline std::vector<std::uint32_t> masks(std::size_t nth = backend::every_nth_mas
 enum class kind { one_scale, many_scales, zeros };
 constexpr kind kinds[] = {kind::one_scale, kind::many_scales, kind::zeros};
 
-/// Values of T. What is no number has a specialisation.
+/// Values of T. What is no number has a specialization.
 template <class T>
 struct values_of {
     /// What an active lane holds.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 
-/// Rows: 32 neighbouring values, one a lane, loaded and stored by the SIMD lanes.
+/// Rows: 32 neighboring values, one a lane, loaded and stored by the SIMD lanes.
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 /// How long the blending takes, backward and forward, with each variant: milliseconds a frame, and times as
 /// fast as one atomic per lane. The rungs of the ladder lead from the original kernel to the trainer's; the
 /// contenders are what the trainer's was chosen from. The variants take turns, so that all see the same state
-/// of the machine, and the gradient of the picture is random. A pair is a pixel and a Gaussian whose exponent
+/// of the machine, and the gradient of the image is random. A pair is a pixel and a Gaussian whose exponent
 /// was computed there: pixels of patches that a Gaussian reaches. The time of a pair is that of a core.
 
 #include <CLI/CLI.hpp>

@@ -23,7 +23,7 @@ class fixture {
   public:
     explicit fixture(const ranking_setup& c) : setup_(c) {
         model_.upload(device_, c.model);
-        const std::vector<float> gradient = picture_gradient(c);
+        const std::vector<float> gradient = render_gradient(c);
         for (const float g : gradient) largest_ = std::max(largest_, std::abs(g));
         gradient_.resize(gradient.size());
         device_.upload(gradient_.data(), gradient.data(), gradient.size());

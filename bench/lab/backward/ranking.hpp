@@ -18,15 +18,15 @@ struct ranking_setup {
     std::vector<gs::camera> cameras;  ///< all of one size
     std::array<float, 3> background{};
     int rounds = 7;
-    std::uint64_t seed = 0;  ///< of the picture's gradient
+    std::uint64_t seed = 0;  ///< of the image's gradient
     /// Compares the accumulators of the default kernel instead of kernels. Needs `reference_fp64`.
     bool compares_accumulations = false;
     /// The sums of all Gaussians in the first views, by the same kernels in double.
     std::vector<std::vector<double>> reference_fp64;
 };
 
-/// dL/dpicture: three planes.
-std::vector<float> picture_gradient(const ranking_setup& c);
+/// dL/dimage: three planes.
+std::vector<float> render_gradient(const ranking_setup& c);
 /// What goes to `ranking_setup::reference_fp64`, on the CPU.
 std::vector<std::vector<double>> sums_in_fp64(const ranking_setup& c);
 /// So many views are compared.

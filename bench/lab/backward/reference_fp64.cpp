@@ -11,7 +11,7 @@
 
 namespace gs::lab {
 
-std::vector<float> picture_gradient(const ranking_setup& c) {
+std::vector<float> render_gradient(const ranking_setup& c) {
     std::mt19937_64 random(c.seed);
     std::normal_distribution<float> normal;
     const gs::camera& first = c.cameras.front();
@@ -36,7 +36,7 @@ std::vector<std::vector<double>> sums_in_fp64(const ranking_setup& c) {
                                                     a[2].data(),
                                                     a[3].data(),
                                                     {a[4].data(), a[5].data(), a[6].data(), a[7].data()}};
-    const std::vector<float> in_float = picture_gradient(c);
+    const std::vector<float> in_float = render_gradient(c);
     const std::vector<double> gradient(in_float.begin(), in_float.end());
 
     gs::raster::renderer<device, double> renderer(d);

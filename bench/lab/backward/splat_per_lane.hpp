@@ -45,11 +45,14 @@ struct splat_per_lane {
 
         // As a splat on the stage: see `list_reader`.
         const float dx = static_cast<float>(x0) + 0.5f - s.x, dy = static_cast<float>(y0) + 0.5f - s.y;
-        const staged_splat<float> staged{s.p,    s.p * dx,   s.r,   warpagg::math::fma(s.q, dy, s.r * dx),
-                                         s.q,    s.strength, s.red, s.green,
-                                         s.blue, 0,          0,     0};
+        const staged_splat<float> staged{s.p,    s.p * dx,
+                                         s.r,    warpagg::math::fma(s.q, dy, s.r * dx),
+                                         s.q,    s.log2_opacity,
+                                         s.red,  s.green,
+                                         s.blue, 0,
+                                         0,      0};
         float sum[sum_count] = {};
-        float T = 0, rest = 0;  // of the pixel that is at this lane: rest is g (C - colour so far)
+        float T = 0, rest = 0;  // of the pixel that is at this lane: rest is g (C - color so far)
         for (unsigned step = 0; step < pixels + 31; ++step) {
             T = w.shfl(T, (w.lane() + 31) % 32);
             rest = w.shfl(rest, (w.lane() + 31) % 32);
@@ -70,13 +73,13 @@ struct splat_per_lane {
                 rest = 0;
                 for (unsigned c = 0; c < 3; ++c)
                     rest +=
-                        g[c] * (view.picture[pixel + c * plane] - (from_front ? 0.0f : state[32 * (c + 1)]));
+                        g[c] * (view.render[pixel + c * plane] - (from_front ? 0.0f : state[32 * (c + 1)]));
             }
             const bool live = mine && place - range.begin < view.last[pixel];
             const column_view<W, float> seen(staged, static_cast<float>(at % tile_size));
-            const float v = seen.v(static_cast<float>(at / tile_size)), strength = seen.strength(v);
-            if (!live || !is_hit(strength)) continue;
-            const capped_alpha<W, float> capped(strength);
+            const float v = seen.v(static_cast<float>(at / tile_size)), log2_alpha = seen.log2_alpha(v);
+            if (!live || !is_hit(log2_alpha)) continue;
+            const capped_alpha<W, float> capped(log2_alpha);
             const float weight = capped.alpha * T, own = g[0] * s.red + g[1] * s.green + g[2] * s.blue;
             rest -= weight * own;
             const float by_alpha = T * own - warpagg::math::divide(rest, 1 - capped.alpha);

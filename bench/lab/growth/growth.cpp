@@ -21,7 +21,7 @@
 #include "lab.hpp"
 #include "readers/load_scene.hpp"
 #include "readers/synthetic/synthetic.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 
 namespace gs::lab {
 

@@ -18,7 +18,7 @@ struct paper_subject {
     std::vector<gs::camera> cameras;
     std::array<float, 3> background{};
     int rounds = 7;
-    std::uint64_t seed = 0;  ///< of the picture's gradient
+    std::uint64_t seed = 0;  ///< of the image's gradient
 };
 
 /// A kernel's time; the first one's is what others are compared to.

@@ -80,7 +80,7 @@ int train(int argc, char** argv) {
                             : way             ? find(accumulations, "--accumulate", *way)
                             : s.deterministic ? fixed
                                               : native;
-    if (!lab_accumulators::supports_backdrop(how)) {
+    if (!lab_accumulators::supports_background_image(how)) {
         if (s.effects.explicit_choice("sky").value_or(false))
             throw error("only --gradient split and --accumulate fixed can train a sky");
         s.effects.explicit_choices["sky"] = false;

@@ -30,7 +30,7 @@ void evaluate(const settings& s) {
 
     const stopwatch evaluating;
     const auto report = evaluate::measure_held_out_views(
-        *engine, scene, background.colour, output ? output->path() / "test" : std::filesystem::path(),
+        *engine, scene, background.color, output ? output->path() / "test" : std::filesystem::path(),
         s.fit_exposure);
     nlohmann::ordered_json metrics = to_json(report);
     metrics["gaussians"] = model.count();

@@ -89,7 +89,7 @@ void render(const settings& s) {
     engine->set_model(model);
     for (const named_camera& c : cameras)
         write_png(output.path() / c.name, c.camera.width, c.camera.height,
-                  engine->render(c.camera, background.colour));
+                  engine->render(c.camera, background.color));
     context.say(std::to_string(cameras.size()) + " images in " + s.output);
 }
 

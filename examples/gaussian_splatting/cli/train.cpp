@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include "../training/initialise.hpp"
+#include "../training/initialize.hpp"
 #include "../writers/writer.hpp"
 #include "command_context.hpp"
 #include "commands.hpp"
@@ -117,7 +117,7 @@ void training_run::save(int iteration) {
 
 void training_run::test(int iteration) {
     options_.features.before_evaluation(*engine_, scene_);
-    const auto report = evaluate::measure_held_out_views(*engine_, scene_, options_.background.colour, {});
+    const auto report = evaluate::measure_held_out_views(*engine_, scene_, options_.background.color, {});
     measures_.tests.push_back({{"iteration", iteration},
                                {"seconds", measures_.last.seconds},
                                {"psnr", report.psnr()},
@@ -142,7 +142,7 @@ void training_run::measure() {
         to_internal(scene_.normalization, to_world(scene_.normalization, engine_->get_model())));
     options_.features.before_evaluation(*engine_, scene_);
     measures_.held_out =
-        evaluate::measure_held_out_views(*engine_, scene_, options_.background.colour, renders_folder(),
+        evaluate::measure_held_out_views(*engine_, scene_, options_.background.color, renders_folder(),
                                          s_.fit_exposure || options_.features.is_on("exposure"));
     measures_.evaluate_seconds = evaluating.seconds();
     measures_.peak_device_bytes = engine_->profile().peak_device_bytes();

@@ -33,8 +33,8 @@ struct trained_gaussians {
 template <device::device Device>
 struct step_context : trained_gaussians<Device> {
     std::array<float, parameter_count> rates;  ///< learning rates of this step
-    /// A step is void if its tile lists did not fit. Kernels must change nothing if `room.exceeded()`.
-    raster::list_capacity room;
+    /// A step is void if its tile lists did not fit. Kernels must change nothing if `capacity.exceeded()`.
+    raster::list_capacity capacity;
 };
 
 /// What `strategy::run` works on.

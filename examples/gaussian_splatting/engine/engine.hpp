@@ -54,10 +54,10 @@ class engine {
     /// Three planes, not clamped, with SH bands up to a degree.
     virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
                                       int sh_degree = 3) = 0;
-    /// Compares a held-out view with its photo, both clamped to [0, 1]. If `picture` is not null, it receives
+    /// Compares a held-out view with its photo, both clamped to [0, 1]. If `render` is not null, it receives
     /// the render, not clamped.
     virtual image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
-                                  std::vector<float>* picture = nullptr) = 0;
+                                  std::vector<float>* render = nullptr) = 0;
 
     std::size_t count() const { return count_; }
     /// When the strategy of `begin` acts.

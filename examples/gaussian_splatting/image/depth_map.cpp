@@ -32,7 +32,7 @@ struct covered {
 depth_map read_depth_map(const std::filesystem::path& file, int width, int height) {
     depth_map map;
     try {
-        map.values = read_grey_png(file, map.width, map.height);
+        map.values = read_gray_png(file, map.width, map.height);
     } catch (const error& problem) {
         throw error(std::string(problem.what()) + "; --effects auto,-depth trains without depth maps");
     }

@@ -391,7 +391,7 @@ image read_image(const std::filesystem::path& file) {
                     static_cast<int>(found.png_height));
 }
 
-std::vector<std::uint16_t> read_grey_png(const std::filesystem::path& file, int& width, int& height) {
+std::vector<std::uint16_t> read_gray_png(const std::filesystem::path& file, int& width, int& height) {
     const open_file opened = open_to_read(file);
     const first_bytes found = look_at(file, opened.get());
     if (!found.is_png) refuse(file, "it is no PNG");

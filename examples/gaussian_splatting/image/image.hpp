@@ -34,7 +34,7 @@ image read_image(const std::filesystem::path& file);
 
 /// Reads a PNG with one channel, row by row from the top. Values of fewer than 16 bits are scaled
 /// to 16 bits. Throws `error` as `read_image` does, and if the file has more channels.
-std::vector<std::uint16_t> read_grey_png(const std::filesystem::path& file, int& width, int& height);
+std::vector<std::uint16_t> read_gray_png(const std::filesystem::path& file, int& width, int& height);
 
 /// Reads width and height from the header, without decoding. Throws `error` as `read_image` does.
 void read_image_size(const std::filesystem::path& file, int& width, int& height);

@@ -44,9 +44,9 @@ class loss {
 
     /// The gradient of the loss with respect to each value of the render: three planes, red, green
     /// and blue, of the target's size, as is the render. The result is valid until the next call.
-    /// Also adds the loss and the square error to `sums()`, unless `room.exceeded()`: then the
+    /// Also adds the loss and the square error to `sums()`, unless `capacity.exceeded()`: then the
     /// render is incomplete and the step does not count.
-    virtual const Real* gradient(const Real* render, const raster::list_capacity& room) = 0;
+    virtual const Real* gradient(const Real* render, const raster::list_capacity& capacity) = 0;
 
     /// The largest magnitude of one value of the gradient for the current target, up to a small
     /// factor: for a mean over n pixels of a function with slope s, about s / n. Deterministic

@@ -106,7 +106,7 @@ struct ssim_compare {
     ssim_window<Real> window;
     int rows;        ///< per strip
     double* totals;  ///< by `comparison_total`
-    raster::list_capacity room;
+    raster::list_capacity capacity;
 
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
@@ -154,7 +154,7 @@ struct ssim_compare {
             if constexpr (Masked) counted2 = counted(w, strip, below - radius, factor2, excluded);
             ssim = fma(factor1, counted2, ssim);
         }
-        if (room.exceeded()) return;
+        if (capacity.exceeded()) return;
         using warpagg::math::convert;
         value_t<W, double> values(static_cast<double>(strip.last - strip.first));
         if constexpr (Masked) values = values - convert<double>(excluded);

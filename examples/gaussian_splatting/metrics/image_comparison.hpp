@@ -38,8 +38,8 @@ class image_comparison {
 
     /// Compares a render, three planes on the device, with the target, and adds the result to the
     /// totals unless the lists of the view did not fit. Pixels that a mask excludes do not count.
-    void compare(const Real* render, const raster::list_capacity& room = {}) {
-        target_.masked ? compare_with<true>(render, room) : compare_with<false>(render, room);
+    void compare(const Real* render, const raster::list_capacity& capacity = {}) {
+        target_.masked ? compare_with<true>(render, capacity) : compare_with<false>(render, capacity);
     }
 
     /// The totals since the last `take`, on the device: one sum per `comparison_total`.
@@ -69,13 +69,13 @@ class image_comparison {
 
   private:
     template <bool Masked>
-    void compare_with(const Real* render, const raster::list_capacity& room) {
+    void compare_with(const Real* render, const raster::list_capacity& capacity) {
         using first_pass = sum_and_difference<Real, Masked>;
         const auto& [red, green, blue] = target_.background;
         device_.for_each_warp(first_pass::template count<typename Device::warp>(maps_.planes),
                               first_pass{target(), render, {red, green, blue}, maps_});
         device_.for_each_warp(
-            strips(), ssim_compare<Real, Masked>{target(), maps_, window_, rows(), totals_.data(), room});
+            strips(), ssim_compare<Real, Masked>{target(), maps_, window_, rows(), totals_.data(), capacity});
     }
 
     Device& device_;

@@ -7,7 +7,7 @@
 
 namespace gs {
 
-/// Number of spherical harmonics coefficients a colour channel has at a degree, the constant one included.
+/// Number of spherical harmonics coefficients a color channel has at a degree, the constant one included.
 constexpr int sh_coefficients(int degree) { return (degree + 1) * (degree + 1); }
 
 /// A sky, what lies infinitely far behind all Gaussians, has spherical harmonics of this degree.

@@ -10,10 +10,8 @@ namespace gs {
 
 inline constexpr double sh_c0 = 0.28209479177387814;  ///< the constant one, 1 / (2 sqrt(pi))
 
-/// The degree 0 coefficient of a colour from all directions: what solves colour = 0.5 + C0 * coefficient.
-WARPAGG_HD constexpr float sh_from_colour(float colour) {
-    return (colour - 0.5f) / static_cast<float>(sh_c0);
-}
+/// The degree 0 coefficient of a color from all directions: what solves color = 0.5 + C0 * coefficient.
+WARPAGG_HD constexpr float sh_from_color(float color) { return (color - 0.5f) / static_cast<float>(sh_c0); }
 
 /// The real spherical harmonics up to degree 3 at a unit vector, in the order and with the signs of the
 /// reference implementation (Kerbl et al. 2023). `basis` has room for 16.

@@ -34,14 +34,14 @@ struct adam {
     std::uint32_t step;                            ///< number t of this step, from 1
     Real rates[parameter_count];                   ///< alpha / (1 - beta1^t)
     Real correction;                               ///< 1 / sqrt(1 - beta2^t)
-    raster::list_capacity room;                    ///< of the view
+    raster::list_capacity capacity;                ///< of the view
     finite_check check;
 
     static constexpr double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-15;
     static constexpr double most_gradient = 1e18;
 
     static constexpr bool takes_zeros = false;
-    WARPAGG_HD bool idle() const { return room.exceeded(); }
+    WARPAGG_HD bool idle() const { return capacity.exceeded(); }
 
     template <class W>
     struct row_sink {

@@ -49,14 +49,14 @@ class adam_parameters {
         return {sums_.data(), warps};
     }
     /// A step of row i, unless the lists of the view did not fit. Sets the sums to zero.
-    void learn(std::size_t i, const ordered_sums& sums, float rate, const raster::list_capacity& room) {
+    void learn(std::size_t i, const ordered_sums& sums, float rate, const raster::list_capacity& capacity) {
         const int t = ++steps_[i];
         const double by_first = 1 - std::pow(static_cast<double>(adam_from_sums::beta1), t);
         const double by_second = 1 - std::pow(static_cast<double>(adam_from_sums::beta2), t);
         device_.for_each_warp(
             Width, adam_from_sums{sums, row(i), first_.data() + i * Width, second_.data() + i * Width,
                                   static_cast<float>(rate / by_first),
-                                  static_cast<float>(1 / std::sqrt(by_second)), room});
+                                  static_cast<float>(1 / std::sqrt(by_second)), capacity});
     }
 
   private:

@@ -26,7 +26,7 @@ struct adam_from_sums {
     ordered_sums sums;
     float *values, *first, *second;  ///< parameters, first and second moments
     float rate, correction;          ///< alpha / (1 - beta1^t), 1 / sqrt(1 - beta2^t) in step t
-    raster::list_capacity room;
+    raster::list_capacity capacity;
 
     static constexpr float beta1 = 0.9f, beta2 = 0.999f, epsilon = 1e-15f;
 
@@ -43,7 +43,7 @@ struct adam_from_sums {
             w.store_row(sums(parameter, warp), 0, real(0), inside);
         }
         for (unsigned distance = W::size / 2; distance > 0; distance /= 2) g += w.shfl_xor(g, distance);
-        if (room.exceeded()) return;
+        if (capacity.exceeded()) return;
         const mask learns = w.lane() == 0u && g > real(-1e18f) && g < real(1e18f);
         const real m = real(beta1) * w.load_row(first, parameter, learns) + real(1 - beta1) * g;
         const real v = real(beta2) * w.load_row(second, parameter, learns) + real(1 - beta2) * g * g;

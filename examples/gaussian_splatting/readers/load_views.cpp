@@ -137,7 +137,7 @@ void require_wide_lenses(const std::vector<image_record>& records, const std::ve
         if (!c.fisheye) continue;
         const double to_edge =
             std::min(std::max(c.cx, c.width - c.cx) / c.fx, std::max(c.cy, c.height - c.cy) / c.fy);
-        if (c.fisheye->reach(c.fisheye->end()) < to_edge)
+        if (c.fisheye->radius(c.fisheye->end()) < to_edge)
             throw error(
                 "the fisheye lens of " + records[i].file.string() + " folds the photo over inside of it, " +
                 std::to_string(static_cast<int>(57.29578 * c.fisheye->end())) + " degrees from the axis");

@@ -65,9 +65,9 @@ struct image_record {
 
 /// A scene before its images are loaded.
 struct scene_description {
-    std::vector<image_record> images;    ///< in the order of the views
-    std::vector<coloured_point> points;  ///< may be empty
-    bool object_centered = false;        ///< see `scene::object_centered`
+    std::vector<image_record> images;   ///< in the order of the views
+    std::vector<colored_point> points;  ///< may be empty
+    bool object_centered = false;       ///< see `scene::object_centered`
 };
 
 /// A kind of scene. To add one, write its folder and add a row to the table in readers.cpp.

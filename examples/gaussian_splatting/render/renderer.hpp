@@ -19,7 +19,7 @@
 
 namespace gs::raster {
 
-/// Gaussians to a picture and, from dL/dpicture, to the gradients of their parameters. Holds what lies in
+/// Gaussians to a image and, from dL/dimage, to the gradients of their parameters. Holds what lies in
 /// between. `Accumulators`: an `accumulator_set`, from which `backward` chooses at run time.
 template <device::device Device, class Real, class Cut = cut_for<typename Device::warp>,
           class Accumulators = product_accumulators>
@@ -33,7 +33,7 @@ class renderer {
 
     explicit renderer(Device& device) : device_(device), sums_(device) {
         device_.zero(reserve(pairs_, 2).data(), 2);
-        device_.zero(reserve(needed_, 1).data(), 1);
+        device_.zero(reserve(required_, 1).data(), 1);
     }
 
     /// Of what is drawn from now on, beside what views' lenses call for: none at first.
@@ -47,12 +47,12 @@ class renderer {
     /// How many instances the last view has, whether drawn or measured. Waits for the device.
     std::uint64_t instances() {
         std::uint64_t n = 0;
-        device_.download(&n, needed_.data(), 1);
+        device_.download(&n, required_.data(), 1);
         return n;
     }
 
     /// Makes room for that many instances a view, and for `spare` more as far as 31 bits go. `forward` cuts
-    /// what does not fit: see `room`.
+    /// what does not fit: see `capacity`.
     void reserve_instances(std::uint64_t most, std::uint64_t spare = 0) {
         constexpr std::uint64_t limit = std::uint64_t{1} << 31;
         if (most >= limit)
@@ -63,15 +63,15 @@ class renderer {
     }
     std::uint64_t reserved_instances() const { return capacity_; }
 
-    /// Draws the view: `picture()`, three planes, is valid afterwards. `backdrop`: three planes that lie
-    /// behind all, in place of the background; until `backward`.
+    /// Draws the view: `render()`, three planes, is valid afterwards. `background_image`: three planes that
+    /// lie behind all, in place of the background; until `backward`.
     void forward(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
-                 const std::array<float, 3>& background, const Real* backdrop = nullptr) {
+                 const std::array<float, 3>& background, const Real* background_image = nullptr) {
         list(gaussians, count, view, sh_degree);
-        blend(background, backdrop);
+        blend(background, background_image);
     }
 
-    /// The first part of `forward`: who is in the picture, and where.
+    /// The first part of `forward`: who is in the image, and where.
     void list(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         using device::stage;
         device_.begin(stage::project);
@@ -81,7 +81,7 @@ class renderer {
         device_.begin(stage::blend_forward);
         const std::size_t pixels =
             static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-        picture_.resize(3 * pixels);
+        render_.resize(3 * pixels);
         transmittance_.resize(pixels);
         last_.resize(pixels);
         checkpoints_.resize(segments() * checkpoint_values);
@@ -92,15 +92,15 @@ class renderer {
         effects_.depth = false;
     }
     /// The rest of it.
-    void blend(const std::array<float, 3>& background, const Real* backdrop = nullptr) {
-        background_ = {colour(background)};
-        backdrop_ = {backdrop};
-        backdrop == nullptr ? blend_forward_by<Cut>(background_, lists(), pairs_.data())
-                            : blend_forward_by<Cut>(backdrop_, lists(), pairs_.data());
+    void blend(const std::array<float, 3>& background, const Real* background_image = nullptr) {
+        background_ = {color(background)};
+        background_image_ = {background_image};
+        background_image == nullptr ? blend_forward_by<Cut>(background_, lists(), pairs_.data())
+                                    : blend_forward_by<Cut>(background_image_, lists(), pairs_.data());
     }
 
-    /// Between both: draws the inverse depths, sum w_i / z_i with the weights that colours have, and zero
-    /// behind. They are the first plane of `picture()` until `blend`. What this and the next function take
+    /// Between both: draws the inverse depths, sum w_i / z_i with the weights that colors have, and zero
+    /// behind. They are the first plane of `render()` until `blend`. What this and the next function take
     /// counts as blending forward.
     void blend_depths() {
         with_flag(camera_.fisheye.has_value(), [&]<bool Fisheye> {
@@ -122,13 +122,13 @@ class renderer {
         effects_.depth = true;
     }
 
-    /// From the gradient of the last `forward`'s picture to those of its parameters, colours up to a degree,
+    /// From the gradient of the last `forward`'s image to those of its parameters, colors up to a degree,
     /// which `sink` is given: see `project_backward`. `largest` is the magnitude of a pixel's gradient,
     /// about: see `gradient_sums`. `seen` may be null.
     template <class Sink>
-    void backward(const Real* picture_gradient, float largest, accumulator how, int learned_sh_degree,
+    void backward(const Real* render_gradient, float largest, accumulator how, int learned_sh_degree,
                   const Sink& sink, visibility* seen) {
-        const Real* sums = pixel_sums(picture_gradient, largest, how);
+        const Real* sums = pixel_sums(render_gradient, largest, how);
         device_.begin(device::stage::project_backward);
         using narrow = typename Device::narrow_warp;
         with_effects(effects_of(camera_), [&]<effect_set Effects> {
@@ -136,20 +136,20 @@ class renderer {
                 (count_ + narrow::size - 1) / narrow::size,
                 project_backward<narrow, Real, Sink, Effects>{
                     gaussians_, count_, for_device<value_t<narrow, Real>>(camera_), sh_degree_,
-                    learned_sh_degree, splats_.data(), tiles_.data(), sums, sink, seen, room()});
+                    learned_sh_degree, splats_.data(), tiles_.data(), sums, sink, seen, capacity()});
         });
     }
 
     /// The first half of `backward`: by Gaussian that was drawn, what `project_backward` begins from.
-    const Real* pixel_sums(const Real* picture_gradient, float largest, accumulator how) {
+    const Real* pixel_sums(const Real* render_gradient, float largest, accumulator how) {
         const Real* sums = nullptr;
         Accumulators::visit(how, [&]<class Variant>(Variant) {
             using kernel = typename Variant::template kernel<Real, Cut>;
-            if (backdrop_.planes == nullptr) {
-                sums = blend_backward_by(kernel{}, picture_gradient, largest).data();
-            } else if constexpr (Variant::supports_backdrop) {
-                using before_colours = typename Variant::template kernel<Real, Cut, image_background<Real>>;
-                sums = blend_backward_by(before_colours{}, picture_gradient, largest).data();
+            if (background_image_.planes == nullptr) {
+                sums = blend_backward_by(kernel{}, render_gradient, largest).data();
+            } else if constexpr (Variant::supports_background_image) {
+                using before_colors = typename Variant::template kernel<Real, Cut, image_background<Real>>;
+                sums = blend_backward_by(before_colors{}, render_gradient, largest).data();
             } else {
                 throw error("this accumulator has no gradient for an image in front of a learned background");
             }
@@ -160,10 +160,10 @@ class renderer {
     /// The blending's part of `backward` by this kernel, which is filled in. Returns its sums: see
     /// `project_backward`.
     template <class Kernel>
-    const buffer<Real>& blend_backward_by(Kernel kernel, const Real* picture_gradient, float largest) {
+    const buffer<Real>& blend_backward_by(Kernel kernel, const Real* render_gradient, float largest) {
         sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()), effects_.depth);
         device_.begin(device::stage::blend_backward);
-        launch_backward(kernel, lists(), picture_gradient);
+        launch_backward(kernel, lists(), render_gradient);
         return sums_.end(kernel);
     }
     /// See `gradient_sums`.
@@ -173,11 +173,11 @@ class renderer {
     const splat<Real>* splats() const { return splats_.data(); }
     /// In how many tiles it may be; zero if it is not drawn.
     const std::uint32_t* tiles_of() const { return tiles_.data(); }
-    const Real* picture() const { return picture_.data(); }
+    const Real* render() const { return render_.data(); }
     /// What is left of light from behind all splats, by pixel of the last `forward`.
     const Real* transmittance() const { return transmittance_.data(); }
     /// Whether the last view's instances fit.
-    list_capacity room() const { return {needed_.data(), capacity_}; }
+    list_capacity capacity() const { return {required_.data(), capacity_}; }
     /// On the device: pixel-Gaussian pairs evaluated by all `forward`s so far.
     const unsigned long long* pairs() const { return pairs_.data(); }
 
@@ -196,14 +196,14 @@ class renderer {
 
     std::size_t tiles() const { return std::size_t{tiles_across_} * tiles_down_; }
     template <class Kernel>
-    void launch_backward(Kernel& kernel, const tile_lists<Real>& lists, const Real* picture_gradient) {
+    void launch_backward(Kernel& kernel, const tile_lists<Real>& lists, const Real* render_gradient) {
         kernel.lists = lists;
         const auto view = [&](const auto& background) {
-            return blended{background,   picture_.data(),     transmittance_.data(),
-                           last_.data(), checkpoints_.data(), picture_gradient};
+            return blended{background,   render_.data(),      transmittance_.data(),
+                           last_.data(), checkpoints_.data(), render_gradient};
         };
         if constexpr (std::is_same_v<decltype(kernel.view.background), image_background<Real>>)
-            kernel.view = view(backdrop_);
+            kernel.view = view(background_image_);
         else
             kernel.view = view(background_);
         kernel.tile_of_segment = tile_of_segment_.data();
@@ -217,7 +217,7 @@ class renderer {
         const blend_forward<Real, Shape, Backdrop> blend{lists,
                                                          order(),
                                                          background,
-                                                         picture_.data(),
+                                                         render_.data(),
                                                          transmittance_.data(),
                                                          last_.data(),
                                                          checkpoints_.data(),
@@ -269,28 +269,28 @@ class renderer {
         device_.zero(class_counts_.data(), class_counts_.size());
         device_.for_each_index(tiles(), order_tiles{ranges_.data(), order()});
     }
-    void list_by_tile(std::size_t count, std::uint64_t room) {
+    void list_by_tile(std::size_t count, std::uint64_t reserved) {
         device_.distribute(
             count, splats_by_depth<Real>{order_.data(), splats_.data(), boxes_.data(), tiles_across_},
-            tiles(), room, gaussian_of_.data(), reserve(ranges_, tiles()).data(), needed_.data());
+            tiles(), reserved, gaussian_of_.data(), reserve(ranges_, tiles()).data(), required_.data());
     }
 
     tile_order order() const {
         return {class_counts_.data(), ordered_tiles_.data(), static_cast<std::uint32_t>(tiles())};
     }
 
-    static vec3<Real> colour(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
+    static vec3<Real> color(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
 
     Device& device_;
     buffer<splat<Real>> splats_, near_;  ///< the second as `depth_splats` has them
     buffer<tile_box> boxes_;
     buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_;
-    buffer<std::uint64_t> needed_;
+    buffer<std::uint64_t> required_;
     buffer<tile_range> ranges_;
-    buffer<Real> picture_, transmittance_, checkpoints_;
+    buffer<Real> render_, transmittance_, checkpoints_;
     gradient_sums<Device, Real> sums_;
     buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
-    buffer<unsigned long long> pairs_;  ///< of colours, and of depths, which nobody asks for
+    buffer<unsigned long long> pairs_;  ///< of colors, and of depths, which nobody asks for
     std::uint64_t capacity_ = 0;
 
     unsigned tiles_across_ = 0, tiles_down_ = 0;
@@ -303,7 +303,7 @@ class renderer {
     camera camera_{};
     int sh_degree_ = 0;
     constant_background<Real> background_{};
-    image_background<Real> backdrop_{};
+    image_background<Real> background_image_{};
 };
 
 }  // namespace gs::raster

@@ -9,7 +9,7 @@
 namespace gs {
 namespace {
 
-/// The derivative of `fisheye::reach`.
+/// The derivative of `fisheye::radius`.
 double slope(const std::array<double, 4>& k, double angle) {
     const double w = angle * angle;
     return 1 + w * (3 * k[0] + w * (5 * k[1] + w * (7 * k[2] + w * 9 * k[3])));
@@ -34,17 +34,17 @@ fisheye::fisheye(const std::array<double, 4>& k) : k_(k), end_(widest) {
         if (!grows(widest * i / steps)) end_ = bisect(widest * (i - 1) / steps, widest * i / steps, grows);
 }
 
-double fisheye::reach(double angle) const {
+double fisheye::radius(double angle) const {
     const double w = angle * angle;
     return angle * (1 + w * (k_[0] + w * (k_[1] + w * (k_[2] + w * k_[3]))));
 }
 
-double fisheye::angle(double reach) const {
-    if (reach >= this->reach(end_)) return end_;
+double fisheye::angle(double radius) const {
+    if (radius >= this->radius(end_)) return end_;
     // Newton's method, with bisection where it leaves the bracket.
-    double low = 0, high = end_, angle = std::min(reach, end_);
+    double low = 0, high = end_, angle = std::min(radius, end_);
     for (int step = 0; step < 60; ++step) {
-        const double off = this->reach(angle) - reach;
+        const double off = this->radius(angle) - radius;
         (off > 0 ? high : low) = angle;
         const double tangent = angle - off / slope(k_, angle);
         const double next = tangent >= low && tangent <= high ? tangent : std::midpoint(low, high);
@@ -62,7 +62,7 @@ std::optional<camera::image_point> camera::see(const glm::dvec3& point) const {
     }
     const double across = std::hypot(p.x, p.y), angle = std::atan2(across, p.z);
     if (p == glm::dvec3(0) || angle >= fisheye->end()) return std::nullopt;
-    const double out = across > 0 ? fisheye->reach(angle) / across : 0;
+    const double out = across > 0 ? fisheye->radius(angle) / across : 0;
     return image_point{fx * out * p.x + cx, fy * out * p.y + cy, glm::length(p)};
 }
 

@@ -21,11 +21,11 @@ class fisheye {
 
     const std::array<double, 4>& k() const { return k_; }
     /// The distance from the center, in focal lengths, of a ray at this angle.
-    double reach(double angle) const;
-    /// The angle at which `reach` stops growing, where the model ends; at most `widest`.
+    double radius(double angle) const;
+    /// The angle at which `radius` stops growing, where the model ends; at most `widest`.
     double end() const { return end_; }
-    /// The inverse of `reach`; `end()` for distances beyond its range.
-    double angle(double reach) const;
+    /// The inverse of `radius`; `end()` for distances beyond its range.
+    double angle(double radius) const;
 
     /// 172 degrees from the axis: near 180 degrees a whole circle of pixels shows the same point.
     static constexpr double widest = 3;
@@ -46,7 +46,7 @@ struct camera {
     glm::dvec3 translation{0};
     std::optional<gs::fisheye> fisheye{};  ///< none for a pinhole camera
 
-    glm::dvec3 centre() const { return -glm::transpose(rotation) * translation; }
+    glm::dvec3 center() const { return -glm::transpose(rotation) * translation; }
 
     struct image_point {
         double x, y;   ///< pixels

@@ -30,7 +30,7 @@ double median_of(const Things& things, const Measure& measure) {
 
 glm::dvec3 mean_of_cameras(const scene& s) {
     glm::dvec3 mean(0);
-    for (const view& v : s.train) mean += v.camera.centre() / static_cast<double>(s.train.size());
+    for (const view& v : s.train) mean += v.camera.center() / static_cast<double>(s.train.size());
     return mean;
 }
 
@@ -56,10 +56,10 @@ double scene::extent() const {
     if (train.empty()) return 0;
     const glm::dvec3 mean = mean_of_cameras(*this);
     double farthest = 0;
-    for (const view& v : train) farthest = std::max(farthest, glm::distance(mean, v.camera.centre()));
+    for (const view& v : train) farthest = std::max(farthest, glm::distance(mean, v.camera.center()));
     double depth = 0;
     if (!points.empty())
-        depth = median_of(points, [&](const coloured_point& p) { return glm::distance(mean, p.position); });
+        depth = median_of(points, [&](const colored_point& p) { return glm::distance(mean, p.position); });
     else if (const auto point = looked_at())
         depth = glm::distance(mean, *point);
     if (farthest > 1e-6 * depth && farthest > 0) return 1.1 * farthest;
@@ -79,11 +79,11 @@ std::optional<glm::dvec3> scene::looked_at() const {
         const glm::dmat3 across =
             (glm::dmat3(1) - glm::outerProduct(axis, axis)) / static_cast<double>(train.size());
         normal += across;
-        right += across * (v.camera.centre() - mean);
+        right += across * (v.camera.center() - mean);
     }
     const glm::dvec3 point = glm::inverse(normal) * right;
     const double depth = median_of(train, [&](const view& v) {
-        return glm::dot(axis_of(v.camera), point - (v.camera.centre() - mean));
+        return glm::dot(axis_of(v.camera), point - (v.camera.center() - mean));
     });
     // A nearer point results from the pull alone.
     if (!(depth > 100 * pull * glm::length(origin))) return std::nullopt;
@@ -101,12 +101,12 @@ normalization normalization_of(const gaussians& model) {
     normalization found;
     for (glm::length_t axis = 0; axis < 3; ++axis)
         found.origin[axis] = median_of(all, [&](std::size_t i) { return mean_of(model, i)[axis]; });
-    const double reach = median_of(all, [&](std::size_t i) {
+    const double distance = median_of(all, [&](std::size_t i) {
         const auto first = model.log_scale.begin() + static_cast<std::ptrdiff_t>(3 * i);
         const double size = std::exp(static_cast<double>(*std::max_element(first, first + 3)));
         return glm::distance(mean_of(model, i), found.origin) + size;
     });
-    if (std::isnormal(reach)) found.scale = reach;
+    if (std::isnormal(distance)) found.scale = distance;
     return found;
 }
 
@@ -115,10 +115,10 @@ void normalize(scene& scene, const log_function& log) {
     for (auto* views : {&scene.train, &scene.test})
         for (view& v : *views)
             v.camera.translation = (v.camera.rotation * n.origin + v.camera.translation) / n.scale;
-    for (coloured_point& p : scene.points) p.position = n.to_internal(p.position);
+    for (colored_point& p : scene.points) p.position = n.to_internal(p.position);
     constexpr double farthest = 1e9;
     const std::size_t dropped = std::erase_if(
-        scene.points, [](const coloured_point& p) { return !(glm::length(p.position) <= farthest); });
+        scene.points, [](const colored_point& p) { return !(glm::length(p.position) <= farthest); });
     if (dropped > 0)
         log("dropped " + std::to_string(dropped) + " of " + std::to_string(scene.points.size() + dropped) +
             " points, whose distance is over a billion times that between the cameras");

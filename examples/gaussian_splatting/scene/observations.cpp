@@ -18,7 +18,7 @@ constexpr double spacings = 2.5;                  ///< points this close in the 
 constexpr double nearer = 0.03;                   ///< relative difference in depth
 constexpr int least_value = 6, most_value = 249;  ///< of a channel that is not saturated
 
-std::vector<place_in_photo> project(const camera& c, const std::vector<coloured_point>& points) {
+std::vector<place_in_photo> project(const camera& c, const std::vector<colored_point>& points) {
     std::vector<place_in_photo> seen;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto p = c.see(points[i].position);
@@ -42,7 +42,7 @@ class nearest_depths {
             d = std::min(d, p.depth);
         }
     }
-    /// Whether no point of this cell and its neighbours is clearly nearer.
+    /// Whether no point of this cell and its neighbors is clearly nearer.
     bool shows(const place_in_photo& p) const {
         for (int dy = -1; dy <= 1; ++dy)
             for (int dx = -1; dx <= 1; ++dx)
@@ -75,7 +75,7 @@ std::optional<observation> look(const image& photo, const place_in_photo& p) {
             if (rgba[3] != 255) return std::nullopt;
             for (int c = 0; c < 3; ++c) {
                 if (rgba[c] < least_value || rgba[c] > most_value) return std::nullopt;
-                o.colour[c] += static_cast<float>(rgba[c]) / (9 * 255);
+                o.color[c] += static_cast<float>(rgba[c]) / (9 * 255);
             }
             const float brightness = static_cast<float>(rgba[0] + rgba[1] + rgba[2]) / 765;
             least = std::min(least, brightness);
@@ -87,7 +87,7 @@ std::optional<observation> look(const image& photo, const place_in_photo& p) {
 
 }  // namespace
 
-std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<coloured_point>& points) {
+std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<colored_point>& points) {
     std::vector<place_in_photo> seen = project(camera, points);
     const nearest_depths depths(camera, seen);
     std::erase_if(seen, [&](const place_in_photo& p) { return !depths.shows(p); });
@@ -104,7 +104,7 @@ observed_points observe_points(const scene& of) {
             std::optional<observation> o = look(photo.pixels, p);
             if (!o) continue;
             o->view = static_cast<std::uint32_t>(v);
-            o->direction = glm::vec3(glm::normalize(of.points[p.point].position - photo.camera.centre()));
+            o->direction = glm::vec3(glm::normalize(of.points[p.point].position - photo.camera.center()));
             o->footprint = static_cast<float>(p.depth / std::sqrt(photo.camera.fx * photo.camera.fy));
             by_view[v].emplace_back(p.point / static_cast<std::uint32_t>(step), *o);
         }

@@ -13,7 +13,7 @@ namespace gs {
 /// A point of a scene as one of its photos shows it.
 struct observation {
     std::uint32_t view = 0;
-    glm::vec3 colour{0};     ///< mean of the 3×3 pixels around it, as displayed, in [0, 1]
+    glm::vec3 color{0};      ///< mean of the 3×3 pixels around it, as displayed, in [0, 1]
     glm::vec3 direction{0};  ///< from the camera to the point, of length one
     float footprint = 0;     ///< width of a pixel at the point's depth, in the scene's unit
     float roughness = 0;     ///< (brightest - darkest) / brightest of these pixels
@@ -30,7 +30,7 @@ struct place_in_photo {
 
 /// Projects the points that a camera sees. A point does not count if a clearly nearer one, a few
 /// spacings away in the image, may hide it.
-std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<coloured_point>& points);
+std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<colored_point>& points);
 
 /// For a sample of some thousands of the scene's points, the observations in the training photos.
 /// Skips points that are not `points_in_sight`, or where the photo is transparent or a channel is

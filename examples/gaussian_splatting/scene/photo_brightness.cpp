@@ -95,7 +95,7 @@ class photo_equations {
     std::vector<double> right_, information_, diagonal_;
 };
 
-double brightness(const observation& o) { return (o.colour.r + o.colour.g + o.colour.b) / 3.0; }
+double brightness(const observation& o) { return (o.color.r + o.color.g + o.color.b) / 3.0; }
 
 }  // namespace
 

@@ -22,16 +22,16 @@ struct view {
     depth_map depths{};  ///< of the photo's size, or empty
 };
 
-struct coloured_point {
+struct colored_point {
     glm::dvec3 position{0};
-    glm::u8vec3 colour{0};
+    glm::u8vec3 color{0};
 };
 
 struct scene {
     std::vector<view> train;
     std::vector<view> test;
-    std::vector<coloured_point> points;  ///< from structure from motion; may be empty
-    bool has_alpha = false;              ///< some photo has transparent, unmasked pixels
+    std::vector<colored_point> points;  ///< from structure from motion; may be empty
+    bool has_alpha = false;             ///< some photo has transparent, unmasked pixels
     /// The cameras look at one object, so that scenes without points begin with Gaussians around
     /// it.
     bool object_centered = false;

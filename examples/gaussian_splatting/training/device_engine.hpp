@@ -25,7 +25,7 @@
 namespace gs::train {
 
 /// Clamps a render to [0, 1], as it is displayed. One index per value.
-struct clamp_picture {
+struct clamp_render {
     const float* from;
     float* to;
     WARPAGG_HD void operator()(std::size_t i) const {
@@ -133,19 +133,19 @@ class device_engine final : public engine, device::profiler {
     std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
                               int sh_degree) override {
         draw(camera, background, std::min(sh_degree, sh_degree_));
-        return downloaded(renderer_.picture(), camera);
+        return downloaded(renderer_.render(), camera);
     }
 
     image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
-                          std::vector<float>* picture) override {
+                          std::vector<float>* render) override {
         const photo& shot = views_.held_out(test_view);
         draw(shot.camera, background, sh_degree_);
-        const float* exposed = features_.show_held_out(test_view, renderer_.picture(), shot.pixels());
+        const float* exposed = features_.show_held_out(test_view, renderer_.render(), shot.pixels());
         shown_.resize(3 * shot.pixels());
-        device_.for_each_index(shown_.size(), clamp_picture{exposed, shown_.data()});
+        device_.for_each_index(shown_.size(), clamp_render{exposed, shown_.data()});
         comparison_.set_target(views_.target(shot, background));
         comparison_.compare(shown_.data());
-        if (picture != nullptr) *picture = downloaded(exposed, shot.camera);
+        if (render != nullptr) *render = downloaded(exposed, shot.camera);
         return comparison_.take();
     }
 
@@ -181,7 +181,7 @@ class device_engine final : public engine, device::profiler {
         drawn_view draw(std::size_t view) override {
             const photo& shot = views_[view];
             on_.draw(shot.camera, {}, on_.sh_degree_);
-            return {on_.views_.target(shot, {}), on_.renderer_.picture(), on_.renderer_.splats(),
+            return {on_.views_.target(shot, {}), on_.renderer_.render(), on_.renderer_.splats(),
                     on_.renderer_.tiles_of()};
         }
         const float* sum_scores(const float* scores) override {
@@ -258,12 +258,12 @@ class device_engine final : public engine, device::profiler {
         features_.before_blend(s);
         renderer_.blend(plan.background, features_.background(s.camera));
         device_.begin(device::stage::loss);
-        const float* shown = features_.show(s, renderer_.picture());
-        const float* gradient = features_.backward(s, loss_->gradient(shown, renderer_.room()));
+        const float* shown = features_.show(s, renderer_.render());
+        const float* gradient = features_.backward(s, loss_->gradient(shown, renderer_.capacity()));
         features_.learn(s, gradient);
         renderer_.backward(gradient, s.gradient_scale, s.accumulate, plan.updates_sh ? plan.sh_degree : 0,
                            descent(plan), strategy_->wants(plan.iteration) ? seen_.data() : nullptr);
-        strategy_->after_step(plan.iteration, {in_training(), plan.rates, renderer_.room()});
+        strategy_->after_step(plan.iteration, {in_training(), plan.rates, renderer_.capacity()});
         monitor_.close(renderer_, loss_->sums(), lists_.length(plan.view), plan.iteration);
     }
 
@@ -278,7 +278,7 @@ class device_engine final : public engine, device::profiler {
                          steps_,
                          {},
                          static_cast<float>(by_second),
-                         renderer_.room(),
+                         renderer_.capacity(),
                          monitor_.check_of(plan.iteration)};
         for (std::size_t p = 0; p < parameter_count; ++p)
             step.rates[p] = static_cast<float>(plan.rates[p] * by_first);
@@ -297,8 +297,8 @@ class device_engine final : public engine, device::profiler {
         device_.pause_times(true);
         const float* behind = features_.background(camera);
         renderer_.forward(trained_.values.read(), count_, camera, sh_degree, background, behind);
-        if (const std::uint64_t needed = renderer_.instances(); needed > renderer_.reserved_instances()) {
-            renderer_.reserve_instances(needed, needed / 4);
+        if (const std::uint64_t required = renderer_.instances(); required > renderer_.reserved_instances()) {
+            renderer_.reserve_instances(required, required / 4);
             renderer_.forward(trained_.values.read(), count_, camera, sh_degree, background, behind);
         }
         device_.pause_times(false);
@@ -306,10 +306,10 @@ class device_engine final : public engine, device::profiler {
     }
 
     std::vector<float> downloaded(const float* from, const camera& camera) {
-        std::vector<float> picture(3 * static_cast<std::size_t>(camera.width) *
-                                   static_cast<std::size_t>(camera.height));
-        device_.download(picture.data(), from, picture.size());
-        return picture;
+        std::vector<float> render(3 * static_cast<std::size_t>(camera.width) *
+                                  static_cast<std::size_t>(camera.height));
+        device_.download(render.data(), from, render.size());
+        return render;
     }
 
     engine_parts<Device> parts_;

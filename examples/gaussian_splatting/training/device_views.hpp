@@ -43,7 +43,7 @@ class device_views {
         for (const auto& views : levels) train_.push_back(upload(views, bytes));
         held_out_ = upload(held_out, bytes);
         std::vector<glm::vec3> centers;
-        for (const view& v : levels[0]) centers.emplace_back(v.camera.centre());
+        for (const view& v : levels[0]) centers.emplace_back(v.camera.center());
         centers_.resize(centers.size());
         device_.upload(centers_.data(), centers.data(), centers.size());
         device_.wait();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include "initialise.hpp"
+#include "initialize.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace gs {
 namespace {
 
 constexpr double initial_opacity = 0.1;
-constexpr std::size_t neighbours = 3;
+constexpr std::size_t neighbors = 3;
 /// Keeps points that coincide from having no size; by an extent of `internal_extent`.
 constexpr double least_squared_distance = 1e-7;
 /// Of the box in which the objects of NeRF-synthetic scenes lie, by the distance of their cameras.
@@ -27,8 +27,8 @@ constexpr double half_side_of_objects = 1.3 / 4.0311288;
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 /// `most` of the points in their order, each subset as likely as any other.
-std::vector<coloured_point> draw(const std::vector<coloured_point>& points, std::size_t most,
-                                 std::uint64_t seed) {
+std::vector<colored_point> draw(const std::vector<colored_point>& points, std::size_t most,
+                                std::uint64_t seed) {
     if (points.size() <= most) return points;
     std::mt19937_64 random(seed);
     std::vector<std::size_t> order(points.size());
@@ -40,7 +40,7 @@ std::vector<coloured_point> draw(const std::vector<coloured_point>& points, std:
     order.resize(most);
     std::sort(order.begin(), order.end());
 
-    std::vector<coloured_point> drawn;
+    std::vector<colored_point> drawn;
     drawn.reserve(most);
     for (const std::size_t i : order) drawn.push_back(points[i]);
     return drawn;
@@ -48,7 +48,7 @@ std::vector<coloured_point> draw(const std::vector<coloured_point>& points, std:
 
 /// What nanoflann asks of a point set; the names are its own.
 struct point_set {
-    const std::vector<coloured_point>& points;
+    const std::vector<colored_point>& points;
 
     std::size_t kdtree_get_point_count() const { return points.size(); }
     double kdtree_get_pt(std::size_t i, std::size_t axis) const {
@@ -61,18 +61,18 @@ struct point_set {
 };
 
 /// Per point, the mean squared distance to its nearest other points.
-std::vector<double> neighbour_distances(const std::vector<coloured_point>& points) {
+std::vector<double> neighbor_distances(const std::vector<colored_point>& points) {
     using metric = nanoflann::L2_Simple_Adaptor<double, point_set>;
     using tree_type = nanoflann::KDTreeSingleIndexAdaptor<metric, point_set, 3, std::size_t>;
     const point_set set{points};
     const tree_type tree(3, set);
-    const std::size_t others = std::min(neighbours, points.size() - 1);
+    const std::size_t others = std::min(neighbors, points.size() - 1);
 
     std::vector<double> result(points.size(), 0.0);
 #pragma omp parallel for schedule(static)
     for (std::size_t i = 0; i < points.size(); ++i) {
-        std::size_t index[neighbours + 1];
-        double squared[neighbours + 1] = {};
+        std::size_t index[neighbors + 1];
+        double squared[neighbors + 1] = {};
         tree.knnSearch(&points[i].position.x, others + 1, index, squared);
         // The point itself is among those found, at distance 0, or else enough others are at distance 0.
         const double sum = std::accumulate(std::begin(squared), std::end(squared), 0.0);
@@ -85,22 +85,22 @@ std::pair<glm::dvec3, double> box_looked_at(const scene& s) {
     const auto object = s.object_centered ? s.looked_at() : std::nullopt;
     if (object) {
         std::vector<double> distances;
-        for (const view& v : s.train) distances.push_back(glm::distance(*object, v.camera.centre()));
+        for (const view& v : s.train) distances.push_back(glm::distance(*object, v.camera.center()));
         const auto median = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
         std::ranges::nth_element(distances, median);
         return {*object, half_side_of_objects * *median};
     }
     glm::dvec3 sum{0};
-    for (const view& v : s.train) sum += v.camera.centre();
+    for (const view& v : s.train) sum += v.camera.center();
     return {sum / static_cast<double>(s.train.size()), s.extent()};
 }
 
 }  // namespace
 
-gaussians from_points(const std::vector<coloured_point>& points, int sh_degree, std::size_t most,
+gaussians from_points(const std::vector<colored_point>& points, int sh_degree, std::size_t most,
                       std::uint64_t seed) {
-    const std::vector<coloured_point> drawn = draw(points, most, seed);
-    const std::vector<double> squared_distance = neighbour_distances(drawn);
+    const std::vector<colored_point> drawn = draw(points, most, seed);
+    const std::vector<double> squared_distance = neighbor_distances(drawn);
     const std::size_t count = drawn.size();
 
     gaussians model;
@@ -115,7 +115,7 @@ gaussians from_points(const std::vector<coloured_point>& points, int sh_degree, 
         for (glm::length_t axis = 0; axis < 3; ++axis) {
             model.mean.push_back(static_cast<float>(drawn[i].position[axis]));
             model.log_scale.push_back(log_scale);
-            model.sh_constant.push_back(sh_from_colour(static_cast<float>(drawn[i].colour[axis]) / 255.0F));
+            model.sh_constant.push_back(sh_from_color(static_cast<float>(drawn[i].color[axis]) / 255.0F));
         }
         model.quaternion.insert(model.quaternion.end(), {1, 0, 0, 0});
     }
@@ -124,14 +124,14 @@ gaussians from_points(const std::vector<coloured_point>& points, int sh_degree, 
     return model;
 }
 
-std::vector<coloured_point> random_points(const scene& scene, std::size_t count, std::uint64_t seed) {
-    const auto [centre, half_side] = box_looked_at(scene);
+std::vector<colored_point> random_points(const scene& scene, std::size_t count, std::uint64_t seed) {
+    const auto [center, half_side] = box_looked_at(scene);
     std::mt19937_64 random(seed);
-    std::vector<coloured_point> points(count);
-    for (coloured_point& p : points) {
+    std::vector<colored_point> points(count);
+    for (colored_point& p : points) {
         for (glm::length_t axis = 0; axis < 3; ++axis) {
-            p.position[axis] = centre[axis] + half_side * (2 * uniform(random) - 1);
-            p.colour[axis] = static_cast<std::uint8_t>(256 * uniform(random));
+            p.position[axis] = center[axis] + half_side * (2 * uniform(random) - 1);
+            p.color[axis] = static_cast<std::uint8_t>(256 * uniform(random));
         }
     }
     return points;

@@ -14,10 +14,10 @@ namespace gs::train {
 
 /// Notes how long the lists of a view are. One index.
 struct note_length {
-    raster::list_capacity room;
+    raster::list_capacity capacity;
     std::uint64_t* length;
 
-    WARPAGG_HD void operator()(std::size_t) const { *length = *room.needed; }
+    WARPAGG_HD void operator()(std::size_t) const { *length = *capacity.required; }
 };
 
 /// Remembers how long the tile lists of each training view were, and sizes the renderer's memory for the
@@ -45,7 +45,7 @@ class list_sizer {
         for (std::size_t v = 0; v < views.size(); ++v) {
             if (counts_[v] > 0) continue;
             renderer.measure(model, gaussians, views[v].camera, 0);  // colors do not matter
-            device_.for_each_index(1, note_length{renderer.room(), length(v)});
+            device_.for_each_index(1, note_length{renderer.capacity(), length(v)});
             counts_[v] = gaussians;
         }
         std::vector<std::uint64_t> lengths(views.size());

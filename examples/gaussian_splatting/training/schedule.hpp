@@ -20,15 +20,15 @@ struct schedule {
 
     /// Of Adam. Those of positions are by extent and fall from `init` to `final`, geometrically.
     double position_lr_init = 1.6e-4, position_lr_final = 1.6e-6;
-    double feature_lr = 2.5e-3;   ///< of the constant colour
-    std::optional<double> sh_lr;  ///< of colours that depend on direction: a tenth, where it is not said
+    double feature_lr = 2.5e-3;   ///< of the constant color
+    std::optional<double> sh_lr;  ///< of colors that depend on direction: a tenth, where it is not said
     double opacity_lr = 2.5e-2, scaling_lr = 1e-2, rotation_lr = 1e-3;
 
     /// Coarse to fine: photos are shrunk by two `num_downscales` times at first, and once less after every
     /// `resolution_interval` iterations.
     int num_downscales = 1;
     std::optional<int> resolution_schedule;
-    /// Colours that depend on direction learn in every so many iterations.
+    /// Colors that depend on direction learn in every so many iterations.
     int sh_update_interval = 1;
 
     int sh_degree_at(int iteration) const;

@@ -15,7 +15,7 @@ namespace gs::train {
 /// Ends a step: counts it if it was skipped, notes how long its lists were, and checks the loss and whether
 /// all sums fitted. One index.
 struct close_step {
-    raster::list_capacity room;
+    raster::list_capacity capacity;
     std::uint64_t* skipped;
     std::uint64_t* length;  ///< of the view's lists
     const double* sums;     ///< see `loss::sums`
@@ -24,8 +24,8 @@ struct close_step {
     train::finite_check check;
 
     WARPAGG_HD void operator()(std::size_t) const {
-        if (room.exceeded()) ++*skipped;
-        *length = *room.needed;
+        if (capacity.exceeded()) ++*skipped;
+        *length = *capacity.required;
         double sum = 0;
         for (std::size_t k = 0; k < sum_count; ++k) sum += sums[k];
         if (!raster::is_finite(sum)) check.note(fault_kind::loss, 0, 0);
@@ -50,7 +50,7 @@ class step_monitor {
     template <class Renderer>
     void close(const Renderer& renderer, std::span<const double> loss_sums, std::uint64_t* length,
                int iteration) {
-        device_.for_each_index(1, close_step{renderer.room(), skipped_.data(), length, loss_sums.data(),
+        device_.for_each_index(1, close_step{renderer.capacity(), skipped_.data(), length, loss_sums.data(),
                                              loss_sums.size(), renderer.fault(), check_of(iteration)});
     }
 

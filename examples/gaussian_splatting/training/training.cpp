@@ -32,7 +32,7 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     setup.facts.iterations = schedule.iterations;
     setup.facts.views = static_cast<int>(scene.train.size());
     setup.facts.extent = schedule.extent;
-    setup.facts.white = scene.has_alpha && options.background.colour == std::array<float, 3>{1, 1, 1};
+    setup.facts.white = scene.has_alpha && options.background.color == std::array<float, 3>{1, 1, 1};
     setup.facts.max_gaussians = options.max_cap;
     setup.facts.seed = options.seed;
     setup.facts.gradient = options.gradient;
@@ -73,8 +73,7 @@ void training::add_step() {
              plan.view = order->next();
              plan.sh_degree = schedule_.sh_degree_at(iteration);
              plan.updates_sh = schedule_.updates_sh(iteration);
-             plan.background =
-                 options_.background.random ? random_color(*colors) : options_.background.colour;
+             plan.background = options_.background.random ? random_color(*colors) : options_.background.color;
              plan.rates = schedule_.rates_at(iteration);
              engine_.step(plan);
              faults_.steps(plan.view);

@@ -20,8 +20,8 @@ namespace gs::train {
 
 /// What to train against in the transparent parts of photos.
 struct background_choice {
-    std::array<float, 3> colour{};
-    bool random = false;  ///< another color in every step; held-out views are measured on `colour`
+    std::array<float, 3> color{};
+    bool random = false;  ///< another color in every step; held-out views are measured on `color`
 };
 
 struct train_options {

@@ -18,22 +18,22 @@ import decisions  # noqa: E402
 COLOUR = "direction"
 
 
-def told(case, **colour):
-    """The run of a scene of which all is decided right but its colour, as said."""
+def told(case, **color):
+    """The run of a scene of which all is decided right but its color, as said."""
     effects = {name: {"called_for": has, "evidence": "seen"} for name, has in case["truth"].items()}
-    effects[COLOUR].update(colour)
+    effects[COLOUR].update(color)
     return {**case, "effects": effects, "seconds": 0.5}
 
 
 def mixtures(*pairs):
-    """With gloss or not, and whether colour is called for."""
+    """With gloss or not, and whether color is called for."""
     return [told(decisions.synthetic("mixture", "spheres", {"gloss": 0.5} if has else {}), called_for=called_for)
             for has, called_for in pairs]
 
 
 class Arithmetic(unittest.TestCase):
     def row(self, runs, noise="0"):
-        """Precision, recall, and the counts of colour."""
+        """Precision, recall, and the counts of color."""
         pure = [told(decisions.synthetic("pure", "alpha", {}), called_for=None, evidence="no telling: 7 points")]
         real = [{**pure[0], "kind": "real", "scene": "lego", "truth": None}]
         result = {"runs": [*pure, *runs, *real], "seed": 3, "processor": " a CPU", "compiler": "c++", "commit": "none"}

@@ -18,12 +18,12 @@ using namespace gs_test;
 
 namespace {
 
-std::vector<std::string> pictures_in(const fs::path& folder, int expected_width, int expected_height) {
+std::vector<std::string> images_in(const fs::path& folder, int expected_width, int expected_height) {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder)) {
-        const gs::image picture = gs::read_image(entry.path());
-        CHECK(picture.width == expected_width);
-        CHECK(picture.height == expected_height);
+        const gs::image image = gs::read_image(entry.path());
+        CHECK(image.width == expected_width);
+        CHECK(image.height == expected_height);
         names.push_back(entry.path().filename().string());
     }
     std::ranges::sort(names);
@@ -88,9 +88,9 @@ TEST_CASE("train writes a model, measures and renders, and evaluate and render r
     const gs::gaussians saved = gs::read_ply(model);
     CHECK(saved.sh_degree == 1);
     CHECK(saved.count() == metrics.at("gaussians").get<std::size_t>());
-    const auto renders = pictures_in(output / "test/ours_60/renders", 32, 32);
+    const auto renders = images_in(output / "test/ours_60/renders", 32, 32);
     CHECK(renders.size() == 8);
-    CHECK(pictures_in(output / "test/ours_60/gt", 32, 32) == renders);
+    CHECK(images_in(output / "test/ours_60/gt", 32, 32) == renders);
 
     SUBCASE("evaluate measures the same") {
         const fs::path again = folder / "again";
@@ -111,16 +111,16 @@ TEST_CASE("train writes a model, measures and renders, and evaluate and render r
         CHECK(says(said.out, {"PSNR", "8 views"}));
     }
     SUBCASE("render from the scene's cameras draws what training drew") {
-        const fs::path pictures = folder / "pictures";
-        check_success(words{"render", model.string(), "-o", pictures.string()} + small_spheres);
-        CHECK(pictures_in(pictures, 32, 32) == renders);
-        CHECK(contents(pictures) == contents(output / "test/ours_60/renders"));
+        const fs::path images = folder / "images";
+        check_success(words{"render", model.string(), "-o", images.string()} + small_spheres);
+        CHECK(images_in(images, 32, 32) == renders);
+        CHECK(contents(images) == contents(output / "test/ours_60/renders"));
     }
     SUBCASE("render from the model alone draws an orbit") {
-        const fs::path pictures = folder / "orbit";
-        check_success({"render", model.string(), "-o", pictures.string(), "--orbit-views", "3", "-r", "40",
+        const fs::path images = folder / "orbit";
+        check_success({"render", model.string(), "-o", images.string(), "--orbit-views", "3", "-r", "40",
                        "--device", "cpu"});
-        CHECK(pictures_in(pictures, 40, 40) == words{"00000.png", "00001.png", "00002.png"});
+        CHECK(images_in(images, 40, 40) == words{"00000.png", "00001.png", "00002.png"});
     }
 }
 
@@ -163,15 +163,15 @@ TEST_CASE("models have the coordinates of the scene, far from the origin and in 
         const double psnr = read_json(output / "metrics.json").at("psnr").get<double>();
         CHECK(read_json(again / "metrics.json").at("psnr").get<double>() ==
               doctest::Approx(psnr).epsilon(1e-12));
-        check_success(words{"render", model.string(), "-o", (folder / "pictures").string()} + data);
-        CHECK(contents(folder / "pictures") == contents(output / "test/ours_5/renders"));
+        check_success(words{"render", model.string(), "-o", (folder / "images").string()} + data);
+        CHECK(contents(folder / "images") == contents(output / "test/ours_5/renders"));
 
         // The orbit sees something, wherever it is.
         check_success({"render", model.string(), "-o", (folder / "orbit").string(), "--orbit-views", "1",
                        "-r", "40", "--device", "cpu"});
-        const gs::image picture = gs::read_image(folder / "orbit/00000.png");
-        CHECK(std::ranges::any_of(std::vector<std::uint8_t>(picture.rgba.begin() + 4 * (20 * 40 + 15),
-                                                            picture.rgba.begin() + 4 * (20 * 40 + 25)),
+        const gs::image image = gs::read_image(folder / "orbit/00000.png");
+        CHECK(std::ranges::any_of(std::vector<std::uint8_t>(image.rgba.begin() + 4 * (20 * 40 + 15),
+                                                            image.rgba.begin() + 4 * (20 * 40 + 25)),
                                   [](std::uint8_t level) { return level > 20 && level < 255; }));
     }
 }

@@ -10,7 +10,7 @@
 #include "../training/engines.hpp"
 #include "model/opacity.hpp"
 #include "render/project/geometry.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 
 namespace {
 
@@ -370,12 +370,12 @@ TEST_CASE("adaptive: hides exactly the Gaussians closer to a training camera tha
     const gs::scene scene = small_scene();
     const float near = static_cast<float>(gs::raster::near_plane), hidden = gs::logit(0);
     // Around each camera, of those to learn from and of those that are held out.
-    std::vector<gs::coloured_point> points;
+    std::vector<gs::colored_point> points;
     for (const auto* views : {&scene.train, &scene.test})
         for (const gs::view& v : *views)
             for (const double distance : {0.0, 0.5, 0.99, 1.01, 3.0})
                 points.push_back(
-                    {v.camera.centre() + distance * double{near} * glm::dvec3(0, 0.6, -0.8), {}});
+                    {v.camera.center() + distance * double{near} * glm::dvec3(0, 0.6, -0.8), {}});
     gaussians model = gs::from_points(points, 0, points.size(), 1);
     for (std::size_t i = 0; i < model.count(); i += 7) model.opacity[i] = hidden - 1;  // no higher
     std::size_t near_ones = 0;
@@ -383,7 +383,7 @@ TEST_CASE("adaptive: hides exactly the Gaussians closer to a training camera tha
     for (std::size_t i = 0; i < model.count(); ++i) {
         double least = 1e30;
         for (const gs::view& v : scene.train)
-            least = std::min(least, glm::distance(v.camera.centre(), points[i].position));
+            least = std::min(least, glm::distance(v.camera.center(), points[i].position));
         if (least >= double{near}) continue;
         ++near_ones;
         expected[i] = std::min(expected[i], hidden);

@@ -11,7 +11,7 @@
 #include "../training/engines.hpp"
 #include "core/error.hpp"
 #include "device/cpu/cpu.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 #include "training/training.hpp"
 
 namespace {
@@ -25,9 +25,9 @@ constexpr float penalty = 0.125f;
 /// Subtracts a constant from all opacities, which are logits. One index for each Gaussian.
 struct lower_all {
     float* opacity;
-    gs::raster::list_capacity room;
+    gs::raster::list_capacity capacity;
     void operator()(std::size_t i) const {
-        if (!room.exceeded()) opacity[i] -= penalty;
+        if (!capacity.exceeded()) opacity[i] -= penalty;
     }
 };
 
@@ -62,7 +62,7 @@ class copy_worst final : public strategy<Device> {
     void after_step(int iteration, const step_context<Device>& c) override {
         if (iteration > last_run) return;
         CHECK(c.rates[3] > 0);  // of opacities
-        c.device.for_each_index(c.count, lower_all{c.parameters.values.write().opacity, c.room});
+        c.device.for_each_index(c.count, lower_all{c.parameters.values.write().opacity, c.capacity});
     }
 
     densify_report run(int iteration, const run_context<Device>& c) override {

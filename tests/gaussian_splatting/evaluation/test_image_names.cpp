@@ -4,7 +4,7 @@
 
 #include "evaluation/held_out_views.hpp"
 
-TEST_CASE("pictures have flat names, and no two the same") {
+TEST_CASE("images have flat names, and no two the same") {
     std::vector<gs::view> views(6);
     const char* names[] = {"a/b.jpg", "a_b.jpg", "x.jpg", "x.png", "IMG.0001", "IMG.0002"};
     for (std::size_t i = 0; i < 6; ++i) views[i].name = names[i];

@@ -97,10 +97,10 @@ TEST_CASE("a sky is what it was made of, and begins from that") {
             double basis[16];
             gs::sh_basis<double>(3, glm::normalize(glm::transpose(v.camera.rotation) * ray), basis);
             for (std::size_t c = 0; c < 3; ++c) {
-                double colour = 0.5;
+                double color = 0.5;
                 for (std::size_t k = 0; k < 16; ++k)
-                    colour += basis[k] * static_cast<double>(found.coefficients[3 * k + c]);
-                square += std::pow(colour - v.pixels.rgba[4 * i + c] / 255.0, 2);
+                    color += basis[k] * static_cast<double>(found.coefficients[3 * k + c]);
+                square += std::pow(color - v.pixels.rgba[4 * i + c] / 255.0, 2);
                 ++values;
             }
         }
@@ -186,7 +186,7 @@ TEST_CASE("exposures are found to 0.7 %, on average") {
 }
 
 TEST_CASE(
-    "exposures along a walk of two thousand photos are found, where each shares points with its neighbours "
+    "exposures along a walk of two thousand photos are found, where each shares points with its neighbors "
     "alone") {
     constexpr std::size_t views = 2000, at_once = 5, points_at_once = 5;
     std::mt19937 random(1);
@@ -202,7 +202,7 @@ TEST_CASE(
             for (std::size_t i = v; i < v + at_once; ++i) {
                 gs::observation& o = points.back().emplace_back();
                 o.view = static_cast<std::uint32_t>(i);
-                o.colour = glm::vec3(static_cast<float>(0.3 * std::exp2(truth[i] - mean + noise(0.0003))));
+                o.color = glm::vec3(static_cast<float>(0.3 * std::exp2(truth[i] - mean + noise(0.0003))));
             }
         }
     const gs::photo_brightness found = gs::estimate_brightness(points, views);

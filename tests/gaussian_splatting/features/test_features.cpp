@@ -28,7 +28,7 @@
 #include "losses/inverse_depth/depth_gradient.hpp"
 #include "readers/load_scene.hpp"
 #include "render/geometry/effect_set.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 #include "training/training.hpp"
 
 namespace {
@@ -50,10 +50,10 @@ std::string refusal(const std::string& text) {
     return "";
 }
 
-std::vector<float> random_picture(std::mt19937& random, std::size_t values) {
-    std::vector<float> picture(values);
-    for (float& x : picture) x = static_cast<float>(random() % 1000) / 999;
-    return picture;
+std::vector<float> random_render(std::mt19937& random, std::size_t values) {
+    std::vector<float> render(values);
+    for (float& x : render) x = static_cast<float>(random() % 1000) / 999;
+    return render;
 }
 
 /// Of the selectable features.
@@ -193,13 +193,13 @@ TEST_CASE("a selection of effects that is none is refused") {
     }
 }
 
-TEST_CASE("gradients by the picture and by the exposure are those of central differences") {
+TEST_CASE("gradients by the image and by the exposure are those of central differences") {
     using device_type = gs::device::cpu;
     device_type device;
     std::mt19937 random(1);
     for (const std::size_t pixels : {1, 31, 700}) {
         CAPTURE(pixels);
-        const auto picture = random_picture(random, 3 * pixels), weights = random_picture(random, 3 * pixels);
+        const auto render = random_render(random, 3 * pixels), weights = random_render(random, 3 * pixels);
         // Of the sum of weights and exposed values, by an exposure that was learnt.
         gs::features::exposures<device_type> exposures(device);
         exposures.set({identity_exposure, identity_exposure});
@@ -207,8 +207,8 @@ TEST_CASE("gradients by the picture and by the exposure are those of central dif
             const float* shown = exposures.show(1, of.data(), pixels);
             return std::vector<float>(shown, shown + 3 * pixels);
         };
-        CHECK(show(picture) == picture);
-        for (int i = 0; i < 30; ++i) exposures.learn(1, picture.data(), weights.data(), pixels, 0.02f, {});
+        CHECK(show(render) == render);
+        for (int i = 0; i < 30; ++i) exposures.learn(1, render.data(), weights.data(), pixels, 0.02f, {});
         const auto values = exposures.get();
         CHECK(values[0] == identity_exposure);
         for (const float x : {values[1][0], values[1][5], values[1][10]})
@@ -221,19 +221,19 @@ TEST_CASE("gradients by the picture and by the exposure are those of central dif
                 sum += static_cast<double>(weights[i]) * static_cast<double>(shown[i]);
             return sum;
         };
-        const float* by = exposures.learn(1, picture.data(), weights.data(), pixels, 0, {});
+        const float* by = exposures.learn(1, render.data(), weights.data(), pixels, 0, {});
         for (const std::size_t i : {std::size_t{0}, pixels - 1, 2 * pixels}) {
-            auto more = picture;
+            auto more = render;
             more[i] += 0.5f;
-            CHECK((loss(more) - loss(picture)) * 2 ==
+            CHECK((loss(more) - loss(render)) * 2 ==
                   doctest::Approx(static_cast<double>(by[i])).epsilon(1e-4));
         }
         exposures.normalize();
-        const auto centred = exposures.get();
+        const auto centerd = exposures.get();
         for (std::size_t k = 0; k < 12; ++k)
-            CHECK(0.5f * (centred[0][k] + centred[1][k]) ==
+            CHECK(0.5f * (centerd[0][k] + centerd[1][k]) ==
                   doctest::Approx(k % 5 == 0 ? 1 : 0).epsilon(1e-6));
-        CHECK(centred[1][0] - centred[0][0] == doctest::Approx(values[1][0] - values[0][0]).epsilon(1e-6));
+        CHECK(centerd[1][0] - centerd[0][0] == doctest::Approx(values[1][0] - values[0][0]).epsilon(1e-6));
     }
 }
 
@@ -242,13 +242,13 @@ TEST_CASE("a step without room, or whose gradient is not finite, leaves the expo
     gs::features::exposures<gs::device::cpu> exposures(device);
     exposures.set({identity_exposure});
     const auto before = exposures.get();
-    const std::vector<float> picture(3, 0.5f), nothing(3, std::nanf(""));
-    const std::uint64_t needed = 2;
-    exposures.learn(0, picture.data(), picture.data(), 1, 0.1f, {&needed, 1});
+    const std::vector<float> render(3, 0.5f), nothing(3, std::nanf(""));
+    const std::uint64_t required = 2;
+    exposures.learn(0, render.data(), render.data(), 1, 0.1f, {&required, 1});
     CHECK(exposures.get() == before);
-    exposures.learn(0, picture.data(), nothing.data(), 1, 0.1f, {});
+    exposures.learn(0, render.data(), nothing.data(), 1, 0.1f, {});
     CHECK(exposures.get() == before);
-    exposures.learn(0, picture.data(), picture.data(), 1, 0.1f, {&needed, 2});
+    exposures.learn(0, render.data(), render.data(), 1, 0.1f, {&required, 2});
     CHECK(exposures.get() != before);
 }
 
@@ -267,8 +267,8 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
         camera.width = width;
         camera.height = height;
         camera.cx = 0.4 * width;
-        std::vector<float> coefficients = random_picture(random, gs::sky_width);
-        const auto weights = random_picture(random, 3 * pixels), through = random_picture(random, pixels);
+        std::vector<float> coefficients = random_render(random, gs::sky_width);
+        const auto weights = random_render(random, 3 * pixels), through = random_render(random, pixels);
         gs::features::sky<gs::device::cpu> sky(device);
         CHECK(sky.draw(camera) == nullptr);
         // Of the sum of weights and what comes through of the sky.
@@ -524,7 +524,7 @@ TEST_CASE("a review adds bands that what is left of photos calls for, and drops 
         }
 }
 
-TEST_CASE("test photos are exposed as their neighbours, if training photos are") {
+TEST_CASE("test photos are exposed as their neighbors, if training photos are") {
     gs::scene scene;
     for (const char* name : {"e", "a", "c", "g"}) scene.train.emplace_back().name = name;
     for (const char* name : {"0", "b", "d", "z"}) scene.test.emplace_back().name = name;
@@ -559,12 +559,12 @@ TEST_CASE("what test views are shown with is what they are measured with") {
 TEST_CASE("a fit finds what an exposure did, on pixels that it is not measured by") {
     std::mt19937 random(2);
     constexpr int width = 20, height = 9;
-    const auto picture = random_picture(random, 3 * width * height);
+    const auto render = random_render(random, 3 * width * height);
     gs::image photo{width, height, std::vector<std::uint8_t>(4 * width * height, 255)};
-    for (std::size_t i = 0; i < picture.size(); ++i)
+    for (std::size_t i = 0; i < render.size(); ++i)
         photo.rgba[4 * (i % (width * height)) + i / (width * height)] =
-            static_cast<std::uint8_t>(std::lround(255 * (0.6f * picture[i] + 0.1f)));
-    const auto psnr = [&](const gs::image& of) { return *gs::evaluate::psnr_after_fit(picture, of, {}); };
+            static_cast<std::uint8_t>(std::lround(255 * (0.6f * render[i] + 0.1f)));
+    const auto psnr = [&](const gs::image& of) { return *gs::evaluate::psnr_after_fit(render, of, {}); };
     const double by_rounding = -20 * std::log10(std::sqrt(1.0 / 12) / 255);
     CHECK(psnr(photo) == doctest::Approx(by_rounding).epsilon(0.02));
     // Half of what either half has is spoilt; a mask leaves that out.
@@ -577,7 +577,7 @@ TEST_CASE("a fit finds what an exposure did, on pixels that it is not measured b
     CHECK(psnr(masked) == doctest::Approx(by_rounding).epsilon(0.02));
     for (std::size_t i = 0; i < width * height; ++i)
         if (i % width >= width / 2) masked.mask_pixel(i);
-    CHECK_FALSE(gs::evaluate::psnr_after_fit(picture, masked, {}));
+    CHECK_FALSE(gs::evaluate::psnr_after_fit(render, masked, {}));
     // Without a left half nothing changes.
     CHECK(*gs::evaluate::psnr_after_fit({0.5f, 0.5f, 0.5f}, gs::image{1, 1, {153, 128, 128, 255}}, {}) ==
           doctest::Approx(-10 * std::log10((0.01 + 2 * std::pow(0.5 / 255, 2)) / 3)).epsilon(1e-4));

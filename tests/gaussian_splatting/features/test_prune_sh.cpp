@@ -11,7 +11,7 @@
 #include "device/cpu/cpu.hpp"
 #include "engine/sh_degree_state.hpp"
 #include "features/sh_degree/prune_sh.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 
 namespace {
 

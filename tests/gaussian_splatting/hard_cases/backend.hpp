@@ -20,19 +20,19 @@ namespace hard_cases {
 
 using gs::accumulator;
 
-/// A picture of a few Gaussians and a photo to compare it with.
+/// A image of a few Gaussians and a photo to compare it with.
 struct render_case {
     int sh_degree = 3;
     gs::effect_set effects;
     std::array<std::vector<double>, gs::parameter_count> parameters;
     gs::view view;
     std::array<float, 3> background{};
-    std::vector<double> backdrop;  ///< three planes behind all, in place of the background; or none
+    std::vector<double> background_image;  ///< three planes behind all, in place of the background; or none
     /// Of what the loss has beside: the sum of the inverse depths, each times this, one a pixel; or none.
     std::vector<double> depth_weights;
     accumulator how = accumulator::native;
     std::vector<double> weights;  ///< of the loss's gradient, one a pixel; none for 1 everywhere
-    /// The picture at which the loss's gradient is taken; none for the one that is drawn.
+    /// The image at which the loss's gradient is taken; none for the one that is drawn.
     std::vector<double> gradient_at;
 
     std::size_t count() const { return parameters[3].size(); }
@@ -47,17 +47,17 @@ struct sighting {
 };
 
 struct render_result {
-    std::vector<double> picture;  ///< three planes, as all pictures here
+    std::vector<double> render;  ///< three planes, as all images here
     double loss = 0;
     std::array<std::vector<double>, gs::parameter_count> gradients;
     std::vector<sighting> sightings;
 };
 
-/// A Gaussian in the picture, as the renderer's `splat`.
+/// A Gaussian in the image, as the renderer's `splat`.
 struct projected_splat {
     bool drawn;
     std::uint32_t depth;  ///< sort key
-    double x, y, reach, opacity, p, q, r, red, green, blue;
+    double x, y, cutoff, opacity, p, q, r, red, green, blue;
 
     bool operator==(const projected_splat&) const = default;
 };
@@ -67,7 +67,7 @@ struct projected_splat {
 struct flat_splat {
     double x, y, opacity;
     std::array<double, 3> across{}, down{};
-    std::array<double, 3> colour{};
+    std::array<double, 3> color{};
 };
 
 /// Splats to be blended, without Gaussians behind them.
@@ -76,21 +76,21 @@ struct blend_case {
     std::array<float, 3> background{};
     std::vector<flat_splat> splats;
     std::vector<std::vector<std::uint32_t>> lists;  ///< front to back, one a tile; none for all in each
-    std::vector<double> gradient;                   ///< by the picture; empty: forward only
+    std::vector<double> gradient;                   ///< by the image; empty: forward only
     accumulator how = accumulator::native;
 };
 
 struct blend_result {
-    std::vector<double> picture, transmittance;
+    std::vector<double> render, transmittance;
     std::vector<std::uint32_t> last;
     /// By splat: of red, green, blue, of dL/dalpha alpha, and its five moments.
     std::vector<std::array<double, 9>> sums;
 };
 
-/// A picture beside a photo, premultiplied RGBA over a background.
+/// A image beside a photo, premultiplied RGBA over a background.
 struct compare_case {
     int width, height;
-    std::vector<double> picture;
+    std::vector<double> render;
     std::vector<std::uint8_t> rgba;
     std::array<float, 3> background{};
 };
@@ -98,20 +98,20 @@ struct compare_case {
 struct compare_result {
     gs::train::image_quality quality;
     double loss;
-    std::vector<double> gradient;  ///< of the training loss, by the picture
+    std::vector<double> gradient;  ///< of the training loss, by the image
 };
 
 /// Who stays and how urgently each wants to grow: the smaller the key the more.
-struct judgement {
+struct judgment {
     std::vector<std::uint32_t> stays, urgency;
     std::uint64_t without_gradient;  ///< were drawn and took no gradient
 };
 
-/// What goes to each bucket, in the order of the items, as far as there is room for it; and how much that is
+/// What goes to each bucket, in the order of the items, up to the capacity; and how much that is
 /// without the bound.
 struct bucket_lists {
     std::vector<std::vector<std::uint32_t>> items;
-    std::uint64_t needed;
+    std::uint64_t required;
 };
 
 /// The kernels on one device. Each function waits for its result.
@@ -131,14 +131,14 @@ struct backend {
                                                 double rate,
                                                 const std::vector<std::vector<std::uint32_t>>& takes_part,
                                                 std::uint32_t steps_before);
-    judgement (*judge)(const std::vector<sighting>&, const std::vector<double>& opacities,
-                       const gs::train::densify_config&);
+    judgment (*judge)(const std::vector<sighting>&, const std::vector<double>& opacities,
+                      const gs::train::densify_config&);
     std::vector<std::uint64_t> (*prefix_sum)(const std::vector<std::uint32_t>&);
     /// The numbers from 0, sorted by their keys.
     std::vector<std::uint32_t> (*sort)(const std::vector<std::uint32_t>& keys);
     /// Items with the buckets that each goes to, `no_bucket` among them.
     bucket_lists (*distribute)(const std::vector<std::vector<std::uint32_t>>& items, std::size_t buckets,
-                               std::uint64_t room);
+                               std::uint64_t capacity);
     /// What a renderer says to this many instances of a view; nothing if it takes them.
     std::string (*complaint_about_instances)(std::uint64_t);
     /// The library's sum of all values into one address.

@@ -40,13 +40,13 @@ bool all_finite(const std::vector<double>& a) {
 }
 
 bool all_finite(const render_result& a) {
-    return all_finite(a.picture) && std::isfinite(a.loss) &&
+    return all_finite(a.render) && std::isfinite(a.loss) &&
            std::all_of(a.gradients.begin(), a.gradients.end(),
                        [](const std::vector<double>& g) { return all_finite(g); });
 }
 
 bool same(const render_result& a, const render_result& b) {
-    if (!same(a.picture, b.picture) || a.loss != b.loss) return false;
+    if (!same(a.render, b.render) || a.loss != b.loss) return false;
     for (std::size_t p = 0; p < gs::parameter_count; ++p)
         if (!same(a.gradients[p], b.gradients[p])) return false;
     return true;
@@ -62,8 +62,8 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 double distance(const render_result& a, const render_result& b, const render_case& q) {
-    if (q.weights.empty()) return distance(a.picture, b.picture);
-    std::vector<double> x = a.picture, y = b.picture;
+    if (q.weights.empty()) return distance(a.render, b.render);
+    std::vector<double> x = a.render, y = b.render;
     for (std::size_t i = 0; i < x.size(); ++i)
         if (q.weights[i % q.pixels()] == 0) x[i] = y[i] = 0;
     return distance(x, y);
@@ -142,8 +142,8 @@ std::vector<double> off_thresholds(const render_case& q, double margin, std::uin
         return static_cast<int>(std::clamp(std::floor(first), 0.0, static_cast<double>(end)));
     };
     for (const projected_splat& s : splats) {
-        // u = p dx and v = q dy + r dx, neither further from 0 than the root of the reach.
-        const double far = std::sqrt(s.reach) * (1 + margin), dx = far / s.p,
+        // u = p dx and v = q dy + r dx, neither further from 0 than the root of the cutoff.
+        const double far = std::sqrt(s.cutoff) * (1 + margin), dx = far / s.p,
                      dy = (far + std::abs(s.r) * dx) / s.q;
         for (int y = from(s.y - dy - 1, height); y < from(s.y + dy + 2, height); ++y)
             for (int x = from(s.x - dx - 1, width); x < from(s.x + dx + 2, width); ++x) {
@@ -163,9 +163,9 @@ std::vector<double> off_thresholds(const render_case& q, double margin, std::uin
                 T = next < least_transmittance ? 0 : next;
             }
     }
-    const std::vector<double> picture = reference().render(q).picture;
-    for (std::size_t i = 0; i < picture.size(); ++i) {
-        const double apart = std::abs(picture[i] - photo_at(q, i / q.pixels(), i % q.pixels()));
+    const std::vector<double> render = reference().render(q).render;
+    for (std::size_t i = 0; i < render.size(); ++i) {
+        const double apart = std::abs(render[i] - photo_at(q, i / q.pixels(), i % q.pixels()));
         // Nothing seen, or nothing but black on black, is the same in every precision.
         if (apart != 0 && behind[i % q.pixels()] < 1 && apart < 0.1 * margin) weights[i % q.pixels()] = 0;
     }

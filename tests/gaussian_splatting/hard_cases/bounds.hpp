@@ -33,14 +33,14 @@ std::string excess(const std::vector<double>& got, const std::vector<double>& ex
 /// The largest distance between elements; infinite where one is not finite or the sizes differ.
 double distance(const std::vector<double>& a, const std::vector<double>& b);
 
-/// The same of two pictures, where the case has weights only in the pixels that have one.
+/// The same of two images, where the case has weights only in the pixels that have one.
 double distance(const render_result& a, const render_result& b, const render_case& q);
 
 /// The largest |a|.
 double largest(const std::vector<double>& a);
 
 bool all_finite(const std::vector<double>& a);
-/// Picture, loss and gradients.
+/// Image, loss and gradients.
 bool all_finite(const render_result& a);
 
 /// Bit for bit, but that all NaN are alike.

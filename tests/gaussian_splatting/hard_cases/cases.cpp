@@ -11,10 +11,10 @@
 
 namespace hard_cases {
 
-void add_backdrop(render_case& q, unsigned seed) {
+void add_background_image(render_case& q, unsigned seed) {
     std::mt19937 random(seed);
-    q.backdrop.resize(3 * q.pixels());
-    for (double& x : q.backdrop) x = static_cast<double>(random() % 1000) / 999;
+    q.background_image.resize(3 * q.pixels());
+    for (double& x : q.background_image) x = static_cast<double>(random() % 1000) / 999;
 }
 
 void take_fisheye(render_case& q, unsigned seed) {
@@ -108,7 +108,7 @@ void add(render_case& q, const gaussian& g) {
     append(gs::parameter::opacity, std::array<double, 1>{g.opacity}, 1);
     double first_harmonic[1];
     gs::sh_basis(0, glm::dvec3(0, 0, 1), first_harmonic);
-    append(gs::parameter::sh0, array((g.colour - 0.5) / first_harmonic[0]), 3);
+    append(gs::parameter::sh0, array((g.color - 0.5) / first_harmonic[0]), 3);
 }
 
 render_case without(const render_case& q, std::size_t index) {
@@ -124,19 +124,19 @@ render_case without(const render_case& q, std::size_t index) {
 
 std::size_t move_off_black(render_case& q) {
     std::size_t moved = 0;
-    const glm::dvec3 centre = q.view.camera.centre();
+    const glm::dvec3 center = q.view.camera.center();
     for (std::size_t i = 0; i < q.count(); ++i) {
         const double* mean = q.parameters[0].data() + 3 * i;
         double basis[16];
-        gs::sh_basis(q.sh_degree, glm::normalize(glm::dvec3(mean[0], mean[1], mean[2]) - centre), basis);
+        gs::sh_basis(q.sh_degree, glm::normalize(glm::dvec3(mean[0], mean[1], mean[2]) - center), basis);
         for (std::size_t channel = 0; channel < 3; ++channel) {
-            double colour = 0.5;
+            double color = 0.5;
             for (std::size_t band = 0, k = 0; band <= static_cast<std::size_t>(q.sh_degree); ++band) {
                 const std::size_t size = 2 * band + 1;
                 for (std::size_t m = 0; m < size; ++m, ++k)
-                    colour += basis[k] * q.parameters[4 + band][(i * size + m) * 3 + channel];
+                    color += basis[k] * q.parameters[4 + band][(i * size + m) * 3 + channel];
             }
-            if (std::abs(colour) > 1e-5) continue;
+            if (std::abs(color) > 1e-5) continue;
             double& constant = q.parameters[4][3 * i + channel];
             constant = static_cast<float>(constant + 1e-3);
             ++moved;

@@ -30,7 +30,7 @@ void for_each_look(const blend_case& q, const F& use) {
 TEST_CASE("case 1: forward and backward see the same alpha, to the bit") {
     constexpr int side = 256, tiles = side / 16 * side / 16;
     constexpr auto pixels = std::size_t{side} * side;
-    // A splat a tile: its alpha is the picture, and times the recovered T of exactly 1 the red, green and
+    // A splat a tile: its alpha is the image, and times the recovered T of exactly 1 the red, green and
     // blue sums.
     std::vector<blend_case> single, lists;
     for (unsigned seed = 0; seed < 4; ++seed) {
@@ -41,14 +41,14 @@ TEST_CASE("case 1: forward and backward see the same alpha, to the bit") {
             flat_splat s = random_splat(random, 16, 16, 0.01 + 0.99 * uniform(random));
             s.x += t % (side / 16) * 16;
             s.y += t / (side / 16) * 16;
-            s.colour = {1, 1, 1};
+            s.color = {1, 1, 1};
             q.splats.push_back(s);
             q.lists.push_back({t});
         }
         q.gradient = one_pixel_a_tile(random, side, side);
         single.push_back(q);
     }
-    // Lists of up to 300, wide enough for every pixel of their tile, of which the first has a colour.
+    // Lists of up to 300, wide enough for every pixel of their tile, of which the first has a color.
     for (unsigned seed = 10; seed < 12; ++seed) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> uniform;
@@ -62,7 +62,7 @@ TEST_CASE("case 1: forward and backward see the same alpha, to the bit") {
                 if (T < 1.1e-4) break;
                 flat_splat s = round_splat(64 * uniform(random), 64 * uniform(random),
                                            300 + 1000 * uniform(random), opacity);
-                if (q.lists[t].empty()) s.colour = {1, 1, 1};
+                if (q.lists[t].empty()) s.color = {1, 1, 1};
                 q.lists[t].push_back(static_cast<std::uint32_t>(q.splats.size()));
                 q.splats.push_back(s);
             }
@@ -77,7 +77,7 @@ TEST_CASE("case 1: forward and backward see the same alpha, to the bit") {
             q.how = how;
             const blend_result a = b.blend(q);
             for_each_look(q, [&](std::size_t tile, std::size_t channel, std::size_t pixel) {
-                const double alpha = a.picture[channel * pixels + pixel];
+                const double alpha = a.render[channel * pixels + pixel];
                 seen += alpha > 0 ? 1 : 0;
                 other += a.sums[tile][channel] == alpha ? 0 : 1;
             });
@@ -90,8 +90,7 @@ TEST_CASE("case 1: forward and backward see the same alpha, to the bit") {
             q.how = how;
             const blend_result a = b.blend(q);
             for_each_look(q, [&](std::size_t tile, std::size_t channel, std::size_t pixel) {
-                const double T =
-                    recovered(a, q.lists[tile][0], channel, a.picture[channel * 64 * 64 + pixel]);
+                const double T = recovered(a, q.lists[tile][0], channel, a.render[channel * 64 * 64 + pixel]);
                 least = std::min(least, T);
                 most = std::max(most, T);
             });
@@ -109,30 +108,30 @@ TEST_CASE("case 2: the cap of alpha is the same in both passes") {
         std::mt19937 random(2);
         blend_case q = empty_list(16, 16);
         for (const double o : opacities) q.splats.push_back(round_splat(8, 8, 3000, o));
-        q.splats[0].colour = {1, 1, 1};
+        q.splats[0].color = {1, 1, 1};
         q.gradient = one_pixel_a_tile(random, 16, 16);
         const blend_result expected = reference().blend(q);
         on_each_variant([&](const backend& b, accumulator how) {
             q.how = how;
             const blend_result a = b.blend(q);
             for_each_look(q, [&](std::size_t, std::size_t channel, std::size_t pixel) {
-                CHECK(std::abs(recovered(a, 0, channel, a.picture[channel * 256 + pixel]) - 1) <= 1e-4);
+                CHECK(std::abs(recovered(a, 0, channel, a.render[channel * 256 + pixel]) - 1) <= 1e-4);
                 CHECK(a.transmittance[pixel] == doctest::Approx(expected.transmittance[pixel]).epsilon(1e-5));
             });
         });
     }
 }
 
-TEST_CASE("case 3: no gradient flows through a capped alpha, but to its colour") {
+TEST_CASE("case 3: no gradient flows through a capped alpha, but to its color") {
     // In the middle of a list, each of whose others is free.
     blend_case q = empty_list(16, 16);
     for (const double o : {0.3, 1.0, 0.5, 0.2}) {
         q.splats.push_back(round_splat(8, 8, 3000, o));
-        q.splats.back().colour = {0.1 * static_cast<double>(q.splats.size()), 0.5, 0.9};
+        q.splats.back().color = {0.1 * static_cast<double>(q.splats.size()), 0.5, 0.9};
     }
     std::mt19937 random(3);
     for (int i = 0; i < 3 * 256; ++i) q.gradient.push_back(static_cast<double>(random() % 100) / 100);
-    // All of one Gaussian is capped, its degree is 0: nothing but its colour moves the picture.
+    // All of one Gaussian is capped, its degree is 0: nothing but its color moves the image.
     render_case whole = random_case(3, 0, 8, 4, 0);
     gaussian g;
     g.log_scale = {6, 6.5, 7};
@@ -192,7 +191,7 @@ TEST_CASE("case 5: the transmittance of saturated pixels before a background of 
         const double most = 0.05 + 0.85 * uniform(random), end = 1.2e-4 + 7e-4 * uniform(random);
         const auto append = [&](double opacity) {
             flat_splat s = round_splat(64 * uniform(random), 64 * uniform(random), 3000, opacity);
-            s.colour = {uniform(random), uniform(random), uniform(random)};
+            s.color = {uniform(random), uniform(random), uniform(random)};
             q.lists[t].push_back(static_cast<std::uint32_t>(q.splats.size()));
             q.splats.push_back(s);
         };
@@ -218,7 +217,7 @@ TEST_CASE("case 5: the transmittance of saturated pixels before a background of 
         q.how = how;
         const blend_result a = b.blend(q);
         check_close(a.transmittance, expected.transmittance);
-        check_close(a.picture, expected.picture);
+        check_close(a.render, expected.render);
         std::vector<double> sums, wanted;
         for (std::size_t i = 0; i < q.splats.size(); ++i)
             for (std::size_t k = 0; k < 4; ++k) {

@@ -20,7 +20,7 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-TEST_CASE("case 8: far outside the picture, where the Jacobian of the projection is held") {
+TEST_CASE("case 8: far outside the image, where the Jacobian of the projection is held") {
     for (const auto& [side_x, side_y] :
          {std::pair{2.0, 0.02}, {-2.0, 0.02}, {0.05, 2.0}, {0.05, -2.0}, {2.0, -2.0}}) {
         CAPTURE(side_x);
@@ -28,7 +28,7 @@ TEST_CASE("case 8: far outside the picture, where the Jacobian of the projection
         render_case q = random_case(8, 1, 16, 16, 0);
         q.view.camera.rotation = glm::dmat3(1);
         q.view.camera.translation = glm::dvec3(0);
-        // Twice the bound on either side: the picture and 15 % of it.
+        // Twice the bound on either side: the image and 15 % of it.
         const gs::camera& c = q.view.camera;
         const double limit_x = (side_x < 0 ? 0.15 * 16 + c.cx : 1.15 * 16 - c.cx) / c.fx,
                      limit_y = (side_y < 0 ? 0.15 * 16 + c.cy : 1.15 * 16 - c.cy) / c.fy;
@@ -47,8 +47,8 @@ TEST_CASE("case 8: far outside the picture, where the Jacobian of the projection
 
 TEST_CASE("case 9: needles, flat ones, and what is not a number") {
     SUBCASE("needles of aspect 1e6, and flat ones on edge: drawn") {
-        // Standard deviations in the world; the picture has 16 pixels a unit at their depth. How a needle's
-        // picture moves when it turns is as many times less certain as it is longer than wide: its gradients
+        // Standard deviations in the world; the image has 16 pixels a unit at their depth. How a needle's
+        // image moves when it turns is as many times less certain as it is longer than wide: its gradients
         // are finite, and no more is asked of them.
         struct shape {
             glm::dvec3 scale;
@@ -70,7 +70,7 @@ TEST_CASE("case 9: needles, flat ones, and what is not a number") {
                 g.log_scale = glm::log(scale);
                 g.quaternion = turned(angle, {angle > 1 ? 0.5 : 0, angle > 1 ? 1 : 0, 1});
                 g.opacity = 1;
-                g.colour = {0.9, 0.5, 0.2};
+                g.color = {0.9, 0.5, 0.2};
                 add(q, g);
                 check_drawn(q, !needle);
             }
@@ -144,7 +144,7 @@ TEST_CASE("case 11: huge and tiny scales") {
                 check_drawn(q, false);
             }
     }
-    SUBCASE("exp(45) along the picture's rows, or its columns: drawn") {
+    SUBCASE("exp(45) along the image's rows, or its columns: drawn") {
         for (const int axis : {0, 1}) {
             CAPTURE(axis);
             render_case q = empty_case(40, 24);

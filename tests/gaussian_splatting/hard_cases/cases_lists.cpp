@@ -46,7 +46,7 @@ TEST_CASE("case 13: more instances of tiles than 31 and 32 bits hold") {
 
 TEST_CASE("case 14: numbers of tiles at powers of two") {
     // Two small Gaussians in the middle of each tile, all the second ones behind all the first, so that a
-    // list of two tiles' Gaussians mixes them. A tile of the picture has to look as it does alone: where
+    // list of two tiles' Gaussians mixes them. A tile of the image has to look as it does alone: where
     // there is one tile, it takes no bits of a key.
     for (const int tiles : {1, 2, 3, 4, 5, 7, 8, 9, 15, 16, 17, 31, 32, 33})
         for (const bool upright : {false, true}) {
@@ -69,17 +69,17 @@ TEST_CASE("case 14: numbers of tiles at powers of two") {
                     g.mean = {upright ? 0 : along, upright ? along : 0, z};
                     g.log_scale = glm::dvec3(-5);
                     g.opacity = 1;
-                    g.colour = {0.2 + 0.6 * which, t * 1.0 / tiles, 0.9};
+                    g.color = {0.2 + 0.6 * which, t * 1.0 / tiles, 0.9};
                     add(q, g);
                     add(one, g);
                 }
                 alone.push_back(one);
             }
             on_each_backend([&](const backend& b) {
-                const std::vector<double> whole = b.render(q).picture;
+                const std::vector<double> whole = b.render(q).render;
                 double apart = 0, seen = 1;
                 for (int t = 0; t < tiles; ++t) {
-                    const std::vector<double> tile = b.render(alone[static_cast<std::size_t>(t)]).picture;
+                    const std::vector<double> tile = b.render(alone[static_cast<std::size_t>(t)]).render;
                     seen = std::min(seen, largest(tile));
                     for (std::size_t i = 0; i < tile.size(); ++i) {
                         const std::size_t channel = i / 256, x = i % 16, y = i / 16 % 16,
@@ -116,7 +116,7 @@ TEST_CASE("case 18: 1,000 Gaussians at one depth keep their order") {
         std::size_t other = 0;
         for (int run = 0; run < 50; ++run) {
             omp_set_num_threads(run % 5 == 0 ? 2 + run % 3 : 1);
-            other += b.render(q).picture == first.picture ? 0 : 1;
+            other += b.render(q).render == first.render ? 0 : 1;
         }
         omp_set_num_threads(1);
         CHECK(other == 0);
@@ -156,7 +156,7 @@ TEST_CASE("lists of buckets are those made one item at a time, however long the 
         CAPTURE(s.items);
         CAPTURE(s.buckets);
         std::vector<std::vector<std::uint32_t>> items(s.items), lists(s.buckets);
-        std::uint64_t needed = 0;
+        std::uint64_t required = 0;
         for (std::uint32_t i = 0; i < s.items; ++i) {
             if (random() % 8 == 0) continue;  // has none
             const std::size_t size = random() % 64 == 0 ? s.most : 1 + random() % s.usual;
@@ -165,13 +165,13 @@ TEST_CASE("lists of buckets are those made one item at a time, however long the 
                 const bool goes = random() % 4 != 0;
                 items[i].push_back(goes ? static_cast<std::uint32_t>(bucket) : gs::device::no_bucket);
                 if (goes) lists[bucket].push_back(i);
-                needed += goes ? 1 : 0;
+                required += goes ? 1 : 0;
             }
         }
-        for (const std::uint64_t room : {needed + 5, needed, needed / 2, std::uint64_t{0}}) {
-            CAPTURE(room);
+        for (const std::uint64_t capacity : {required + 5, required, required / 2, std::uint64_t{0}}) {
+            CAPTURE(capacity);
             std::vector<std::vector<std::uint32_t>> fitting = lists;
-            std::uint64_t left = room;
+            std::uint64_t left = capacity;
             for (auto& list : fitting) {
                 list.resize(std::min<std::uint64_t>(list.size(), left));
                 left -= list.size();
@@ -179,8 +179,8 @@ TEST_CASE("lists of buckets are those made one item at a time, however long the 
             on_each_backend([&](const backend& b) {
                 for (const int threads : {3, 1}) {
                     omp_set_num_threads(threads);
-                    const bucket_lists found = b.distribute(items, s.buckets, room);
-                    CHECK(found.needed == needed);
+                    const bucket_lists found = b.distribute(items, s.buckets, capacity);
+                    CHECK(found.required == required);
                     CHECK((found.items == fitting));
                 }
             });

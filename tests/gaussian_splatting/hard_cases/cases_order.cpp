@@ -14,7 +14,7 @@ TEST_CASE("case 6: both passes stop at the same splat, by hand") {
     blend_case q = empty_list(8, 4);
     for (int i = 0; i < 8; ++i) {
         q.splats.push_back(round_splat(3.5, 2.5, 0, 0.95));
-        q.splats.back().colour = {1, 0.5, 0.25};
+        q.splats.back().color = {1, 0.5, 0.25};
     }
     constexpr std::size_t pixel = 2 * 8 + 3;
     q.gradient.assign(3 * 32, 0.0);
@@ -24,7 +24,7 @@ TEST_CASE("case 6: both passes stop at the same splat, by hand") {
         const blend_result a = b.blend(q);
         CHECK(a.last[pixel] == 3);
         CHECK(a.transmittance[pixel] == doctest::Approx(1.25e-4).epsilon(1e-5));
-        CHECK(a.picture[pixel] == doctest::Approx(1 - 1.25e-4).epsilon(1e-6));
+        CHECK(a.render[pixel] == doctest::Approx(1 - 1.25e-4).epsilon(1e-6));
         CHECK(a.sums[0][0] == doctest::Approx(0.95).epsilon(1e-5));
         CHECK(a.sums[1][0] == doctest::Approx(0.0475).epsilon(1e-5));
         CHECK(a.sums[2][0] == doctest::Approx(0.002375).epsilon(1e-5));
@@ -34,10 +34,10 @@ TEST_CASE("case 6: both passes stop at the same splat, by hand") {
 }
 
 TEST_CASE("case 7: splats that a pixel does not see are not counted") {
-    // The faint ones are seen at their centre, a pixel away, but not at ours.
+    // The faint ones are seen at their center, a pixel away, but not at ours.
     const flat_splat faint = round_splat(5.5, 2.5, 0, 1.2 / 255);
     flat_splat strong = round_splat(3.5, 2.5, 0, 0.5);
-    strong.colour = {1, 1, 1};
+    strong.color = {1, 1, 1};
     blend_case q = empty_list(8, 4);
     q.splats = {faint, strong, faint, strong, faint, faint, faint};
     constexpr std::size_t pixel = 2 * 8 + 3;
@@ -69,8 +69,8 @@ TEST_CASE("case 26: a list of 100,000 splats of alpha 1/255") {
                                               static_cast<double>(random() % 4) + 0.5, 0,
                                               (1 + 0.01 * uniform(random)) / 255));
     }
-    deep.splats[0].colour = {1, 1, 1};
-    for (flat_splat& s : wide.splats) s.colour = {1, 1, 1};
+    deep.splats[0].color = {1, 1, 1};
+    for (flat_splat& s : wide.splats) s.color = {1, 1, 1};
     deep.gradient.assign(3 * 32, 0.0);
     deep.gradient[pixel] = 1;
     wide.gradient.assign(3 * 32, 1.0);
@@ -85,7 +85,7 @@ TEST_CASE("case 26: a list of 100,000 splats of alpha 1/255") {
         as_far.gradient.clear();
         CHECK(a.transmittance[pixel] ==
               doctest::Approx(reference().blend(as_far).transmittance[pixel]).epsilon(1e-4));
-        CHECK(recovered(a, 0, 0, a.picture[pixel]) == doctest::Approx(1).epsilon(1e-4));
+        CHECK(recovered(a, 0, 0, a.render[pixel]) == doctest::Approx(1).epsilon(1e-4));
 
         const blend_result w = b.blend(wide);
         double worst = 0;

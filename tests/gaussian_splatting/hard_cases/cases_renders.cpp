@@ -19,17 +19,17 @@ TEST_CASE("case 15: nothing to draw") {
         for (auto& p : empty[0].parameters) p.clear();
         empty[1].view.camera.translation = glm::dvec3(0, 0, -9);                  // behind the camera
         empty[2].parameters[3].assign(3, -20.0);                                  // transparent
-        for (std::size_t i = 0; i < 3; ++i) empty[3].parameters[0][3 * i] = 1e4;  // beside the picture
+        for (std::size_t i = 0; i < 3; ++i) empty[3].parameters[0][3 * i] = 1e4;  // beside the image
         for (render_case& q : empty) {
             CAPTURE(width);
             CAPTURE(&q - empty.data());
             on_each_variant([&](const backend& b, accumulator how) {
                 q.how = how;
                 const render_result a = b.render(q);
-                REQUIRE(a.picture.size() == 3 * q.pixels());
+                REQUIRE(a.render.size() == 3 * q.pixels());
                 std::size_t other = 0;
-                for (std::size_t i = 0; i < a.picture.size(); ++i)
-                    other += a.picture[i] == static_cast<double>(q.background[i / q.pixels()]) ? 0 : 1;
+                for (std::size_t i = 0; i < a.render.size(); ++i)
+                    other += a.render[i] == static_cast<double>(q.background[i / q.pixels()]) ? 0 : 1;
                 CHECK(other == 0);
                 CHECK(all_finite(a));
                 for (const auto& gradients : a.gradients) CHECK(largest(gradients) == 0);
@@ -69,8 +69,8 @@ TEST_CASE("case 16: opacities at the least that is drawn") {
             CHECK(all_finite(a));
             if (std::abs(logit - static_cast<double>(least)) > 1e-5) CHECK(drawn == (logit > least));
             if (!drawn) CHECK(harm(a, alone, victim, is_loose(b, how)) == "");
-            // Its alpha is 1/255 at most here, its share of the picture no more than that.
-            CHECK(distance(a.picture, alone.picture) < 2.0 / 255);
+            // Its alpha is 1/255 at most here, its share of the image no more than that.
+            CHECK(distance(a.render, alone.render) < 2.0 / 255);
         }
         CHECK(was_drawn);
     });
@@ -83,7 +83,7 @@ TEST_CASE("case 17: depths of zero and of either sign, and at the near plane") {
         g.mean = {0, 0, z};
         g.log_scale = glm::dvec3(std::max(std::log(std::abs(z) * 100 + 1e-20), -20.0));
         g.opacity = opacity;
-        g.colour = {red, 1 - red, 0.5};
+        g.color = {red, 1 - red, 0.5};
         add(q, g);
     };
     SUBCASE("not in front of it: culled") {
@@ -121,19 +121,19 @@ TEST_CASE("case 17: depths of zero and of either sign, and at the near plane") {
             q.how = how;
             const render_result a = b.render(q);
             for (std::size_t i = 0; i < q.pixels(); ++i)
-                CHECK(a.picture[i] == doctest::Approx(red).epsilon(1e-3));
+                CHECK(a.render[i] == doctest::Approx(red).epsilon(1e-3));
             CHECK(all_finite(a));
         });
     }
 }
 
-TEST_CASE("case 25: pictures of odd sizes") {
+TEST_CASE("case 25: images of odd sizes") {
     for (const auto& [width, height] :
          {std::pair{1, 1}, {1, 17}, {17, 1}, {15, 15}, {16, 16}, {17, 17}, {33, 47}, {257, 257}}) {
         CAPTURE(width);
         CAPTURE(height);
         render_case q = random_case(25, 20, width, height, 2);
-        // As wide for thin pictures as for others.
+        // As wide for thin images as for others.
         q.view.camera.fx = q.view.camera.fy = std::max(width, height);
         check_drawn(q, true);
     }

@@ -16,19 +16,19 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A constant picture before a constant photo, which a background makes, of any brightness. A power of two
+/// A constant image before a constant photo, which a background makes, of any brightness. A power of two
 /// goes through the photo's bytes as it is.
-compare_case flat_pictures(double picture, float photo, int size) {
+compare_case flat_renders(double render, float photo, int size) {
     const auto pixels = static_cast<std::size_t>(size * size);
     compare_case q{size, size, {}, {}, {photo, photo, photo}};
-    q.picture.assign(3 * pixels, static_cast<float>(picture));
+    q.render.assign(3 * pixels, static_cast<float>(render));
     q.rgba.assign(4 * pixels, 0);
     return q;
 }
 
 }  // namespace
 
-TEST_CASE("case 20: the variances of the structural similarity of constant pictures") {
+TEST_CASE("case 20: the variances of the structural similarity of constant images") {
     for (const int size : {1, 12, 33})
         for (const float photo : {0.1f, 0.7f, 1.0f, 100.0f})
             for (const double apart : {0.0, 1e-7, -1e-7, 1e-3, 0.5}) {
@@ -36,11 +36,11 @@ TEST_CASE("case 20: the variances of the structural similarity of constant pictu
                 CAPTURE(photo);
                 CAPTURE(apart);
                 // In units of the brightness: 1e-7 of it is an ulp or none.
-                const double picture = static_cast<double>(photo) * (1 + apart);
-                compare_case q = flat_pictures(picture, photo, size);
+                const double render = static_cast<double>(photo) * (1 + apart);
+                compare_case q = flat_renders(render, photo, size);
                 compare_case noisy = q;
-                for (std::size_t i = 0; i < q.picture.size(); i += 3)
-                    noisy.picture[i] = std::nextafter(static_cast<float>(q.picture[i]), 1e9f);
+                for (std::size_t i = 0; i < q.render.size(); i += 3)
+                    noisy.render[i] = std::nextafter(static_cast<float>(q.render[i]), 1e9f);
                 for (const compare_case* given : {&q, &noisy}) {
                     const compare_result exact = reference().compare(*given);
                     on_each_backend([&](const backend& b) {
@@ -48,10 +48,10 @@ TEST_CASE("case 20: the variances of the structural similarity of constant pictu
                         CHECK(std::abs(a.quality.ssim) <= 1);
                         CHECK(a.quality.ssim == doctest::Approx(exact.quality.ssim).epsilon(1e-5));
                         CHECK(all_finite(a.gradient));
-                        // To a thousandth of L1's gradient, which is 0.8 a value; for pictures brighter than
+                        // To a thousandth of L1's gradient, which is 0.8 a value; for images brighter than
                         // photos are, as much less exactly as their differences are rounded.
                         const double each = 0.8 * std::max(1.0, static_cast<double>(photo)) /
-                                            static_cast<double>(q.picture.size());
+                                            static_cast<double>(q.render.size());
                         CHECK(distance(a.gradient, exact.gradient) <= 1e-3 * each);
                         if (given == &q && apart == 0) {
                             CHECK(a.quality.ssim == 1);
@@ -92,7 +92,7 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
     on_each_backend([&](const backend& b) {
         // Never seen; seen and still; seen a little, much, and by 1e30; what a broken sum would leave.
         const std::vector<sighting> seen{{0, 0}, {0, 7}, {1e-3, 1e3}, {1, 1e3}, {1e30, 1}, {1e38, 100}};
-        const judgement j = b.judge(seen, std::vector<double>(seen.size(), 2.0), config);
+        const judgment j = b.judge(seen, std::vector<double>(seen.size(), 2.0), config);
         CHECK(j.stays == std::vector<std::uint32_t>(seen.size(), 1));
         CHECK(j.urgency[0] == none);
         CHECK(j.urgency[1] == none);
@@ -105,14 +105,14 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
         CHECK(b.judge({{0, 0}}, {2.0}, config).urgency[0] == none);
         config.gradient = gs::train::densify_config{}.gradient;
     });
-    // A gradient of 1e30 by the picture, on its way through the backward pass into the statistics.
+    // A gradient of 1e30 by the image, on its way through the backward pass into the statistics.
     on_each_variant([&](const backend& b, accumulator how) {
         render_case q = faint_crowd(22, 10);
         // One, bright, whose gradient is larger than floats are.
         render_case single = empty_case(1, 1);
         gaussian g;
         g.mean = {0.5, 0.25, 4};
-        g.colour = {20, 20, 20};
+        g.color = {20, 20, 20};
         add(single, g);
         single.weights = {3e38};
         single.how = q.how = how;
@@ -222,7 +222,7 @@ TEST_CASE("Adam moves those that take part as a dense one does all, and touches 
 TEST_CASE("case 24: an opacity of 0.01 at 1.4 standard deviations has no gradient, and that is said") {
     render_case q = empty_case(8, 4);
     q.background = {0.5f, 0.5f, 0.5f};
-    // On the axis and as wide as a pixel: 1.4 of it beside the last column's centre, on a row's centre.
+    // On the axis and as wide as a pixel: 1.4 of it beside the last column's center, on a row's center.
     q.view.camera.cx = 7.5 + 1.4;
     q.view.camera.cy = 2.5;
     gaussian g;

@@ -23,7 +23,7 @@ std::array<double, 4> turned(double angle, const glm::dvec3& axis);
 /// With each variant on each backend: `victim` must not be drawn, and nobody else may notice.
 void check_culled(const render_case& q);
 
-/// With each variant on each backend: drawn as the reference draws, finite, and the picture to 1e-3 of the
+/// With each variant on each backend: drawn as the reference draws, finite, and the image to 1e-3 of the
 /// reference's; the gradients within the bounds if they are asked for.
 void check_drawn(const render_case& q, bool with_gradients);
 

@@ -121,7 +121,7 @@ TEST_CASE("the reference's gradients are those of central differences") {
         render_case q = random_case(static_cast<unsigned>(seed), splats, std::max(8, width),
                                     std::max(8, height), seed % 4);
         q.effects.antialiasing = seed / 4 % 2 == 1;
-        if (seed / 8 % 2 == 1) add_backdrop(q, static_cast<unsigned>(seed));
+        if (seed / 8 % 2 == 1) add_background_image(q, static_cast<unsigned>(seed));
         if (seed / 16 % 2 == 1) take_fisheye(q, static_cast<unsigned>(seed));
         if (seed / 32 % 2 == 1) add_depths(q, static_cast<unsigned>(seed));
         if (seed % 10 == 3)  // capped alphas, and pixels that end early
@@ -142,7 +142,7 @@ TEST_CASE("the reference's gradients are those of central differences") {
     MESSAGE(all.right << " agree, " << all.straddling << " straddle a threshold");
 }
 
-TEST_CASE("the loss's gradient by the picture is that of central differences") {
+TEST_CASE("the loss's gradient by the image is that of central differences") {
     std::mt19937 random(1);
     for (const auto& [width, height] : {std::pair{8, 8}, {1, 1}, {13, 4}}) {
         compare_case q{width, height, {}, {}, {0.3f, 0.1f, 0.9f}};
@@ -150,17 +150,17 @@ TEST_CASE("the loss's gradient by the picture is that of central differences") {
         for (std::size_t i = 0; i < 4 * pixels; ++i)
             q.rgba.push_back(static_cast<std::uint8_t>(i % 4 == 3 ? 200 : random() % 201));
         for (std::size_t i = 0; i < 3 * pixels; ++i)
-            q.picture.push_back(static_cast<double>(random() % 1000) / 999);
+            q.render.push_back(static_cast<double>(random() % 1000) / 999);
         const compare_result a = reference().compare(q);
         verdict all;
-        for (std::size_t i = 0; i < q.picture.size(); ++i) {
-            const double at = q.picture[i];
+        for (std::size_t i = 0; i < q.render.size(); ++i) {
+            const double at = q.render[i];
             all += judge(
                 a.gradient[i],
                 [&](double step) {
-                    q.picture[i] = at + step;
+                    q.render[i] = at + step;
                     const double loss = reference().compare(q).loss;
-                    q.picture[i] = at;
+                    q.render[i] = at;
                     return loss;
                 },
                 largest(a.gradient), "value " + std::to_string(i));

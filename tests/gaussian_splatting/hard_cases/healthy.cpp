@@ -17,7 +17,7 @@ render_case faint_crowd(unsigned seed, std::size_t count, int width, int height)
 
 std::string harm(const render_result& with, const render_result& rest, std::size_t index, bool loosely) {
     std::string said;
-    if (with.picture != rest.picture) said += "another picture; ";
+    if (with.render != rest.render) said += "another image; ";
     for (std::size_t p = 0; p < gs::parameter_count; ++p) {
         const auto width = static_cast<std::size_t>(gs::parameter_width[p]);
         const double slack = loosely ? 1e-5 * largest(rest.gradients[p]) : 0;

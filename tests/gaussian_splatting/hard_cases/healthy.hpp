@@ -8,12 +8,12 @@
 
 namespace hard_cases {
 
-/// A crowd of faint Gaussians: a NaN that becomes the cap of alpha shows. In a picture of one patch, as by
+/// A crowd of faint Gaussians: a NaN that becomes the cap of alpha shows. In a image of one patch, as by
 /// default, sums have one order on every device.
 render_case faint_crowd(unsigned seed, std::size_t count, int width = 8, int height = 4);
 
 /// What a Gaussian that must not be drawn did to a crowd all the same: `with` is the result with it, at
-/// `index`, `rest` the one without. Pictures and gradients have to be equal to the bit, and its own gradients
+/// `index`, `rest` the one without. Images and gradients have to be equal to the bit, and its own gradients
 /// zero; where `loosely`, since the order of atomics is nobody's, gradients to 1e-5 of the largest. Empty if
 /// it did nothing.
 std::string harm(const render_result& with, const render_result& rest, std::size_t index, bool loosely);

@@ -11,8 +11,8 @@ namespace hard_cases {
 
 /// Splats made by hand, in pixels.
 
-/// A round one of this standard deviation before the pixel's filter: 0 covers a pixel and its neighbours,
-/// 1000 gives a picture of a few tiles the same alpha everywhere.
+/// A round one of this standard deviation before the pixel's filter: 0 covers a pixel and its neighbors,
+/// 1000 gives a image of a few tiles the same alpha everywhere.
 inline flat_splat round_splat(double x, double y, double width, double opacity) {
     return {x, y, opacity, {width, 0, 0}, {0, width, 0}, {0, 0, 0}};
 }
@@ -34,7 +34,7 @@ inline blend_case empty_list(int width, int height) {
     return q;
 }
 
-/// A gradient by the picture that looks at one pixel of each tile in each channel.
+/// A gradient by the image that looks at one pixel of each tile in each channel.
 inline std::vector<double> one_pixel_a_tile(std::mt19937& random, int width, int height) {
     const auto pixels = static_cast<std::size_t>(width * height);
     std::vector<double> gradient(3 * pixels, 0.0);

@@ -82,13 +82,13 @@ class lists_on {
         buffer<splat<Real>> splats;
         buffer<std::uint32_t> gaussian_of, last, tile_of_segment, class_counts, ordered_tiles;
         buffer<tile_range> ranges;
-        buffer<Real> picture, transmittance, checkpoints, gradient;
+        buffer<Real> render, transmittance, checkpoints, gradient;
         buffer<unsigned long long> pairs;
         on.put_as_they_are(splats, made);
         on.put_as_they_are(gaussian_of, order);
         on.put_as_they_are(ranges, tiles);
         const auto pixels = static_cast<std::size_t>(q.width) * static_cast<std::size_t>(q.height);
-        picture.resize(3 * pixels);
+        render.resize(3 * pixels);
         transmittance.resize(pixels);
         last.resize(pixels);
         pairs.resize(1);
@@ -111,11 +111,11 @@ class lists_on {
                                   static_cast<std::uint32_t>(tiles.size())};
         device.for_each_index(tiles.size(), order_tiles{ranges.data(), in_order});
         const blend_forward<Real, shape> forward{
-            lists,       in_order,           background,  picture.data(), transmittance.data(),
+            lists,       in_order,           background,  render.data(), transmittance.data(),
             last.data(), checkpoints.data(), pairs.data()};
         device.for_each_warp(forward.template warps<warp>(tiles.size()), forward);
         blend_result a;
-        a.picture = on.get(picture.data(), 3 * pixels);
+        a.render = on.get(render.data(), 3 * pixels);
         a.transmittance = on.get(transmittance.data(), pixels);
         a.last = on.get_as_they_are(last.data(), pixels);
         if (q.gradient.empty()) return a;
@@ -125,7 +125,7 @@ class lists_on {
         std::vector<double> records;
         gs::lab::lab_accumulators::with_kernel<Real, shape>(q.how, [&](auto backward) {
             backward.lists = lists;
-            backward.view = {background,  picture.data(),     transmittance.data(),
+            backward.view = {background,  render.data(),      transmittance.data(),
                              last.data(), checkpoints.data(), gradient.data()};
             backward.tile_of_segment = tile_of_segment.data();
             sums.begin(backward, made.size(), largest_of(q.gradient),
@@ -167,7 +167,7 @@ class lists_on {
     }
 
     static bucket_lists distribute(const std::vector<std::vector<std::uint32_t>>& items, std::size_t buckets,
-                                   std::uint64_t room) {
+                                   std::uint64_t capacity) {
         Device device;
         memory on(device);
         std::vector<std::uint64_t> first{0};
@@ -176,18 +176,18 @@ class lists_on {
             all.insert(all.end(), item.begin(), item.end());
             first.push_back(all.size());
         }
-        buffer<std::uint64_t> first_on, needed;
+        buffer<std::uint64_t> first_on, required;
         buffer<std::uint32_t> all_on, listed;
         buffer<gs::raster::tile_range> ranges;
         on.put_as_they_are(first_on, first);
         on.put_as_they_are(all_on, all);
-        needed.resize(1);
-        listed.resize(room);
+        required.resize(1);
+        listed.resize(capacity);
         ranges.resize(buckets);
-        device.distribute(items.size(), given_items{first_on.data(), all_on.data()}, buckets, room,
-                          listed.data(), ranges.data(), needed.data());
-        const auto values = on.get_as_they_are(listed.data(), room);
-        bucket_lists found{{}, on.get_as_they_are(needed.data(), 1)[0]};
+        device.distribute(items.size(), given_items{first_on.data(), all_on.data()}, buckets, capacity,
+                          listed.data(), ranges.data(), required.data());
+        const auto values = on.get_as_they_are(listed.data(), capacity);
+        bucket_lists found{{}, on.get_as_they_are(required.data(), 1)[0]};
         for (const gs::raster::tile_range& r : on.get_as_they_are(ranges.data(), buckets))
             found.items.emplace_back(values.begin() + r.begin, values.begin() + r.end);
         return found;
@@ -222,16 +222,16 @@ class lists_on {
         gs::raster::splat<Real> made{};
         made.x = static_cast<Real>(s.x);
         made.y = static_cast<Real>(s.y);
-        made.strength = static_cast<Real>(std::log2(s.opacity));
-        made.reach = static_cast<Real>(std::log2(s.opacity * 255));
+        made.log2_opacity = static_cast<Real>(std::log2(s.opacity));
+        made.cutoff = static_cast<Real>(std::log2(s.opacity * 255));
         made.p = shape.p;
         made.q = shape.q;
         made.r = shape.r;
         made.dx_per_dy = shape.dx_per_dy;
         made.dy_per_dx = shape.dy_per_dx;
-        made.red = static_cast<Real>(s.colour[0]);
-        made.green = static_cast<Real>(s.colour[1]);
-        made.blue = static_cast<Real>(s.colour[2]);
+        made.red = static_cast<Real>(s.color[0]);
+        made.green = static_cast<Real>(s.color[1]);
+        made.blue = static_cast<Real>(s.color[2]);
         return made;
     }
 };

@@ -45,16 +45,16 @@ struct injected {
     std::size_t parameter, element;
     double value;
     bool is_bad = false, is_drawn = false;
-    std::vector<double> weights{}, picture{};  ///< where it is drawn
+    std::vector<double> weights{}, render{};  ///< where it is drawn
 };
 
 /// To a thousandth of the brightest, off the thresholds.
-bool alike(const std::vector<double>& picture, const injected& one) {
+bool alike(const std::vector<double>& render, const injected& one) {
     double apart = 0;
-    for (std::size_t i = 0; i < picture.size(); ++i)
+    for (std::size_t i = 0; i < render.size(); ++i)
         if (one.weights[i % one.weights.size()] != 0)
-            apart = std::max(apart, std::abs(picture[i] - one.picture[i]));
-    return apart <= 1e-3 * std::max(1.0, largest(one.picture));
+            apart = std::max(apart, std::abs(render[i] - one.render[i]));
+    return apart <= 1e-3 * std::max(1.0, largest(one.render));
 }
 
 /// A crowd, and each value in each of the first parameters of the victim, as the reference sees them.
@@ -65,7 +65,7 @@ struct injected_crowd {
 
     injected_crowd(int width, int height, std::size_t parameters)
         : healthy(faint_crowd(120, crowd, width, height)) {
-        for (std::size_t k = 0; k < 3; ++k) healthy.parameters[0][3 * victim + k] *= 0.1;  // in the picture
+        for (std::size_t k = 0; k < 3; ++k) healthy.parameters[0][3 * victim + k] *= 0.1;  // in the image
         REQUIRE(reference().project(healthy)[victim].drawn);
         for (std::size_t p = 0; p < parameters; ++p)
             for (std::size_t k = 0; k < static_cast<std::size_t>(gs::parameter_width[p]); ++k)
@@ -88,7 +88,7 @@ struct injected_crowd {
         one.is_bad = is_bad(q, victim);
         one.is_drawn = !one.is_bad && reference().project(q)[victim].drawn;
         if (one.is_drawn) one.weights = off_thresholds(q, 1e-3);
-        if (one.is_drawn) one.picture = reference().render(q).picture;
+        if (one.is_drawn) one.render = reference().render(q).render;
         bad += one.is_bad ? 1 : 0;
         drawn += one.is_drawn ? 1 : 0;
     }
@@ -130,7 +130,7 @@ TEST_CASE("NaN injection: 22 values in every parameter of one Gaussian of a crow
             const render_result a = b.render(q);
             if (!all_finite(a)) said += "not finite; ";
             if (!one.is_drawn) said += harm(a, alone, victim, is_loose(b, how));
-            if (one.is_drawn && !alike(a.picture, one)) said += "another picture than in double; ";
+            if (one.is_drawn && !alike(a.render, one)) said += "another image than in double; ";
             check_nothing(said, one);
         }
         CHECK(largest(alone.gradients[0]) > 0);
@@ -142,7 +142,7 @@ TEST_CASE("NaN injection: 22 values in every parameter of one Gaussian of a crow
            std::to_string(injected.bad) + " of no Gaussian, " + std::to_string(injected.drawn) + " drawn");
 }
 
-TEST_CASE("NaN injection: 22 values in place, shape and opacity, in a picture of six tiles") {
+TEST_CASE("NaN injection: 22 values in place, shape and opacity, in a image of six tiles") {
     const injected_crowd injected(40, 24, 4);
     REQUIRE(injected.all.size() == 22 * 11);
     on_each_backend([&](const backend& b) {
@@ -153,8 +153,8 @@ TEST_CASE("NaN injection: 22 values in place, shape and opacity, in a picture of
             std::string said = wrong_projection(b.project(q), before, one);
             const render_result a = b.render(q);
             if (!all_finite(a)) said += "not finite; ";
-            if (!one.is_drawn && a.picture != alone.picture) said += "another picture; ";
-            if (one.is_drawn && !alike(a.picture, one)) said += "another picture than in double; ";
+            if (!one.is_drawn && a.render != alone.render) said += "another image; ";
+            if (one.is_drawn && !alike(a.render, one)) said += "another image than in double; ";
             check_nothing(said, one);
         }
     });

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lists_on.hpp"
-#include "pictures_on.hpp"
+#include "renders_on.hpp"
 #include "training_on.hpp"
 
 namespace hard_cases {
@@ -11,15 +11,15 @@ namespace hard_cases {
 /// The kernels on this device, in this precision.
 template <class Device, class Real>
 backend make_backend(const char* name) {
-    using pictures = pictures_on<Device, Real>;
+    using renders = renders_on<Device, Real>;
     using lists = lists_on<Device, Real>;
     using training = training_on<Device, Real>;
     return {name,
             Device::warp::size,
             [] { return Device().name(); },
-            pictures::render,
-            pictures::loss,
-            pictures::project,
+            renders::render,
+            renders::loss,
+            renders::project,
             lists::blend,
             training::compare,
             training::descend,
@@ -27,7 +27,7 @@ backend make_backend(const char* name) {
             lists::prefix_sum,
             lists::sort,
             lists::distribute,
-            pictures::complaint_about_instances,
+            renders::complaint_about_instances,
             lists::sum};
 }
 

@@ -12,7 +12,7 @@
 
 namespace hard_cases {
 
-/// The gradient by the picture, pixel by pixel more or less of it.
+/// The gradient by the image, pixel by pixel more or less of it.
 template <class Real>
 struct weigh_pixels {
     const Real* gradient;
@@ -25,7 +25,7 @@ struct weigh_pixels {
 
 /// What a backend does with Gaussians.
 template <class Device, class Real>
-class pictures_on {
+class renders_on {
     template <class T>
     using buffer = typename Device::template buffer<T>;
     using memory = memory_on<Device, Real>;
@@ -37,11 +37,11 @@ class pictures_on {
     struct session {
         Device device;
         memory on{device};
-        pictures_on::renderer renderer{device};
+        renders_on::renderer renderer{device};
         gs::train::l1_ssim<Device, Real> loss{device};
         parameters values, gradients;
         buffer<std::uint8_t> photo;
-        buffer<Real> backdrop, by_depths;
+        buffer<Real> background_image, by_depths;
         double depth_loss = 0;
 
         void draw(const render_case& q) {
@@ -54,19 +54,19 @@ class pictures_on {
             // Room to spare, as in training: places that stay empty are part of the lists.
             renderer.set_effects(q.effects);
             renderer.measure(model, q.count(), camera, q.sh_degree);
-            const std::uint64_t needed = renderer.instances();
-            renderer.reserve_instances(needed, needed / 2 + 64);
-            if (!q.backdrop.empty()) on.put(backdrop, q.backdrop);
+            const std::uint64_t required = renderer.instances();
+            renderer.reserve_instances(required, required / 2 + 64);
+            if (!q.background_image.empty()) on.put(background_image, q.background_image);
             renderer.list(model, q.count(), camera, q.sh_degree);
             if (!q.depth_weights.empty()) draw_depths(q);
-            renderer.blend(q.background, q.backdrop.empty() ? nullptr : backdrop.data());
+            renderer.blend(q.background, q.background_image.empty() ? nullptr : background_image.data());
             on.put_bytes(photo, q.view.pixels.rgba);
             loss.set_target({photo.data(), camera.width, camera.height, q.background});
         }
 
         void draw_depths(const render_case& q) {
             renderer.blend_depths();
-            const std::vector<double> inverse = on.get(renderer.picture(), q.pixels());
+            const std::vector<double> inverse = on.get(renderer.render(), q.pixels());
             std::vector<double> weights = q.depth_weights;
             for (std::size_t i = 0; i < q.pixels(); ++i) {
                 if (!q.weights.empty()) weights[i] *= q.weights[i];
@@ -78,7 +78,7 @@ class pictures_on {
         }
     };
 
-    /// Of a pixel, by picture and inverse depth.
+    /// Of a pixel, by image and inverse depth.
     static float largest_gradient(const render_case& q) {
         return (q.weights.empty() ? 1 : largest_of(q.weights)) / static_cast<float>(q.pixels());
     }
@@ -90,24 +90,24 @@ class pictures_on {
         const std::size_t values = 3 * q.pixels();
         buffer<Real> given;
         if (!q.gradient_at.empty()) s.on.put(given, q.gradient_at);
-        const Real* by_picture =
-            s.loss.gradient(q.gradient_at.empty() ? s.renderer.picture() : given.data(), {});
+        const Real* by_render =
+            s.loss.gradient(q.gradient_at.empty() ? s.renderer.render() : given.data(), {});
         buffer<Real> weights, weighed;
         if (!q.weights.empty()) {
             s.on.put(weights, q.weights);
             weighed.resize(values);
             s.device.for_each_index(
-                values, weigh_pixels<Real>{by_picture, weights.data(), q.pixels(), weighed.data()});
-            by_picture = weighed.data();
+                values, weigh_pixels<Real>{by_render, weights.data(), q.pixels(), weighed.data()});
+            by_render = weighed.data();
         }
         buffer<gs::raster::visibility> seen;
         seen.resize(q.count());
         s.device.zero(seen.data(), q.count());
-        s.renderer.backward(by_picture, largest_gradient(q), q.how, q.sh_degree,
+        s.renderer.backward(by_render, largest_gradient(q), q.how, q.sh_degree,
                             gs::raster::store_gradients<Real>{write(s.gradients)}, seen.data());
 
         render_result a;
-        a.picture = s.on.get(s.renderer.picture(), values);
+        a.render = s.on.get(s.renderer.render(), values);
         a.loss = s.loss.take().loss + s.depth_loss;
         for (std::size_t p = 0; p < gs::parameter_count; ++p)
             a.gradients[p] = get(s.on, s.gradients[p], q, p);
@@ -122,7 +122,7 @@ class pictures_on {
     static double loss(const render_case& q) {
         session s;
         s.draw(q);
-        s.loss.gradient(s.renderer.picture(), {});
+        s.loss.gradient(s.renderer.render(), {});
         return s.loss.take().loss + s.depth_loss;
     }
 
@@ -161,15 +161,15 @@ class pictures_on {
         std::vector<projected_splat> found(n);
         for (std::size_t i = 0; i < n; ++i) {
             const gs::raster::splat<double> s = widen(host[i]);
-            found[i] = {met[i] > 0, depth[i], s.x, s.y,   s.reach, std::exp2(s.strength),
-                        s.p,        s.q,      s.r, s.red, s.green, s.blue};
+            found[i] = {met[i] > 0, depth[i], s.x, s.y,   s.cutoff, std::exp2(s.log2_opacity),
+                        s.p,        s.q,      s.r, s.red, s.green,  s.blue};
         }
         return found;
     }
 
     static std::string complaint_about_instances(std::uint64_t instances) {
         Device device;
-        pictures_on::renderer renderer(device);
+        renders_on::renderer renderer(device);
         try {
             renderer.reserve_instances(instances);
         } catch (const gs::error& e) {
@@ -208,8 +208,8 @@ class pictures_on {
         gs::raster::splat<double> d{};
         d.x = s.x;
         d.y = s.y;
-        d.reach = s.reach;
-        d.strength = s.strength;
+        d.cutoff = s.cutoff;
+        d.log2_opacity = s.log2_opacity;
         d.p = s.p;
         d.q = s.q;
         d.r = s.r;

@@ -14,7 +14,7 @@
 #include "lab/accumulator_set.hpp"
 #include "readers/load_scene.hpp"
 #include "table.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 #include "training/training.hpp"
 
 using namespace hard_cases;
@@ -33,7 +33,7 @@ constexpr double margin = 2e-5;
 /// What a backend's gradients are measured by, over the pixels off the thresholds.
 struct measured {
     render_case q;
-    std::size_t moved;  ///< colours that were
+    std::size_t moved;  ///< colors that were
     render_result expected;
 };
 
@@ -46,17 +46,17 @@ double share_left_out(const std::vector<measured>& all) {
     return out / pixels;
 }
 
-/// In dark regions the similarity's gradient changes by 2 / C1 = 2e4 times what the picture does: there the
-/// millionth by which pictures in float and double differ would be all that is seen. With `one_picture` the
-/// loss's gradient is taken at the same picture by all.
-std::vector<measured> measure(const std::vector<render_case>& cases, bool one_picture) {
+/// In dark regions the similarity's gradient changes by 2 / C1 = 2e4 times what the image does: there the
+/// millionth by which images in float and double differ would be all that is seen. With `one_render` the
+/// loss's gradient is taken at the same image by all.
+std::vector<measured> measure(const std::vector<render_case>& cases, bool one_render) {
     std::vector<measured> all(cases.size());
     in_parallel(all.size(), [&](std::size_t i) {
         all[i].q = cases[i];
         all[i].moved = move_off_black(all[i].q);
         all[i].q.weights = off_thresholds(all[i].q, margin, 8);
-        if (one_picture) {
-            all[i].q.gradient_at = reference().render(all[i].q).picture;
+        if (one_render) {
+            all[i].q.gradient_at = reference().render(all[i].q).render;
             for (double& x : all[i].q.gradient_at) x = static_cast<float>(x);
         }
         all[i].expected = reference().render(all[i].q);
@@ -71,11 +71,12 @@ void check_all(const std::vector<measured>& all, const backend& b, accumulator h
     in_parallel(all.size(), [&](std::size_t i) {
         render_case q = all[i].q;
         // A way that knows no skies is not asked for one.
-        q.how = q.backdrop.empty() || gs::lab::lab_accumulators::supports_backdrop(how) ? how
-                                                                                        : accumulator::native;
+        q.how = q.background_image.empty() || gs::lab::lab_accumulators::supports_background_image(how)
+                    ? how
+                    : accumulator::native;
         renders[i] = b.render(q);
         said[i] = excess(renders[i], all[i].expected);
-        if (distance(renders[i], all[i].expected, q) > 1e-4) said[i] += "the picture";
+        if (distance(renders[i], all[i].expected, q) > 1e-4) said[i] += "the image";
     });
     agreement worst;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -152,7 +153,7 @@ TEST_CASE("100 random scenes: gradients in float against double") {
         cases.push_back(random_case(seed, 1 + random() % 49, seed == 100 ? 33 : width,
                                     seed == 100 ? 47 : height, static_cast<int>(seed % 4)));
         cases.back().effects.antialiasing = seed / 4 % 2 == 1;
-        if (seed / 8 % 2 == 1) add_backdrop(cases.back(), seed);
+        if (seed / 8 % 2 == 1) add_background_image(cases.back(), seed);
         if (seed / 16 % 2 == 1) take_fisheye(cases.back(), seed);
         if (seed / 32 % 2 == 1) add_depths(cases.back(), seed);
     }
@@ -186,7 +187,7 @@ TEST_CASE("a trained scene: gradients in float against double") {
     remark(name + ", " + std::to_string(on_cpu[0].q.count()) + " Gaussians on the CPU, " +
            std::to_string(on_cpu.size()) + " views, " + std::to_string(100 * share_left_out(on_cpu)) +
            " % of the pixels left out (" + std::to_string(100 * share_left_out(on_cuda)) + " % on a GPU), " +
-           std::to_string(on_cpu[0].moved) + " colours moved off black");
+           std::to_string(on_cpu[0].moved) + " colors moved off black");
 }
 
 TEST_CASE("the variants' gradients agree to 1e-5") {

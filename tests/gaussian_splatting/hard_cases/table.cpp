@@ -81,7 +81,7 @@ void record(const agreement& against_double) { here().against_double[all_results
 }  // namespace hard_cases
 
 int main(int argc, char** argv) {
-    omp_set_num_threads(1);  // pictures are small, and have one order of sums then; some tests ask for more
+    omp_set_num_threads(1);  // images are small, and have one order of sums then; some tests ask for more
     doctest::Context context(argc, argv);
     const int failed = context.run();
     if (context.shouldExit()) return failed;

@@ -46,15 +46,15 @@ class training_on {
         gs::train::l1_ssim<Device, Real> loss(device);
         gs::train::image_comparison<Device, Real> comparison(device);
         buffer<std::uint8_t> photo;
-        buffer<Real> picture;
+        buffer<Real> render;
         on.put_bytes(photo, q.rgba);
-        on.put(picture, q.picture);
+        on.put(render, q.render);
         const gs::train::target_image target{photo.data(), q.width, q.height, q.background};
         loss.set_target(target);
         comparison.set_target(target);
-        comparison.compare(picture.data());
+        comparison.compare(render.data());
         compare_result a;
-        a.gradient = on.get(loss.gradient(picture.data(), {}), q.picture.size());
+        a.gradient = on.get(loss.gradient(render.data(), {}), q.render.size());
         a.loss = loss.take().loss;
         a.quality = comparison.take();
         return a;
@@ -100,8 +100,8 @@ class training_on {
         return path;
     }
 
-    static judgement judge(const std::vector<sighting>& sightings, const std::vector<double>& opacities,
-                           const gs::train::densify_config& config) {
+    static judgment judge(const std::vector<sighting>& sightings, const std::vector<double>& opacities,
+                          const gs::train::densify_config& config) {
         Device device;
         memory_on<Device, float> on(device);
         const std::size_t n = sightings.size();

@@ -51,14 +51,14 @@ image random_image(int width, int height, unsigned seed) {
 // ---------------------------------------------------------------------------------------- PNGs of any kind
 
 struct png_kind {
-    int colour_type;
+    int color_type;
     int depth;
     bool interlaced;
     bool transparent;  ///< has a tRNS chunk
 };
 
-int channels_of(int colour_type) {
-    switch (colour_type) {
+int channels_of(int color_type) {
+    switch (color_type) {
         case PNG_COLOR_TYPE_GRAY_ALPHA:
             return 2;
         case PNG_COLOR_TYPE_RGB:
@@ -70,10 +70,10 @@ int channels_of(int colour_type) {
     }
 }
 
-/// Random samples of the whole picture, in its depth.
+/// Random samples of the whole image, in its depth.
 std::vector<unsigned> random_samples(const png_kind& kind, int width, int height) {
     std::mt19937 random(7);
-    std::vector<unsigned> samples(static_cast<std::size_t>(width * height * channels_of(kind.colour_type)));
+    std::vector<unsigned> samples(static_cast<std::size_t>(width * height * channels_of(kind.color_type)));
     for (unsigned& sample : samples) sample = static_cast<unsigned>(random()) & ((1U << kind.depth) - 1U);
     return samples;
 }
@@ -100,7 +100,7 @@ pixel palette_entry(unsigned index) {
             static_cast<std::uint8_t>(index < 3 ? 60 * index : 255)};
 }
 
-constexpr unsigned transparent_sample = 1;  // the grey level, or each of red, green and blue, of tRNS
+constexpr unsigned transparent_sample = 1;  // the gray level, or each of red, green and blue, of tRNS
 
 void write_any_png(const std::filesystem::path& file, const png_kind& kind, int width, int height,
                    const std::vector<unsigned>& samples) {
@@ -114,20 +114,20 @@ void write_any_png(const std::filesystem::path& file, const png_kind& kind, int 
         palette[i] = {entry[0], entry[1], entry[2]};
         alphas[i] = entry[3];
     }
-    png_color_16 colour{};
-    colour.gray = colour.red = colour.green = colour.blue = transparent_sample;
+    png_color_16 color{};
+    color.gray = color.red = color.green = color.blue = transparent_sample;
 
     std::FILE* out = std::fopen(file.c_str(), "wb");
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
     png_infop info = png_create_info_struct(png);
     png_init_io(png, out);
     png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), kind.depth,
-                 kind.colour_type, kind.interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
+                 kind.color_type, kind.interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    const bool has_palette = kind.colour_type == PNG_COLOR_TYPE_PALETTE;
+    const bool has_palette = kind.color_type == PNG_COLOR_TYPE_PALETTE;
     if (has_palette) png_set_PLTE(png, info, palette.data(), 1 << kind.depth);
     if (kind.transparent)
-        png_set_tRNS(png, info, has_palette ? alphas.data() : nullptr, has_palette ? 2 : 1, &colour);
+        png_set_tRNS(png, info, has_palette ? alphas.data() : nullptr, has_palette ? 2 : 1, &color);
     png_write_info(png, info);
     png_write_image(png, pointers.data());
     png_write_end(png, nullptr);
@@ -139,13 +139,13 @@ std::uint8_t to_8_bit(unsigned sample, int depth) {
     return static_cast<std::uint8_t>(std::lround(255.0 * sample / ((1U << depth) - 1U)));
 }
 
-/// What the n-th pixel must be once read, from the definition of each colour type.
+/// What the n-th pixel must be once read, from the definition of each color type.
 pixel expected_pixel(const png_kind& kind, const std::vector<unsigned>& samples, std::size_t n) {
-    const auto channels = static_cast<std::size_t>(channels_of(kind.colour_type));
+    const auto channels = static_cast<std::size_t>(channels_of(kind.color_type));
     const unsigned* s = samples.data() + n * channels;
     const auto byte = [&](std::size_t channel) { return to_8_bit(s[channel], kind.depth); };
     pixel straight{};
-    switch (kind.colour_type) {
+    switch (kind.color_type) {
         case PNG_COLOR_TYPE_PALETTE:
             straight = palette_entry(s[0]);
             if (!kind.transparent || s[0] >= 2) straight[3] = 255;
@@ -185,9 +185,9 @@ std::vector<png_kind> every_png_kind() {
     return kinds;
 }
 
-void write_grey_png(const std::filesystem::path& file, int width, int height) {
-    const png_kind grey{PNG_COLOR_TYPE_GRAY, 8, false, false};
-    write_any_png(file, grey, width, height, random_samples(grey, width, height));
+void write_gray_png(const std::filesystem::path& file, int width, int height) {
+    const png_kind gray{PNG_COLOR_TYPE_GRAY, 8, false, false};
+    write_any_png(file, gray, width, height, random_samples(gray, width, height));
 }
 
 // ------------------------------------------------------------------------------------------------- JPEGs
@@ -300,18 +300,18 @@ TEST_CASE("one channel is read in 16 bit, whatever the file has, and several are
     for (const int depth : {1, 2, 4, 8, 16})
         for (const bool interlaced : {false, true}) {
             CAPTURE(depth);
-            const png_kind grey{PNG_COLOR_TYPE_GRAY, depth, interlaced, false};
-            const auto samples = random_samples(grey, 13, 7);
-            write_any_png(file, grey, 13, 7, samples);
+            const png_kind gray{PNG_COLOR_TYPE_GRAY, depth, interlaced, false};
+            const auto samples = random_samples(gray, 13, 7);
+            write_any_png(file, gray, 13, 7, samples);
             int width = 0, height = 0;
-            const std::vector<std::uint16_t> values = gs::read_grey_png(file, width, height);
+            const std::vector<std::uint16_t> values = gs::read_gray_png(file, width, height);
             CHECK(std::pair{width, height} == std::pair{13, 7});
             REQUIRE(values.size() == samples.size());
             const unsigned spread = 65535 / ((1U << depth) - 1U);
             for (std::size_t i = 0; i < samples.size(); ++i) CHECK(values[i] == spread * samples[i]);
         }
-    for (const int colour_type : {PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA}) {
-        const png_kind kind{colour_type, 8, false, false};
+    for (const int color_type : {PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA}) {
+        const png_kind kind{color_type, 8, false, false};
         write_any_png(file, kind, 13, 7, random_samples(kind, 13, 7));
         CHECK(says(error_of([&] { gs::read_depth_map(file, 13, 7); }), {"depths.png", "one channel"}));
     }
@@ -366,11 +366,11 @@ TEST_CASE("write_png names the file it cannot write and leaves nothing behind") 
     CHECK(std::filesystem::is_empty(folder.path()));
 }
 
-TEST_CASE("PNGs of every colour type and depth, interlaced or not, transparent or not") {
+TEST_CASE("PNGs of every color type and depth, interlaced or not, transparent or not") {
     const temporary_folder folder;
     const int width = 13, height = 11;  // odd, so that rows end within a byte
     for (const png_kind& kind : every_png_kind()) {
-        CAPTURE(kind.colour_type);
+        CAPTURE(kind.color_type);
         CAPTURE(kind.depth);
         CAPTURE(kind.interlaced);
         CAPTURE(kind.transparent);
@@ -383,7 +383,7 @@ TEST_CASE("PNGs of every colour type and depth, interlaced or not, transparent o
         bool transparent = false;
         for (int i = 0; i < width * height; ++i) {
             pixel expected = expected_pixel(kind, samples, static_cast<std::size_t>(i));
-            if (kind.transparent && kind.colour_type == PNG_COLOR_TYPE_RGB && i == 0) expected = {0, 0, 0, 0};
+            if (kind.transparent && kind.color_type == PNG_COLOR_TYPE_RGB && i == 0) expected = {0, 0, 0, 0};
             transparent |= expected[3] != 255;
             REQUIRE(pixel_at(read, i % width, i / width) == expected);
         }
@@ -391,7 +391,7 @@ TEST_CASE("PNGs of every colour type and depth, interlaced or not, transparent o
     }
 }
 
-TEST_CASE("JPEGs, grey and RGB, baseline and progressive") {
+TEST_CASE("JPEGs, gray and RGB, baseline and progressive") {
     const temporary_folder folder;
     const int width = 37, height = 21;
     for (const J_COLOR_SPACE space : {JCS_GRAYSCALE, JCS_RGB})
@@ -408,7 +408,7 @@ TEST_CASE("JPEGs, grey and RGB, baseline and progressive") {
                 REQUIRE(got[3] == 255);
                 for (int channel = 0; channel < 3; ++channel) {
                     const int sample = samples[static_cast<std::size_t>(channels * i + channel % channels)];
-                    // Quantised by 1 in frequency, and rounded on the way to YCbCr and back.
+                    // Quantized by 1 in frequency, and rounded on the way to YCbCr and back.
                     REQUIRE(std::abs(got[static_cast<std::size_t>(channel)] - sample) <= 3);
                 }
             }
@@ -417,7 +417,7 @@ TEST_CASE("JPEGs, grey and RGB, baseline and progressive") {
 
 TEST_CASE("the size alone is the size of the decoded image") {
     const temporary_folder folder;
-    write_grey_png(folder / "a.png", 19, 7);
+    write_gray_png(folder / "a.png", 19, 7);
     write_jpeg(folder / "a.jpg", 23, 5, JCS_RGB, smooth_samples(23, 5, 3));
     int width = 0, height = 0;
     gs::read_image_size(folder / "a.png", width, height);
@@ -443,7 +443,7 @@ TEST_CASE("an image that is not there, or not an image") {
 
 TEST_CASE("images without pixels, with too many, or with too few bytes for them") {
     const temporary_folder folder;
-    write_grey_png(folder / "a.png", 5, 4);
+    write_gray_png(folder / "a.png", 5, 4);
     write_jpeg(folder / "a.jpg", 5, 4, JCS_RGB, smooth_samples(5, 4, 3));
     const std::string png = gs_test::read_file(folder / "a.png"), jpeg = gs_test::read_file(folder / "a.jpg");
     const auto error_of_bytes = [&](const std::string& bytes) {
@@ -552,7 +552,7 @@ TEST_CASE("shrink is the exact area average, rounded to nearest") {
     }
 }
 
-TEST_CASE("a transparent pixel's hidden colour does not bleed into the average") {
+TEST_CASE("a transparent pixel's hidden color does not bleed into the average") {
     const temporary_folder folder;
     const png_kind kind{PNG_COLOR_TYPE_RGB_ALPHA, 8, false, false};
     write_any_png(folder / "a.png", kind, 2, 1, {255, 0, 0, 255, 0, 255, 0, 0});
@@ -638,7 +638,7 @@ TEST_CASE("a mask leaves pixels out, of averages too") {
     CHECK_FALSE(clear.is_masked(3));
 }
 
-TEST_CASE("over_background lays the image over a colour") {
+TEST_CASE("over_background lays the image over a color") {
     image source;
     source.width = 3;
     source.height = 1;

@@ -8,7 +8,7 @@
 #include "lab/accumulator_set.hpp"
 #include "render/gradients/gradient_sums.hpp"
 #include "train/engines.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 #include "training/training.hpp"
 
 namespace {
@@ -73,7 +73,7 @@ TEST_CASE("lab: only the trainer's accumulators train a sky, the others refuse")
     for (const auto& [name, how] : gs::lab::variants) {
         CAPTURE(name);
         begin(*e, how);
-        if (gs::lab::lab_accumulators::supports_backdrop(how))
+        if (gs::lab::lab_accumulators::supports_background_image(how))
             CHECK_NOTHROW(e->step(plan_for(0)));
         else
             CHECK_THROWS_WITH_AS(e->step(plan_for(0)), doctest::Contains("learned background"), gs::error);

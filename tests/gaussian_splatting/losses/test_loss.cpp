@@ -12,7 +12,7 @@
 #include "core/error.hpp"
 #include "device/cpu/cpu.hpp"
 #include "losses/losses.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 
 namespace {
 
@@ -65,8 +65,8 @@ class scaled final : public gs::train::loss<float> {
         gradient_.resize(3 * static_cast<std::size_t>(target.width) *
                          static_cast<std::size_t>(target.height));
     }
-    const float* gradient(const float* render, const gs::raster::list_capacity& room) override {
-        const float* gradient = loss_.gradient(render, room);
+    const float* gradient(const float* render, const gs::raster::list_capacity& capacity) override {
+        const float* gradient = loss_.gradient(render, capacity);
         device_.for_each_index(gradient_.size(),
                                scale_values{gradient, std::ldexp(1.0f, Exponent), gradient_.data()});
         return gradient_.data();

@@ -52,7 +52,7 @@ struct image_record {
 
 struct point_record {
     std::array<double, 3> position;
-    std::array<std::uint8_t, 3> colour;
+    std::array<std::uint8_t, 3> color;
     std::uint32_t track_length;
 };
 
@@ -89,7 +89,7 @@ std::string points_bin(const model_record& model) {
     out.put(std::uint64_t{model.points.size()});
     std::uint64_t id = 1;
     for (const auto& p : model.points) {
-        out.put(id++).put(p.position).put(p.colour).put(0.5).put(std::uint64_t{p.track_length});
+        out.put(id++).put(p.position).put(p.color).put(0.5).put(std::uint64_t{p.track_length});
         for (std::uint32_t i = 0; i < p.track_length; ++i) out.put(i).put(i);
     }
     return out.data();
@@ -132,7 +132,7 @@ std::string points_txt(const model_record& model) {
     std::string out = "# 3D point list with one line of data per point:\n";
     int id = 1;
     for (const auto& p : model.points) {
-        out += std::to_string(id++) + words_of(p.position) + words_of(p.colour) + " 0.5";
+        out += std::to_string(id++) + words_of(p.position) + words_of(p.color) + " 0.5";
         for (std::uint32_t i = 0; i < p.track_length; ++i) out += " 1 " + std::to_string(i);
         out += "\n";
     }
@@ -252,7 +252,7 @@ glm::dvec2 undistorted(const distorted_case& lens, glm::dvec2 bent) {
     return ray;
 }
 
-/// The picture painted on the rays, from 0 to 255.
+/// The image painted on the rays, from 0 to 255.
 double painted(glm::dvec2 ray) { return 127 + 60 * std::sin(3 * ray.x) + 50 * std::cos(4 * ray.y + 1); }
 
 gs::camera intrinsics_of(const camera_record& record) {
@@ -348,9 +348,9 @@ TEST_CASE("a COLMAP model reads the same from binary and from text") {
     for (std::size_t i = 0; i < 2; ++i) {
         const auto& p = written.points[i];
         CHECK(binary.points[i].position == glm::dvec3(p.position[0], p.position[1], p.position[2]));
-        CHECK(binary.points[i].colour == glm::u8vec3(p.colour[0], p.colour[1], p.colour[2]));
+        CHECK(binary.points[i].color == glm::u8vec3(p.color[0], p.color[1], p.color[2]));
         CHECK(binary.points[i].position == text.points[i].position);
-        CHECK(binary.points[i].colour == text.points[i].colour);
+        CHECK(binary.points[i].color == text.points[i].color);
     }
 }
 
@@ -370,11 +370,11 @@ TEST_CASE("a known camera comes back from its file") {
     CHECK(std::array{a.fx, a.fy, a.cx, a.cy} == std::array{50.0, 35.0, 19.0, 16.0});
     CHECK(std::array{c.fx, c.fy, c.cx, c.cy} == std::array{44.0, 44.0, 20.5, 14.0});
     CHECK(a.rotation == glm::dmat3(1));
-    CHECK(a.centre() == glm::dvec3(0));
+    CHECK(a.center() == glm::dvec3(0));
     // A quarter turn about -z takes x to -y and y to x.
     CHECK(same(b.rotation * glm::dvec3(1, 0, 0), {0, -1, 0}, rounding));
     CHECK(same(b.rotation * glm::dvec3(0, 1, 0), {1, 0, 0}, rounding));
-    CHECK(same(b.rotation * b.centre() + b.translation, glm::dvec3(0), rounding));
+    CHECK(same(b.rotation * b.center() + b.translation, glm::dvec3(0), rounding));
     CHECK(b.translation == glm::dvec3(1, 2, 3));
     // The quaternion of c is not of length 1; its rotation keeps lengths all the same, and its axis.
     const glm::dmat3 product = glm::transpose(c.rotation) * c.rotation;
@@ -459,7 +459,7 @@ TEST_CASE("photos of a lens with distortion become those of a pinhole camera") {
                     const glm::dvec2 ray((x + 0.5 - is.cx) / is.fx, (y + 0.5 - is.cy) / is.fy);
                     worst = std::max(worst, std::abs(value - painted(ray)));
                 }
-            // Two roundings to 8 bits, each up to 0.5, and h^2/8 of the picture's curvature, up to 16 * 50 a
+            // Two roundings to 8 bits, each up to 0.5, and h^2/8 of the image's curvature, up to 16 * 50 a
             // square of the ray, for pixels of h = 1/110: another 0.01 along each axis.
             CHECK(worst < 1.05);
         }
@@ -528,7 +528,7 @@ TEST_CASE("a lens that folds the photo over is refused") {
     CHECK(says(error_of_loading(folder.path()), {"a.png", "distorts too strongly"}));
 }
 
-TEST_CASE("a lens whose picture overflows is sampled within the photo") {
+TEST_CASE("a lens whose image overflows is sampled within the photo") {
     gs::camera camera;
     camera.width = camera.height = 4;
     camera.fx = camera.fy = 1e-200;
@@ -717,15 +717,15 @@ TEST_CASE("masks leave out where they are black, in photos that were bent and sh
 namespace {
 
 /// Of one channel and 16 bit.
-void write_grey(const std::filesystem::path& file, int width, int height,
+void write_gray(const std::filesystem::path& file, int width, int height,
                 const std::vector<std::uint16_t>& values) {
     std::filesystem::create_directories(file.parent_path());
-    png_image grey{};
-    grey.version = PNG_IMAGE_VERSION;
-    grey.width = static_cast<png_uint_32>(width);
-    grey.height = static_cast<png_uint_32>(height);
-    grey.format = PNG_FORMAT_LINEAR_Y;
-    REQUIRE(png_image_write_to_file(&grey, file.c_str(), 0, values.data(), 0, nullptr) != 0);
+    png_image gray{};
+    gray.version = PNG_IMAGE_VERSION;
+    gray.width = static_cast<png_uint_32>(width);
+    gray.height = static_cast<png_uint_32>(height);
+    gray.format = PNG_FORMAT_LINEAR_Y;
+    REQUIRE(png_image_write_to_file(&gray, file.c_str(), 0, values.data(), 0, nullptr) != 0);
 }
 
 }  // namespace
@@ -743,7 +743,7 @@ TEST_CASE("depth maps come with their photos, bent and shrunk as these, and some
             for (int y = 0; y < height; ++y)
                 for (int x = 0; x < width; ++x)
                     values.push_back(4 * x < width ? 0 : 2 * y < height ? 60000 : 257);
-            write_grey(folder / "depths/a.png", width, height, values);
+            write_gray(folder / "depths/a.png", width, height, values);
         };
         for (const char* name : {"a.jpg", "b.png", "c.png"}) {
             std::vector<float> planes;
@@ -771,9 +771,9 @@ TEST_CASE("depth maps come with their photos, bent and shrunk as these, and some
                 REQUIRE(first.depths.values.size() == first.pixels.rgba.size() / 4);
                 std::size_t wrong = 0, known = 0;
                 for (std::size_t i = 0; i < first.depths.values.size(); ++i) {
-                    const int value = first.depths.values[i], grey = first.pixels.rgba[4 * i];
+                    const int value = first.depths.values[i], gray = first.pixels.rgba[4 * i];
                     known += value != 0;
-                    if (value != 0 && (grey == 0 || grey == 255)) wrong += (value > 30000) != (grey > 127);
+                    if (value != 0 && (gray == 0 || gray == 255)) wrong += (value > 30000) != (gray > 127);
                 }
                 CHECK(wrong <= first.depths.values.size() / 20);  // where a map is coarser than its photo
                 CHECK(static_cast<double>(known) / static_cast<double>(first.depths.values.size()) ==
@@ -937,7 +937,7 @@ TEST_CASE("models that say something impossible, in binary and in text") {
         {"negative",
          [](auto& m) { m.cameras[0].parameters[0] = -3; },
          {"cameras", "camera 1", "focal length"}},
-        {"centre",
+        {"center",
          [](auto& m) { m.cameras[0].parameters[2] = infinity; },
          {"cameras", "camera 1", "not finite"}},
         {"tiny focal", [](auto& m) { m.cameras[0].parameters[0] = 1e-300; }, {"camera 1", "focal length"}},

@@ -51,7 +51,7 @@ const std::uint8_t* pixel_at(const gs::image& pixels, pixel_position p) {
     return &pixels.rgba[static_cast<std::size_t>(4 * (row * pixels.width + column))];
 }
 
-/// Whether the pixel or a neighbour is not clear: at a silhouette all samples of one pixel may just miss.
+/// Whether the pixel or a neighbor is not clear: at a silhouette all samples of one pixel may just miss.
 bool covered_around(const gs::image& pixels, pixel_position p) {
     for (const double dx : {0.0, -1.0, 1.0}) {
         for (const double dy : {0.0, -1.0, 1.0}) {
@@ -62,22 +62,22 @@ bool covered_around(const gs::image& pixels, pixel_position p) {
     return false;
 }
 
-int largest_difference(const std::uint8_t* pixel, const glm::u8vec3& colour) {
+int largest_difference(const std::uint8_t* pixel, const glm::u8vec3& color) {
     int largest = 0;
-    for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(pixel[c] - colour[c]));
+    for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(pixel[c] - color[c]));
     return largest;
 }
 
-/// The share of points whose colour a view shows at their projection, moved by some pixels.
+/// The share of points whose color a view shows at their projection, moved by some pixels.
 double share_found(const gs::scene& scene, double move_x, double move_y) {
     int found = 0, looked_up = 0;
     for (const gs::view& v : scene.train) {
-        for (const gs::coloured_point& point : scene.points) {
+        for (const gs::colored_point& point : scene.points) {
             const pixel_position p = project(v.camera, point.position);
             const std::uint8_t* pixel = pixel_at(v.pixels, {p.x + move_x, p.y + move_y});
             if (pixel == nullptr) continue;
             ++looked_up;
-            if (largest_difference(pixel, point.colour) <= 4) ++found;
+            if (largest_difference(pixel, point.color) <= 4) ++found;
         }
     }
     return static_cast<double>(found) / looked_up;
@@ -91,8 +91,8 @@ bool same_views(const std::vector<gs::view>& a, const std::vector<gs::view>& b) 
 
 bool same_points(const gs::scene& a, const gs::scene& b) {
     return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
-                      [](const gs::coloured_point& x, const gs::coloured_point& y) {
-                          return x.position == y.position && x.colour == y.colour;
+                      [](const gs::colored_point& x, const gs::colored_point& y) {
+                          return x.position == y.position && x.color == y.color;
                       });
 }
 
@@ -157,19 +157,19 @@ TEST_CASE("synthetic scenes: without eval every view trains, under its own name"
     for (const gs::view& v : split.test) CHECK(names.count(v.name) == 1);
 }
 
-TEST_CASE("synthetic scenes: cameras look from the upper hemisphere at the centre") {
+TEST_CASE("synthetic scenes: cameras look from the upper hemisphere at the center") {
     for (const gs::view& v : make("spheres", 8, false).train) {
         const glm::dmat3 product = v.camera.rotation * glm::transpose(v.camera.rotation);
         for (int i = 0; i < 3; ++i) {
             for (int j = 0; j < 3; ++j) CHECK(std::abs(product[i][j] - (i == j)) < 1e-12);
         }
         CHECK(glm::determinant(v.camera.rotation) == doctest::Approx(1));
-        CHECK(v.camera.centre().z > 0);
-        const pixel_position centre = project(v.camera, {0, 0, 0});
-        CHECK(centre.x == doctest::Approx(v.camera.cx));
-        CHECK(centre.y == doctest::Approx(v.camera.cy));
-        // Upright: what is higher in the world is higher in the picture.
-        CHECK(project(v.camera, {0, 0, 0.1}).y < centre.y);
+        CHECK(v.camera.center().z > 0);
+        const pixel_position center = project(v.camera, {0, 0, 0});
+        CHECK(center.x == doctest::Approx(v.camera.cx));
+        CHECK(center.y == doctest::Approx(v.camera.cy));
+        // Upright: what is higher in the world is higher in the image.
+        CHECK(project(v.camera, {0, 0, 0.1}).y < center.y);
     }
 }
 
@@ -178,7 +178,7 @@ TEST_CASE("synthetic scenes: points lie on what the cameras show, to the pixel")
         CAPTURE(name);
         const gs::scene scene = make(name, 128);
         double farthest = 0;
-        for (const gs::coloured_point& p : scene.points) {
+        for (const gs::colored_point& p : scene.points) {
             farthest =
                 std::max({farthest, std::abs(p.position.x), std::abs(p.position.y), std::abs(p.position.z)});
         }
@@ -197,7 +197,7 @@ TEST_CASE("synthetic scenes: no view sees through a surface point") {
     const gs::scene scene = make("alpha", 96);
     for (const gs::view& v : scene.train) {
         int uncovered = 0;
-        for (const gs::coloured_point& point : scene.points) {
+        for (const gs::colored_point& point : scene.points) {
             if (!covered_around(v.pixels, project(v.camera, point.position))) ++uncovered;
         }
         CHECK(uncovered == 0);

@@ -91,7 +91,7 @@ TEST_CASE("a Blender camera looks along -z with y up, ours along +z with y down"
     CHECK(scene.train[1].name == "train/train_1.png");
     const gs::camera& c = scene.train[1].camera;
     CHECK(std::pair{c.width, c.height} == std::pair{20, 16});
-    CHECK(glm::distance(c.centre(), glm::dvec3(1, 0, 3)) < rounding);
+    CHECK(glm::distance(c.center(), glm::dvec3(1, 0, 3)) < rounding);
     const glm::dvec3 p = c.rotation * glm::dvec3(1.1, 0.2, 0.5) + c.translation;
     CHECK(glm::distance(p, glm::dvec3(0.1, -0.2, 2.5)) < rounding);
     // The horizontal angle spans the width; pixels are square.
@@ -254,7 +254,7 @@ TEST_CASE("a rotation that is slightly off is made exact") {
     write_json(folder / "transforms_train.json", file);
     const gs::camera c = load(folder.path()).train[0].camera;
     CHECK(distance_from_identity(glm::transpose(c.rotation) * c.rotation) < rounding);
-    CHECK(glm::distance(c.centre(), glm::dvec3(1, 2, 3)) < rounding);
+    CHECK(glm::distance(c.center(), glm::dvec3(1, 2, 3)) < rounding);
     // Not far from where it was: by about as much as the matrix was off.
     CHECK(glm::distance(glm::transpose(c.rotation)[0], glm::dvec3(0.6, 0.8, 0)) < 1e-3);
 }
@@ -441,7 +441,7 @@ TEST_CASE("a transforms file may spell its texts and numbers as JSON allows, and
     const gs::scene scene = load(folder.path());
     REQUIRE(scene.train.size() == 1);
     CHECK(scene.train[0].name == "caf\xC3\xA9 \xF0\x9F\x98\x80/a\"b.png");
-    CHECK(scene.train[0].camera.centre() == glm::dvec3(0, 2.5, -3));
+    CHECK(scene.train[0].camera.center() == glm::dvec3(0, 2.5, -3));
     CHECK(scene.train[0].camera.cx == 9);  // of a field that is said twice the last one counts
     CHECK(scene.train[0].camera.fx == doctest::Approx(10 / std::tan(0.4)));
 
@@ -458,7 +458,7 @@ TEST_CASE("what nests in a value that is not read is not taken for what is") {
     write_json(folder / "transforms_train.json", file);
     const gs::scene scene = load(folder.path());
     REQUIRE(scene.train.size() == 1);
-    CHECK(scene.train[0].camera.centre() == glm::dvec3(0, 0, 3));
+    CHECK(scene.train[0].camera.center() == glm::dvec3(0, 0, 3));
     CHECK(scene.train[0].camera.cx == 10);
 }
 
@@ -473,7 +473,7 @@ TEST_CASE("of a transform_matrix that is said twice the last one counts") {
         return load(folder.path());
     };
     for (const std::string wrong : {"[[1]]", "3", "{}", "[]"}) {
-        CHECK(load_with(wrong, sound).train[0].camera.centre() == glm::dvec3(1, 2, 3));
+        CHECK(load_with(wrong, sound).train[0].camera.center() == glm::dvec3(1, 2, 3));
         CHECK(says(error_of([&] { load_with(sound, wrong); }), {"frame 0", "4x4 finite numbers"}));
     }
 }

@@ -52,16 +52,16 @@ using projection = gs::raster::projection_of<Real, gs::effect_set{.fisheye = tru
 
 }  // namespace
 
-TEST_CASE("fisheye: angle and reach are each other's inverse, up to where the lens ends") {
+TEST_CASE("fisheye: angle and radius are each other's inverse, up to where the lens ends") {
     const gs::fisheye plain({0, 0, 0, 0});
     CHECK(plain.end() == gs::fisheye::widest);
-    CHECK(plain.reach(1.25) == 1.25);
+    CHECK(plain.radius(1.25) == 1.25);
     const gs::fisheye turns_back({-0.1, 0, 0, 0});  // t - 0.1 t^3 grows up to sqrt(1 / 0.3)
     CHECK(turns_back.end() == doctest::Approx(std::sqrt(1 / 0.3)).epsilon(1e-12));
     CHECK(turns_back.angle(100) == turns_back.end());
     for (const gs::fisheye& lens : {plain, turns_back, *fisheye_camera().fisheye})
         for (const double angle : {0.0, 1e-6, 0.1, 0.7, 1.5})
-            CHECK(lens.angle(lens.reach(angle)) == doctest::Approx(angle).epsilon(1e-12));
+            CHECK(lens.angle(lens.radius(angle)) == doctest::Approx(angle).epsilon(1e-12));
 }
 
 TEST_CASE("fisheye: a ray through where a point is seen meets it") {
@@ -71,14 +71,14 @@ TEST_CASE("fisheye: a ray through where a point is seen meets it") {
             const auto seen = c.see(point);
             REQUIRE(seen);
             CHECK(seen->depth == doctest::Approx(2.5));
-            const glm::dvec3 to = glm::normalize(point - c.centre()), ray = c.ray(seen->x, seen->y);
+            const glm::dvec3 to = glm::normalize(point - c.center()), ray = c.ray(seen->x, seen->y);
             CHECK(glm::length(ray - to) < 1e-9);
         }
     const gs::camera c = fisheye_camera();
-    CHECK_FALSE(c.see(c.centre() - glm::transpose(c.rotation) * glm::dvec3(0, 0, 1)));  // behind it
+    CHECK_FALSE(c.see(c.center() - glm::transpose(c.rotation) * glm::dvec3(0, 0, 1)));  // behind it
 }
 
-TEST_CASE("fisheye: without bends a small picture is a pinhole camera's") {
+TEST_CASE("fisheye: without bends a small image is a pinhole camera's") {
     gs::camera bent = fisheye_camera(), straight = bent;
     bent.fisheye = gs::fisheye({0, 0, 0, 0});
     straight.fisheye.reset();
@@ -130,9 +130,9 @@ TEST_CASE("fisheye: kernels see what the camera sees, with the derivatives of ce
                 CHECK(p.y == doctest::Approx(seen->y).epsilon(1e-12));
                 CHECK(projection<double>::depth(c.rotation * point + c.translation) == doctest::Approx(2.5));
 
-                const glm::dvec2 by_centre(normal(random), normal(random));
+                const glm::dvec2 by_center(normal(random), normal(random));
                 const glm::dvec3 by_px = some(), by_py = some();
-                const glm::dvec3 gradient = p.position_gradient(by_centre, by_px, by_py, camera);
+                const glm::dvec3 gradient = p.position_gradient(by_center, by_px, by_py, camera);
                 constexpr double step = 1e-5;
                 for (int k = 0; k < 3; ++k) {
                     glm::dvec3 aside(0);
@@ -140,7 +140,7 @@ TEST_CASE("fisheye: kernels see what the camera sees, with the derivatives of ce
                     const auto more = at(point + aside), less = at(point - aside);
                     CHECK(p.px[k] == doctest::Approx((more.x - less.x) / (2 * step)).epsilon(1e-6));
                     CHECK(p.py[k] == doctest::Approx((more.y - less.y) / (2 * step)).epsilon(1e-6));
-                    const double change = glm::dot(by_centre, glm::dvec2(more.x - less.x, more.y - less.y)) +
+                    const double change = glm::dot(by_center, glm::dvec2(more.x - less.x, more.y - less.y)) +
                                           glm::dot(by_px, more.px - less.px) +
                                           glm::dot(by_py, more.py - less.py);
                     CHECK(gradient[k] == doctest::Approx(change / (2 * step)).epsilon(1e-6).scale(100));
@@ -173,7 +173,7 @@ TEST_CASE("fisheye: float is near double, on the axis as well") {
     }
 }
 
-TEST_CASE("fisheye: what is too near or beyond the picture's cone is not drawn") {
+TEST_CASE("fisheye: what is too near or beyond the image's cone is not drawn") {
     const gs::camera c = fisheye_camera();
     const auto camera = gs::raster::for_device<double>(c);
     const auto is_drawn = [&](double angle, double distance) {
@@ -181,7 +181,7 @@ TEST_CASE("fisheye: what is too near or beyond the picture's cone is not drawn")
     };
     CHECK(is_drawn(0, 0.16));
     CHECK_FALSE(is_drawn(0, 0.14));
-    // The farthest corner of the picture and 15 % on every side: 1.9 and 1.6 focal lengths off.
+    // The farthest corner of the image and 15 % on every side: 1.9 and 1.6 focal lengths off.
     const double cone = c.fisheye->angle(std::hypot((410 + 120) / 260.0, (310 + 90) / 250.0));
     CHECK(is_drawn(cone - 0.01, 2));
     CHECK_FALSE(is_drawn(cone + 0.01, 2));

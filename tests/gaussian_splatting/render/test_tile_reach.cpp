@@ -16,7 +16,7 @@ using gs::raster::tile_size;
 
 namespace {
 
-/// Of any size, thinness and direction, in a picture of 40 x 30 tiles and around it.
+/// Of any size, thinness and direction, in a image of 40 x 30 tiles and around it.
 splat<float> random_splat(std::mt19937& random) {
     std::uniform_real_distribution<float> unit(0, 1);
     splat<float> s{};
@@ -27,7 +27,7 @@ splat<float> random_splat(std::mt19937& random) {
     s.r = (unit(random) < 0.2f ? 0 : 4 * unit(random) - 2) * s.p;
     s.dx_per_dy = -s.r * s.q / (s.p * s.p + s.r * s.r);
     s.dy_per_dx = -s.r / s.q;
-    s.reach = 8 * unit(random);
+    s.cutoff = 8 * unit(random);
     return s;
 }
 
@@ -55,16 +55,16 @@ TEST_CASE("a splat reaches some tile of its box where looking at each finds one"
         const splat<float> s = random_splat(random);
         const auto below = [&](unsigned end) { return static_cast<unsigned>(random() % end); };
         const unsigned x0 = below(40), x1 = x0 + below(41 - x0), y0 = below(30), y1 = y0 + below(31 - y0);
-        const double least = least_of_all(s, x0, x1, y0, y1), reach = static_cast<double>(s.reach);
+        const double least = least_of_all(s, x0, x1, y0, y1), cutoff = static_cast<double>(s.cutoff);
         const warpagg::emulator::serial one{};
         const bool found = reaches_any_tile(one, s, x0, x1, y0, y1, true);
         CHECK_FALSE(reaches_any_tile(one, s, x0, x1, y0, y1, false));
-        if (std::abs(least - reach) <= 1e-5 * reach) {
+        if (std::abs(least - cutoff) <= 1e-5 * cutoff) {
             ++undecided;
             continue;
         }
         CAPTURE(i);
-        CHECK(found == (least < reach));
+        CHECK(found == (least < cutoff));
         ++(found ? reaching : missing);
     }
     CHECK(reaching > 2000);
@@ -88,7 +88,7 @@ TEST_CASE("lanes look for tiles each for itself") {
         bool expected[8];
         for (int lane = 0; lane < 8; ++lane) {
             const splat<float> s = random_splat(random);
-            const float of_splat[8] = {s.x, s.y, s.p, s.q, s.r, s.dx_per_dy, s.dy_per_dx, s.reach};
+            const float of_splat[8] = {s.x, s.y, s.p, s.q, s.r, s.dx_per_dy, s.dy_per_dx, s.cutoff};
             for (int k = 0; k < 8; ++k) values[k].set(lane, of_splat[k]);
             const auto below = [&](unsigned end) { return static_cast<unsigned>(random() % end); };
             x0.set(lane, below(40));
@@ -101,7 +101,7 @@ TEST_CASE("lanes look for tiles each for itself") {
         }
         splat<real> s{};
         s.x = values[0], s.y = values[1], s.p = values[2], s.q = values[3], s.r = values[4];
-        s.dx_per_dy = values[5], s.dy_per_dx = values[6], s.reach = values[7];
+        s.dx_per_dy = values[5], s.dy_per_dx = values[6], s.cutoff = values[7];
         const auto found = reaches_any_tile(w, s, x0, x1, y0, y1, asked);
         CAPTURE(i);
         for (int lane = 0; lane < 8; ++lane) CHECK(found[lane] == expected[lane]);
@@ -112,10 +112,10 @@ TEST_CASE("lanes look for tiles each for itself") {
 TEST_CASE("a splat between two rows of tiles reaches none, though it reaches their box") {
     splat<float> s{};
     s.x = 40;
-    s.y = 16;  // pixel centres are at 15.5 and 16.5
+    s.y = 16;  // pixel centers are at 15.5 and 16.5
     s.p = 0.01f;
     s.q = 10;
-    s.reach = 8;
+    s.cutoff = 8;
     const warpagg::emulator::serial one{};
     CHECK_FALSE(reaches_any_tile(one, s, 0u, 5u, 0u, 2u, true));
     s.q = 5;

@@ -12,7 +12,7 @@
 #include "../../support/temporary_folder.hpp"
 #include "evaluation/held_out_views.hpp"
 #include "readers/load_scene.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 #include "training/training.hpp"
 #include "writers/ply/ply.hpp"
 
@@ -33,7 +33,7 @@ gs::scene displaced(gs::scene scene, const glm::dvec3& offset, double scale) {
     for (auto* views : {&scene.train, &scene.test})
         for (gs::view& v : *views)
             v.camera.translation = scale * (v.camera.translation - v.camera.rotation * offset);
-    for (gs::coloured_point& p : scene.points) p.position = scale * (p.position + offset);
+    for (gs::colored_point& p : scene.points) p.position = scale * (p.position + offset);
     return scene;
 }
 
@@ -43,11 +43,11 @@ struct displacement {
 };
 constexpr displacement displacements[] = {{1e4, 1}, {0, 1e-4}, {0, 1e4}, {1e4, 1e-4}, {1e4, 1e4}};
 
-gs::scene seen_from(std::initializer_list<glm::dvec3> centres) {
+gs::scene seen_from(std::initializer_list<glm::dvec3> centers) {
     gs::scene s;
-    for (const glm::dvec3& centre : centres) {
+    for (const glm::dvec3& center : centers) {
         s.train.emplace_back();
-        s.train.back().camera.translation = -centre;
+        s.train.back().camera.translation = -center;
     }
     return s;
 }

@@ -14,12 +14,12 @@
 #include "features/sh_degree/revise_sh_degree.hpp"
 #include "features/sh_degree/sh_degree_feature.hpp"
 #include "render/gradients/gradient_sums.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 #include "training/training.hpp"
 
 namespace {
 
-/// With growth, a reset of opacities, colours that depend on direction, and Gaussians that lose these.
+/// With growth, a reset of opacities, colors that depend on direction, and Gaussians that lose these.
 gs::gaussians trained(gs::train::engine& e, const gs::scene& scene) {
     gs::train::train_options o;
     o.schedule.iterations = 200;
@@ -69,7 +69,7 @@ TEST_CASE("sums in fixed point make training repeatable, with any number of thre
         const auto last = first.sh_rest.end() - first.rest_width();
         CHECK(std::all_of(last, first.sh_rest.end(), [](float x) { return x == 0; }));
         CHECK(std::ranges::any_of(first.sh_rest, [](float x) { return x != 0; }));
-        for (const int n : {1, 2, 9}) {  // 9: the pictures fall into other strips
+        for (const int n : {1, 2, 9}) {  // 9: the images fall into other strips
             if (n > 1 && hard_cases::brief) continue;
             CAPTURE(n);
             omp_set_num_threads(n);
@@ -79,7 +79,7 @@ TEST_CASE("sums in fixed point make training repeatable, with any number of thre
     }
 }
 
-TEST_CASE("fixed point refuses pictures of so many patches that a sum could overflow") {
+TEST_CASE("fixed point refuses images of so many patches that a sum could overflow") {
     using device = gs::device::cpu;
     device d;
     gs::raster::gradient_sums<device, float> sums(d);

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "engines.hpp"
 #include "scene/downsample.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 #include "training/training.hpp"
 
 namespace {
@@ -86,13 +86,13 @@ TEST_CASE("what it measures is what it draws") {
         e->set_model(gs::from_points(scene.points, 0, 1000, 1));
         const std::array<float, 3> white{1, 1, 1};
         const auto& view = scene.test[1];
-        auto picture = e->render(view.camera, white);
+        auto render = e->render(view.camera, white);
         std::vector<float> measured;
         const auto quality = e->measure(1, white, &measured);
-        CHECK(measured == picture);
-        for (float& x : picture) x = std::clamp(x, 0.0f, 1.0f);
+        CHECK(measured == render);
+        for (float& x : render) x = std::clamp(x, 0.0f, 1.0f);
         CHECK(quality.psnr() ==
-              doctest::Approx(psnr_between(picture, gs::over_background(view.pixels, white.data())))
+              doctest::Approx(psnr_between(render, gs::over_background(view.pixels, white.data())))
                   .epsilon(1e-4));
     }
 }
@@ -129,7 +129,7 @@ TEST_CASE("a step learns from photos as small as it is told to") {
     }
 }
 
-TEST_CASE("gradients of centres, in halves of the picture, are alike on photos of any size") {
+TEST_CASE("gradients of centers, in halves of the image, are alike on photos of any size") {
     // As many grow at a threshold on photos of 64 pixels as on photos of 32, to a quarter of them.
     gs::scene scene = small_scene("synthetic:spheres", 64);
     for (const auto make : engines()) {
@@ -163,7 +163,7 @@ TEST_CASE("views that were not shrunk are not to be had") {
     }
 }
 
-TEST_CASE("colours that depend on direction stay as they are when they are not to learn") {
+TEST_CASE("colors that depend on direction stay as they are when they are not to learn") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {
         const auto e = make();
@@ -240,7 +240,7 @@ TEST_CASE("a Gaussian that a view does not see keeps its bits, whatever its mome
     }
 }
 
-TEST_CASE("a picture too large to be numbered is refused") {
+TEST_CASE("a image too large to be numbered is refused") {
     const gs::scene scene = small_scene();
     gs::camera large = scene.test[0].camera;
     large.width = large.height = 23171;  // squared, beyond 2^29
@@ -309,7 +309,7 @@ TEST_CASE("a step whose lists do not fit changes nothing, and is counted") {
 TEST_CASE("what the CPU computes does not depend on its instruction set") {
     const gs::scene scene = small_scene();
     const gaussians model = gs::from_points(scene.points, 3, 3000, 1);
-    std::vector<std::vector<float>> pictures;
+    std::vector<std::vector<float>> renders;
     std::vector<gaussians> stepped;
     const int threads = omp_get_max_threads();
     omp_set_num_threads(1);  // several add up gradients in any order
@@ -318,11 +318,11 @@ TEST_CASE("what the CPU computes does not depend on its instruction set") {
         e->set_views(scene.train, scene.test);
         e->set_model(model);
         e->reserve();
-        pictures.push_back(e->render(scene.test[0].camera, {1, 1, 1}));
+        renders.push_back(e->render(scene.test[0].camera, {1, 1, 1}));
         for (std::size_t v = 0; v < 3; ++v) e->step(plan_for(v));
         stepped.push_back(e->get_model());
         INFO(e->profile().device_name());
-        CHECK(pictures.back() == pictures.front());
+        CHECK(renders.back() == renders.front());
         CHECK(same(stepped.back(), stepped.front()));
     }
     omp_set_num_threads(threads);
@@ -330,7 +330,7 @@ TEST_CASE("what the CPU computes does not depend on its instruction set") {
 }
 
 #if defined(WARPAGG_TEST_CUDA)
-TEST_CASE("CPU and GPU draw the same picture") {
+TEST_CASE("CPU and GPU draw the same image") {
     const gs::scene scene = small_scene();
     const gaussians model = gs::from_points(scene.points, 3, 3000, 1);
     const auto cpu = gs::train::make_cpu_engine(), gpu = gs::train::make_cuda_engine();

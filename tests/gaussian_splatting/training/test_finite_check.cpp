@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "engines.hpp"
 #include "model/opacity.hpp"
-#include "training/initialise.hpp"
+#include "training/initialize.hpp"
 #include "training/training.hpp"
 
 namespace {
@@ -209,7 +209,7 @@ TEST_CASE("training ends where the loss is not finite, and names the view") {
                                              [](int) {}};
         auto options = short_run(30);
         options.save_iterations = {20, 30};
-        options.background.colour = {0, infinity, 0};
+        options.background.color = {0, infinity, 0};
         CHECK_THROWS_WITH_AS(gs::train::train(*e, scene, options, events),
                              doctest::Contains("iteration 1, view "), gs::error);
         CHECK_FALSE(saved);
@@ -220,7 +220,7 @@ TEST_CASE("Gaussians that take no gradient are counted") {
     const gs::scene scene = small_scene();
     gs::gaussians model = few(scene);
     for (float& s : model.log_scale) s -= 2;
-    // Just above 1/255 at their centres, below it half a pixel away: drawn, but hardly ever hit.
+    // Just above 1/255 at their centers, below it half a pixel away: drawn, but hardly ever hit.
     model.opacity.assign(model.count(), gs::logit(1.0f / 254));
     for (const auto make : engines()) {
         const auto e = ready(make, scene, model);

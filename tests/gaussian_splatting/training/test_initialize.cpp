@@ -10,15 +10,15 @@
 #include <limits>
 #include <numeric>
 
-#include "../../../examples/gaussian_splatting/training/initialise.hpp"
+#include "../../../examples/gaussian_splatting/training/initialize.hpp"
 
 namespace {
 
 constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
 const float floor_log_scale = static_cast<float>(0.5 * std::log(1e-7));
 
-std::vector<gs::coloured_point> regular_grid(int side, double spacing) {
-    std::vector<gs::coloured_point> points;
+std::vector<gs::colored_point> regular_grid(int side, double spacing) {
+    std::vector<gs::colored_point> points;
     for (int x = 0; x < side; ++x) {
         for (int y = 0; y < side; ++y) {
             for (int z = 0; z < side; ++z) {
@@ -29,18 +29,18 @@ std::vector<gs::coloured_point> regular_grid(int side, double spacing) {
     return points;
 }
 
-std::vector<gs::coloured_point> line(std::initializer_list<double> places) {
-    std::vector<gs::coloured_point> points;
+std::vector<gs::colored_point> line(std::initializer_list<double> places) {
+    std::vector<gs::colored_point> points;
     for (const double x : places) points.push_back({{x, 0, 0}, {0, 0, 0}});
     return points;
 }
 
-gs::scene scene_seen_from(bool object_centered, std::initializer_list<glm::dvec3> centres) {
+gs::scene scene_seen_from(bool object_centered, std::initializer_list<glm::dvec3> centers) {
     gs::scene s;
     s.object_centered = object_centered;
-    for (const glm::dvec3& centre : centres) {
+    for (const glm::dvec3& center : centers) {
         gs::view v;
-        v.camera.translation = -centre;
+        v.camera.translation = -center;
         s.train.push_back(v);
     }
     return s;
@@ -61,11 +61,11 @@ gs::scene scene_that_looks_at(const glm::dvec3& object, double distance) {
     return s;
 }
 
-double half_side_about(const glm::dvec3& centre, const std::vector<gs::coloured_point>& points) {
+double half_side_about(const glm::dvec3& center, const std::vector<gs::colored_point>& points) {
     double farthest = 0;
-    for (const gs::coloured_point& p : points)
+    for (const gs::colored_point& p : points)
         for (glm::length_t axis = 0; axis < 3; ++axis)
-            farthest = std::max(farthest, std::abs(p.position[axis] - centre[axis]));
+            farthest = std::max(farthest, std::abs(p.position[axis] - center[axis]));
     return farthest;
 }
 
@@ -85,10 +85,10 @@ TEST_CASE("from_points: the root of the mean of the 3 squared distances, not the
 }
 
 TEST_CASE("from_points: all parameters of a Gaussian") {
-    const std::vector<gs::coloured_point> points = {{{1, 2, 3}, {0, 128, 255}},
-                                                    {{4, 5, 6}, {10, 20, 30}},
-                                                    {{7, 8, 9}, {1, 2, 3}},
-                                                    {{0, 0, 0}, {4, 5, 6}}};
+    const std::vector<gs::colored_point> points = {{{1, 2, 3}, {0, 128, 255}},
+                                                   {{4, 5, 6}, {10, 20, 30}},
+                                                   {{7, 8, 9}, {1, 2, 3}},
+                                                   {{0, 0, 0}, {4, 5, 6}}};
     for (int degree = 0; degree <= 3; ++degree) {
         const gs::gaussians model = gs::from_points(points, degree, all, 0);
         CHECK(model.sh_degree == degree);
@@ -124,7 +124,7 @@ TEST_CASE("from_points: points that coincide, and too few of them, still get a s
         CHECK(model.log_scale[0] == doctest::Approx(0.5 * std::log((1.0 + 9.0) / 2)));
     }
     SUBCASE("hundreds at one place") {
-        for (const float s : gs::from_points(std::vector<gs::coloured_point>(300), 0, all, 0).log_scale) {
+        for (const float s : gs::from_points(std::vector<gs::colored_point>(300), 0, all, 0).log_scale) {
             CHECK(s == doctest::Approx(floor_log_scale));
         }
     }
@@ -136,7 +136,7 @@ TEST_CASE("from_points: points that coincide, and too few of them, still get a s
 }
 
 TEST_CASE("from_points: `most` draws without replacement, by seed, and sizes what it drew") {
-    const std::vector<gs::coloured_point> points = regular_grid(10, 1);
+    const std::vector<gs::colored_point> points = regular_grid(10, 1);
     const gs::gaussians model = gs::from_points(points, 0, 100, 7);
     REQUIRE(model.count() == 100);
 
@@ -158,10 +158,10 @@ TEST_CASE("from_points: `most` draws without replacement, by seed, and sizes wha
 
 TEST_CASE("random_points: the box of a NeRF-synthetic scene") {
     const gs::scene blender = scene_that_looks_at(glm::dvec3(0), 4.0311288);
-    const std::vector<gs::coloured_point> points = gs::random_points(blender, 5000, 3);
+    const std::vector<gs::colored_point> points = gs::random_points(blender, 5000, 3);
     REQUIRE(points.size() == 5000);
     glm::dvec3 least{0}, greatest{0}, sum{0};
-    for (const gs::coloured_point& p : points) {
+    for (const gs::colored_point& p : points) {
         least = glm::min(least, p.position);
         greatest = glm::max(greatest, p.position);
         sum += p.position;
@@ -174,9 +174,9 @@ TEST_CASE("random_points: the box of a NeRF-synthetic scene") {
         CHECK(std::abs(sum[axis] / 5000) < 0.05);
     }
     const auto [dark, bright] = std::minmax_element(
-        points.begin(), points.end(), [](const auto& a, const auto& b) { return a.colour.r < b.colour.r; });
-    CHECK(dark->colour.r == 0);
-    CHECK(bright->colour.r == 255);
+        points.begin(), points.end(), [](const auto& a, const auto& b) { return a.color.r < b.color.r; });
+    CHECK(dark->color.r == 0);
+    CHECK(bright->color.r == 255);
 }
 
 TEST_CASE("random_points: the box follows what the cameras look at") {
@@ -202,7 +202,7 @@ TEST_CASE("random_points: cameras that look one way have the object where the or
     SUBCASE("in internal coordinates it is the same point") {
         const glm::dvec3 before = s.looked_at().value();
         gs::normalize(s, [](const std::string&) {});
-        CHECK(s.train[0].camera.centre() == glm::dvec3(0));
+        CHECK(s.train[0].camera.center() == glm::dvec3(0));
         CHECK(glm::distance(s.normalization.to_world(s.looked_at().value()), before) < 1e-5);
     }
     SUBCASE("an object behind the camera is none: the box is about the camera") {
@@ -219,7 +219,7 @@ TEST_CASE("random_points: cameras that look one way have the object where the or
 
 TEST_CASE("random_points: the box around the cameras of another scene, by seed") {
     const gs::scene colmap = scene_seen_from(false, {{10, 0, 0}, {12, 0, 0}, {10, 2, 0}, {12, 2, 0}});
-    const std::vector<gs::coloured_point> points = gs::random_points(colmap, 1000, 3);
+    const std::vector<gs::colored_point> points = gs::random_points(colmap, 1000, 3);
     const double farthest = half_side_about({11, 1, 0}, points);
     CHECK(farthest <= colmap.extent());
     CHECK(farthest > 0.95 * colmap.extent());

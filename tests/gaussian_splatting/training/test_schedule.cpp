@@ -56,7 +56,7 @@ TEST_CASE("photos are whole after a fifth of the iterations, or from the first o
     CHECK(s.downscales_at(1) == 0);
 }
 
-TEST_CASE("colours that depend on direction can learn more rarely") {
+TEST_CASE("colors that depend on direction can learn more rarely") {
     schedule s;
     CHECK(s.updates_sh(1));
     s.sh_update_interval = 3;
@@ -74,7 +74,7 @@ TEST_CASE("rates and intervals are the reference implementation's, and can be ot
     CHECK(s.rates_at(0)[1] == 1e-2f);    // log scale
     CHECK(s.rates_at(0)[2] == 1e-3f);    // quaternion
     CHECK(s.rates_at(0)[3] == 2.5e-2f);  // opacity
-    CHECK(s.rates_at(0)[4] == 2.5e-3f);  // colour
+    CHECK(s.rates_at(0)[4] == 2.5e-3f);  // color
 
     s.position_lr_init = 1e-2;
     s.position_lr_final = 1e-4;

@@ -155,7 +155,7 @@ TEST_CASE("photos grow by the schedule, and lists are sized anew for them") {
     for (std::size_t i = 0; i < 20; ++i) CHECK(made->steps[i].downscales == (i < 6 ? 2 : i < 12 ? 1 : 0));
 }
 
-TEST_CASE("colours that depend on direction learn every so many steps") {
+TEST_CASE("colors that depend on direction learn every so many steps") {
     gs::train::train_options o;
     o.schedule.sh_update_interval = 4;
     const auto made = trained(o);

@@ -111,8 +111,8 @@ inline constexpr unsigned placing_warps = 32;
 /// `done` tells it, goes on to the ranges: until then they hold the lists' lengths.
 template <class Range>
 __global__ void __launch_bounds__(placing_warps* warp_size)
-    place_buckets(unsigned buckets, std::uint32_t* table, std::uint64_t room, Range* ranges,
-                  std::uint64_t* needed, unsigned* done) {
+    place_buckets(unsigned buckets, std::uint32_t* table, std::uint64_t capacity, Range* ranges,
+                  std::uint64_t* required, unsigned* done) {
     await_kernel_before();
     constexpr unsigned each = slices / placing_warps;
     __shared__ std::uint32_t sums[placing_warps][warp_size + 1];
@@ -156,14 +156,14 @@ __global__ void __launch_bounds__(placing_warps* warp_size)
         const std::uint64_t length = b < buckets ? __ldcg(&ranges[b].end) : 0;
         const std::uint64_t end = begin + sum_to_thread<placing_warps>(length, ends);
         if (b < buckets)
-            ranges[b] = {static_cast<std::uint32_t>(min(end - length, room)),
-                         static_cast<std::uint32_t>(min(end, room))};
+            ranges[b] = {static_cast<std::uint32_t>(min(end - length, capacity)),
+                         static_cast<std::uint32_t>(min(end, capacity))};
         if (threadIdx.x == blockDim.x - 1) end_of_round = end;
         __syncthreads();
         begin = end_of_round;
     }
     if (threadIdx.x == 0) {
-        *needed = begin;
+        *required = begin;
         *done = 0;
     }
 }
@@ -172,7 +172,7 @@ __global__ void __launch_bounds__(placing_warps* warp_size)
 template <bool Shared, class Items, class Range>
 __global__ void __launch_bounds__(warp_size)
     append_slice(Items items, const std::uint64_t* first, std::size_t count, unsigned buckets,
-                 std::uint32_t* table, std::uint64_t room, const Range* ranges, std::uint32_t* listed) {
+                 std::uint32_t* table, std::uint64_t capacity, const Range* ranges, std::uint32_t* listed) {
     await_kernel_before();
     extern __shared__ std::uint32_t shared_row[];
     std::uint32_t* row = table + std::size_t{blockIdx.x} * buckets;
@@ -193,7 +193,7 @@ __global__ void __launch_bounds__(warp_size)
             std::uint32_t place = 0;
             if (goes) {
                 place = places[bucket] + lanes_before(peers[r]);
-                if (place < room) listed[place] = values[r];
+                if (place < capacity) listed[place] = values[r];
             }
             __syncwarp();
             if (goes && is_last_of(peers[r])) places[bucket] = place + 1;

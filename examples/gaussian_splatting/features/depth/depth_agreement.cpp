@@ -33,7 +33,7 @@ std::pair<double, double> spread_of(const std::vector<depth_pair>& pairs, double
 }
 
 /// Nothing where too few points tell.
-std::optional<depth_line> line_of(const view& photo, const std::vector<coloured_point>& points) {
+std::optional<depth_line> line_of(const view& photo, const std::vector<colored_point>& points) {
     if (!photo.depths.is_there()) return std::nullopt;
     std::vector<depth_pair> pairs;
     for (const place_in_photo& p : points_in_sight(photo.camera, points)) {

@@ -57,7 +57,7 @@ class depth_on_device final : public device_feature<Renderer> {
         gradient_.resize(3 * pixels);
         s.renderer.blend_depths();
         device_.for_each_index(
-            pixels, train::depth_gradient{s.renderer.picture(), maps_.data() + first_[s.level][s.plan.view],
+            pixels, train::depth_gradient{s.renderer.render(), maps_.data() + first_[s.level][s.plan.view],
                                           fits_[s.plan.view], pixel_weight(s), pixels, gradient_.data()});
         s.renderer.backward_depths(gradient_.data(), s.gradient_scale, s.accumulate);
     }

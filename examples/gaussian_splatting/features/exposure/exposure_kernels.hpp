@@ -12,7 +12,7 @@
 
 namespace gs::features {
 
-/// A photo's exposure: its colours are `A c + b` of those that the scene has. Three rows of A and b, as in
+/// A photo's exposure: its colors are `A c + b` of those that the scene has. Three rows of A and b, as in
 /// Kerbl et al. 2024 (hierarchical 3D Gaussians).
 inline constexpr unsigned exposure_width = 12;
 
@@ -37,9 +37,9 @@ inline std::vector<exposure> exposures_from(const std::vector<float>& values) {
 }
 /// @}
 
-/// A picture as its photo's exposure shows it: one index a pixel.
+/// A image as its photo's exposure shows it: one index a pixel.
 struct expose {
-    const float* picture;  ///< three planes, as `exposed`
+    const float* render;  ///< three planes, as `exposed`
     const float* exposure;
     std::size_t pixels;
     float* exposed;
@@ -48,22 +48,22 @@ struct expose {
         for (unsigned c = 0; c < 3; ++c) {
             float sum = exposure[exposure_at(c, 3)];
             for (unsigned k = 0; k < 3; ++k)
-                sum = warpagg::math::fma(exposure[exposure_at(c, k)], picture[k * pixels + i], sum);
+                sum = warpagg::math::fma(exposure[exposure_at(c, k)], render[k * pixels + i], sum);
             exposed[c * pixels + i] = sum;
         }
     }
 };
 
-/// The gradients by the picture and by the exposure, from that by the exposed picture. A warp for as many
+/// The gradients by the image and by the exposure, from that by the exposed image. A warp for as many
 /// pixels as its lanes have, `rounds` times.
 struct expose_backward {
     static constexpr unsigned rounds = 8;
 
-    const float* picture;  ///< three planes, as all here
+    const float* render;  ///< three planes, as all here
     const float* exposure;
     const float* by_exposed;
     std::size_t pixels;
-    float* by_picture;
+    float* by_render;
     train::ordered_sums sums;  ///< of `warps(pixels)`
 
     template <class W>
@@ -82,24 +82,24 @@ struct expose_backward {
         for (unsigned round = 0; round < rounds && first < pixels; ++round, first += W::size) {
             const warpagg::mask_t<W> inside =
                 w.lane() < static_cast<unsigned>(pixels - first < W::size ? pixels - first : W::size);
-            real colour[3], g[3];
+            real color[3], g[3];
             WARPAGG_UNROLL
             for (unsigned c = 0; c < 3; ++c) {
                 const auto at = static_cast<std::ptrdiff_t>(c * pixels + first);
-                colour[c] = w.load_row(picture, at, inside);
+                color[c] = w.load_row(render, at, inside);
                 g[c] = w.load_row(by_exposed, at, inside);
             }
             WARPAGG_UNROLL
             for (unsigned c = 0; c < 3; ++c) {
                 WARPAGG_UNROLL
                 for (unsigned k = 0; k < 3; ++k)
-                    total[exposure_at(c, k)] = warpagg::math::fma(g[c], colour[k], total[exposure_at(c, k)]);
+                    total[exposure_at(c, k)] = warpagg::math::fma(g[c], color[k], total[exposure_at(c, k)]);
                 total[exposure_at(c, 3)] += g[c];
                 real by(0);
                 WARPAGG_UNROLL
                 for (unsigned k = 0; k < 3; ++k)
                     by = warpagg::math::fma(g[k], real(exposure[exposure_at(k, c)]), by);
-                w.store_row(by_picture, static_cast<std::ptrdiff_t>(c * pixels + first), by, inside);
+                w.store_row(by_render, static_cast<std::ptrdiff_t>(c * pixels + first), by, inside);
             }
         }
         const auto part = [&, index](unsigned i) { return sums(i, index); };

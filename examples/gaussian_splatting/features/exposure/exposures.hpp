@@ -29,22 +29,22 @@ class exposures {
 
     std::size_t count() const { return numbers_.rows(); }
 
-    /// The picture of a view, on the device, as its photo would have it.
-    const float* show(std::size_t view, const float* picture, std::size_t pixels) {
+    /// The image of a view, on the device, as its photo would have it.
+    const float* show(std::size_t view, const float* render, std::size_t pixels) {
         exposed_.resize(3 * pixels);
-        device_.for_each_index(pixels, expose{picture, numbers_.row(view), pixels, exposed_.data()});
+        device_.for_each_index(pixels, expose{render, numbers_.row(view), pixels, exposed_.data()});
         return exposed_.data();
     }
 
-    /// From the gradient by what `show` returned to that by its picture; learns from it.
-    const float* learn(std::size_t view, const float* picture, const float* by_exposed, std::size_t pixels,
-                       float rate, const raster::list_capacity& room) {
-        by_picture_.resize(3 * pixels);
+    /// From the gradient by what `show` returned to that by its image; learns from it.
+    const float* learn(std::size_t view, const float* render, const float* by_exposed, std::size_t pixels,
+                       float rate, const raster::list_capacity& capacity) {
+        by_render_.resize(3 * pixels);
         const train::ordered_sums sums = numbers_.sums(expose_backward::warps<warp>(pixels));
-        device_.for_each_warp(sums.warps, expose_backward{picture, numbers_.row(view), by_exposed, pixels,
-                                                          by_picture_.data(), sums});
-        numbers_.learn(view, sums, rate, room);
-        return by_picture_.data();
+        device_.for_each_warp(sums.warps, expose_backward{render, numbers_.row(view), by_exposed, pixels,
+                                                          by_render_.data(), sums});
+        numbers_.learn(view, sums, rate, capacity);
+        return by_render_.data();
     }
 
     /// See `normalize_exposures`.
@@ -63,7 +63,7 @@ class exposures {
   private:
     Device& device_;
     train::adam_parameters<Device, exposure_width> numbers_;
-    buffer<float> exposed_, by_picture_;
+    buffer<float> exposed_, by_render_;
 };
 
 }  // namespace gs::features

@@ -44,16 +44,16 @@ void add_residuals(const std::vector<observation>& seen, double ridge,
                    std::vector<std::array<double, 4>>& residuals) {
     const std::size_t n = seen.size();
     glm::dvec3 mean(0);
-    for (const observation& o : seen) mean += glm::dvec3(o.colour) / double(n);
+    for (const observation& o : seen) mean += glm::dvec3(o.color) / double(n);
     std::vector<std::array<double, 16>> rows(n);
-    std::array<double, 16> centre{};
+    std::array<double, 16> center{};
     for (std::size_t i = 0; i < n; ++i) {
         sh_basis<double>(3, glm::dvec3(seen[i].direction), rows[i].data());
-        for (std::size_t k = 0; k < 16; ++k) centre[k] += rows[i][k] / double(n);
+        for (std::size_t k = 0; k < 16; ++k) center[k] += rows[i][k] / double(n);
     }
     // About their means, so that the constant is not held back.
     for (auto& row : rows)
-        for (std::size_t k = 0; k < 16; ++k) row[k] -= centre[k];
+        for (std::size_t k = 0; k < 16; ++k) row[k] -= center[k];
     std::vector<std::array<double, 4>> left(n);
     for (int degree = 0; degree <= 3; ++degree) {
         const auto size = static_cast<std::size_t>((degree + 1) * (degree + 1) - 1);
@@ -74,11 +74,11 @@ void add_residuals(const std::vector<observation>& seen, double ridge,
                 double sum = rows[i][a + 1];
                 for (std::size_t k = 0; k < a; ++k) sum -= factor[a][k] * whitened[i][k];
                 whitened[i][a] = sum / factor[a][a];
-                projected[a] += whitened[i][a] * (glm::dvec3(seen[i].colour) - mean);
+                projected[a] += whitened[i][a] * (glm::dvec3(seen[i].color) - mean);
             }
         for (std::size_t i = 0; i < n; ++i) {
             double own = 1 / double(n);  // what an observation adds to its own prediction
-            glm::dvec3 rest = glm::dvec3(seen[i].colour) - mean;
+            glm::dvec3 rest = glm::dvec3(seen[i].color) - mean;
             for (std::size_t a = 0; a < size; ++a) {
                 own += whitened[i][a] * whitened[i][a];
                 rest -= whitened[i][a] * projected[a];
@@ -140,7 +140,7 @@ direction_statistics measure_direction(const scene_statistics& statistics) {
     for (auto& seen : points) {
         std::erase_if(seen, [&](const observation& o) { return brightness.error[o.view] == 0; });
         keep_one_size(seen);
-        for (observation& o : seen) o.colour *= static_cast<float>(std::exp2(-brightness.log2[o.view]));
+        for (observation& o : seen) o.color *= static_cast<float>(std::exp2(-brightness.log2[o.view]));
     }
     std::erase_if(points,
                   [](const auto& seen) { return seen.size() < scene_statistics::least_photos_of_point; });

@@ -38,7 +38,7 @@ struct take_mean_color {
 
     WARPAGG_HD void operator()(std::size_t i) const {
         if (keeps[i] != 0 || !(errors[i].weight > 0)) return;
-        for (std::size_t c = 0; c < 3; ++c) sh0[aosoa_index(i, c, 3)] = sh_from_colour(errors[i].mean[c]);
+        for (std::size_t c = 0; c < 3; ++c) sh0[aosoa_index(i, c, 3)] = sh_from_color(errors[i].mean[c]);
     }
 };
 

@@ -18,18 +18,18 @@ namespace {
 
 float shown(float x) { return std::clamp(x, 0.0f, 1.0f); }
 
-/// A photo minus its picture, as a photo: four times as large, since bytes are coarse, around a grey of a
+/// A photo minus its image, as a photo: four times as large, since bytes are coarse, around a gray of a
 /// half.
-void leave_residual(image& photo, const std::vector<float>& picture, const exposure& e,
+void leave_residual(image& photo, const std::vector<float>& render, const exposure& e,
                     const std::array<float, 3>& background) {
     const std::vector<float> expected = over_background(photo, background.data());
-    const std::size_t n = picture.size() / 3;
+    const std::size_t n = render.size() / 3;
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t c = 0; c < 3; ++c) {
             float exposed = e[4 * c + 3];
-            for (std::size_t k = 0; k < 3; ++k) exposed += e[4 * c + k] * picture[k * n + i];
-            const float grey = 127.5f + 4 * 255 * (expected[c * n + i] - shown(exposed));
-            photo.rgba[4 * i + c] = static_cast<std::uint8_t>(std::lround(std::clamp(grey, 8.0f, 247.0f)));
+            for (std::size_t k = 0; k < 3; ++k) exposed += e[4 * c + k] * render[k * n + i];
+            const float gray = 127.5f + 4 * 255 * (expected[c * n + i] - shown(exposed));
+            photo.rgba[4 * i + c] = static_cast<std::uint8_t>(std::lround(std::clamp(gray, 8.0f, 247.0f)));
         }
 }
 
@@ -40,19 +40,19 @@ scene residual_of(const scene& of, train::engine& engine, const std::array<float
     residual.train = of.train;
     for (view& v : residual.train) v.depths = {};
     const std::vector<exposure> exposures = exposures_from(engine.feature("exposure").values());
-    std::vector<std::vector<float>> pictures(static_cast<std::size_t>(omp_get_max_threads()));
-    for (std::size_t first = 0; first < of.train.size(); first += pictures.size()) {
-        const std::size_t count = std::min(pictures.size(), of.train.size() - first);
+    std::vector<std::vector<float>> renders(static_cast<std::size_t>(omp_get_max_threads()));
+    for (std::size_t first = 0; first < of.train.size(); first += renders.size()) {
+        const std::size_t count = std::min(renders.size(), of.train.size() - first);
         for (std::size_t i = 0; i < count; ++i)
-            pictures[i] = engine.render(of.train[first + i].camera, background);
+            renders[i] = engine.render(of.train[first + i].camera, background);
         for_each_in_parallel(count, [&](std::size_t i) {
-            leave_residual(residual.train[first + i].pixels, pictures[i], exposures[first + i], background);
+            leave_residual(residual.train[first + i].pixels, renders[i], exposures[first + i], background);
         });
     }
     return residual;
 }
 
-/// By what the pictures of some training views change if colours have only bands up to this degree.
+/// By what the images of some training views change if colors have only bands up to this degree.
 double change_above(int degree, train::engine& engine, const scene& of,
                     const std::array<float, 3>& background) {
     const std::size_t views = std::min<std::size_t>(of.train.size(), 8);

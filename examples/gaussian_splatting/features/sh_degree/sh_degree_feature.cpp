@@ -22,8 +22,8 @@ train::sh_degree_state& state_of(train::engine& engine) {
 
 /// Revises the degree by what the model leaves of the photos, and reports the review.
 int revise(train::training& training, int sh_degree) {
-    const sh_review review = revise_sh_degree(training.engine(), training.scene(),
-                                              training.options().background.colour, sh_degree);
+    const sh_review review =
+        revise_sh_degree(training.engine(), training.scene(), training.options().background.color, sh_degree);
     auto& report = training.result().feature_reports["direction"];
     report["unexplained_half_way"] = review.unexplained;
     if (review.change) report["change_without_highest_band"] = *review.change;

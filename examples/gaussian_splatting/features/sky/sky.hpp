@@ -37,15 +37,15 @@ class sky {
         return planes_.data();
     }
 
-    /// From the gradient by a picture before what `draw` has drawn last.
-    void learn(const camera& camera, const float* transmittance, const float* by_picture, float rate,
-               const raster::list_capacity& room) {
+    /// From the gradient by a image before what `draw` has drawn last.
+    void learn(const camera& camera, const float* transmittance, const float* by_render, float rate,
+               const raster::list_capacity& capacity) {
         const train::ordered_sums sums = numbers_.sums(patches(camera));
         raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
             device_.for_each_warp(sums.warps, sky_backward<warp, Fisheye>{raster::for_device<real>(camera),
-                                                                          transmittance, by_picture, sums});
+                                                                          transmittance, by_render, sums});
         });
-        numbers_.learn(0, sums, rate, room);
+        numbers_.learn(0, sums, rate, capacity);
     }
 
   private:

@@ -23,12 +23,12 @@ constexpr std::size_t terms = sh_coefficients(sky_degree);
 /// A part of a photo without points.
 struct cell {
     std::array<double, terms> basis{};
-    glm::dvec3 colour{0};
+    glm::dvec3 color{0};
 };
 
-/// The mean colour of a square, if it is smooth, opaque, and not left out. Rows and columns are averaged
+/// The mean color of a square, if it is smooth, opaque, and not left out. Rows and columns are averaged
 /// before they are asked whether they differ: noise alone makes no texture.
-std::optional<glm::dvec3> smooth_colour(const image& photo, int left, int top, int side) {
+std::optional<glm::dvec3> smooth_color(const image& photo, int left, int top, int side) {
     std::vector<glm::dvec3> columns(static_cast<std::size_t>(side)), rows(static_cast<std::size_t>(side));
     glm::dvec3 mean(0);
     for (int y = 0; y < side; ++y)
@@ -37,10 +37,10 @@ std::optional<glm::dvec3> smooth_colour(const image& photo, int left, int top, i
                 &photo.rgba[4 * (static_cast<std::size_t>(top + y) * static_cast<std::size_t>(photo.width) +
                                  static_cast<std::size_t>(left + x))];
             if (rgba[3] != 255) return std::nullopt;
-            const glm::dvec3 colour = glm::dvec3(rgba[0], rgba[1], rgba[2]) / (255.0 * side);
-            columns[static_cast<std::size_t>(x)] += colour;
-            rows[static_cast<std::size_t>(y)] += colour;
-            mean += colour / double(side);
+            const glm::dvec3 color = glm::dvec3(rgba[0], rgba[1], rgba[2]) / (255.0 * side);
+            columns[static_cast<std::size_t>(x)] += color;
+            rows[static_cast<std::size_t>(y)] += color;
+            mean += color / double(side);
         }
     double square = 0;
     for (const auto* lines : {&columns, &rows})
@@ -55,7 +55,7 @@ struct photo_cells {
     std::size_t all = 0;
 };
 
-photo_cells cells_of(const view& v, const std::vector<coloured_point>& points) {
+photo_cells cells_of(const view& v, const std::vector<colored_point>& points) {
     const camera& c = v.camera;
     const int side = std::max(4, std::max(c.width, c.height) / cells_along);
     const int across = c.width / side, down = c.height / side;
@@ -63,7 +63,7 @@ photo_cells cells_of(const view& v, const std::vector<coloured_point>& points) {
     if (across < 1 || down < 1) return found;
     // Whether points lie in a cell or beside it.
     std::vector<char> near_points(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 0);
-    for (const coloured_point& point : points) {
+    for (const colored_point& point : points) {
         const auto p = c.see(point.position);
         if (!p) continue;
         const double x = p->x / side, y = p->y / side;
@@ -78,24 +78,24 @@ photo_cells cells_of(const view& v, const std::vector<coloured_point>& points) {
     for (int row = 0; row < down; ++row)
         for (int column = 0; column < across; ++column) {
             if (near_points[static_cast<std::size_t>(row * across + column)] != 0) continue;
-            const auto colour = smooth_colour(v.pixels, column * side, row * side, side);
-            if (!colour) continue;
+            const auto color = smooth_color(v.pixels, column * side, row * side, side);
+            if (!color) continue;
             cell one;
-            one.colour = *colour;
+            one.color = *color;
             sh_basis<double>(sky_degree, c.ray((column + 0.5) * side, (row + 0.5) * side), one.basis.data());
             found.empty.push_back(one);
         }
     return found;
 }
 
-/// Normal equations of colours by harmonics.
+/// Normal equations of colors by harmonics.
 struct equations {
     std::array<std::array<double, terms>, terms> left{};
     std::array<glm::dvec3, terms> right{};
 
     void add(const cell& c, double weight) {
         for (std::size_t a = 0; a < terms; ++a) {
-            right[a] += weight * c.basis[a] * (c.colour - 0.5);
+            right[a] += weight * c.basis[a] * (c.color - 0.5);
             for (std::size_t b = 0; b <= a; ++b) left[a][b] += weight * c.basis[a] * c.basis[b];
         }
     }
@@ -128,7 +128,7 @@ struct equations {
 };
 
 double distance(const cell& c, const std::array<glm::dvec3, terms>& sky) {
-    glm::dvec3 rest = c.colour - 0.5;
+    glm::dvec3 rest = c.color - 0.5;
     for (std::size_t k = 0; k < terms; ++k) rest -= c.basis[k] * sky[k];
     return std::sqrt(glm::dot(rest, rest) / 3);
 }
@@ -143,7 +143,7 @@ sky_fit fit_sky(const scene& of, const std::vector<double>& brighter) {
     for_each_in_parallel(photos.size(), [&](std::size_t v) {
         photos[v] = cells_of(of.train[v], of.points);
         if (brighter.empty()) return;
-        for (cell& c : photos[v].empty) c.colour *= std::exp2(-brighter[v]);
+        for (cell& c : photos[v].empty) c.color *= std::exp2(-brighter[v]);
     });
     std::vector<std::vector<double>> rest(photos.size());
     std::size_t all = 0, empty = 0;
@@ -175,16 +175,16 @@ sky_fit fit_sky(const scene& of, const std::vector<double>& brighter) {
         });
     }
     std::size_t predicted = 0;
-    glm::dvec3 colours(0);
+    glm::dvec3 colors(0);
     for (std::size_t v = 0; v < photos.size(); ++v)
         for (std::size_t i = 0; i < rest[v].size(); ++i) {
             if (rest[v][i] > sky_tolerance) continue;
             ++predicted;
-            colours += photos[v].empty[i].colour;
+            colors += photos[v].empty[i].color;
         }
     found.empty = static_cast<double>(empty) / static_cast<double>(all);
     found.share = static_cast<double>(predicted) / static_cast<double>(all);
-    if (predicted > 0) found.brightness = (colours.r + colours.g + colours.b) / (3.0 * double(predicted));
+    if (predicted > 0) found.brightness = (colors.r + colors.g + colors.b) / (3.0 * double(predicted));
     for (const glm::dvec3& x : sum.solve())
         for (int c = 0; c < 3; ++c) found.coefficients.push_back(static_cast<float>(x[c]));
     return found;

@@ -8,7 +8,7 @@
 
 namespace gs::features {
 
-/// What the training photos show of a sky: smooth parts in which the scene has no points, whose colours
+/// What the training photos show of a sky: smooth parts in which the scene has no points, whose colors
 /// depend on the direction alone, so that the other photos tell what one photo has there.
 struct sky_fit {
     bool is_asked = false;            ///< the scene has points

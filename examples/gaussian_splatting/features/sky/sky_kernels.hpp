@@ -12,11 +12,11 @@
 
 namespace gs::features {
 
-/// Of a sky. Its colour in a direction is 0.5 + the sum of coefficients times harmonics, as a Gaussian's, but
+/// Of a sky. Its color in a direction is 0.5 + the sum of coefficients times harmonics, as a Gaussian's, but
 /// not held to any range.
 inline constexpr unsigned sky_coefficients = sh_coefficients(sky_degree);
 
-/// Pixels of a picture for a warp: as many columns as it has lanes, of some rows. `Fisheye`: the camera has
+/// Pixels of a image for a warp: as many columns as it has lanes, of some rows. `Fisheye`: the camera has
 /// such a lens.
 template <class W, bool Fisheye>
 struct sky_patch {
@@ -24,7 +24,7 @@ struct sky_patch {
 
     unsigned left;              ///< the first column
     int first, last;            ///< rows: [first, last)
-    warpagg::mask_t<W> inside;  ///< lanes whose column the picture has
+    warpagg::mask_t<W> inside;  ///< lanes whose column the image has
 
     static constexpr int rows = 8;
 
@@ -52,7 +52,7 @@ struct sky_patch {
     }
 };
 
-/// The sky behind a picture.
+/// The sky behind a image.
 template <class W, bool Fisheye>
 struct draw_sky {
     using real = warpagg::value_t<W, float>;
@@ -70,18 +70,18 @@ struct draw_sky {
             patch.basis(w, camera, row, basis);
             WARPAGG_UNROLL
             for (unsigned c = 0; c < 3; ++c) {
-                real colour(0.5f);
+                real color(0.5f);
                 WARPAGG_UNROLL
                 for (unsigned k = 0; k < sky_coefficients; ++k)
-                    colour = warpagg::math::fma(basis[k], real(sky[3 * k + c]), colour);
+                    color = warpagg::math::fma(basis[k], real(sky[3 * k + c]), color);
                 w.store_row(planes, c * plane + static_cast<std::ptrdiff_t>(row) * camera.width + patch.left,
-                            colour, patch.inside);
+                            color, patch.inside);
             }
         }
     }
 };
 
-/// The sums of the gradients by the sky's coefficients, from that by the picture and what is left of light
+/// The sums of the gradients by the sky's coefficients, from that by the image and what is left of light
 /// from behind it.
 template <class W, bool Fisheye>
 struct sky_backward {
@@ -89,7 +89,7 @@ struct sky_backward {
 
     raster::device_camera<real> camera;
     const float* transmittance;
-    const float* by_picture;   ///< three planes
+    const float* by_render;    ///< three planes
     train::ordered_sums sums;  ///< of `sky_patch::count` warps
 
     WARPAGG_EXEC_CHECK_DISABLE
@@ -106,7 +106,7 @@ struct sky_backward {
             patch.basis(w, camera, row, basis);
             WARPAGG_UNROLL
             for (unsigned c = 0; c < 3; ++c) {
-                const real g = T * w.load_row(by_picture, c * plane + at, patch.inside);
+                const real g = T * w.load_row(by_render, c * plane + at, patch.inside);
                 WARPAGG_UNROLL
                 for (unsigned k = 0; k < sky_coefficients; ++k)
                     total[3 * k + c] = warpagg::math::fma(basis[k], g, total[3 * k + c]);

@@ -28,8 +28,8 @@ class l1_ssim final : public loss<Real> {
                          static_cast<std::size_t>(target.height));
     }
 
-    const Real* gradient(const Real* render, const raster::list_capacity& room) override {
-        comparison_.compare(render, room);
+    const Real* gradient(const Real* render, const raster::list_capacity& capacity) override {
+        comparison_.compare(render, capacity);
         comparison_.is_masked() ? differentiate<true>() : differentiate<false>();
         return gradient_.data();
     }

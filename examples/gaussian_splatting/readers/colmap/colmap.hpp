@@ -44,7 +44,7 @@ struct colmap_image {
 struct colmap_model {
     std::vector<colmap_camera> cameras;  ///< sorted by id
     std::vector<colmap_image> images;    ///< in the file's order
-    std::vector<coloured_point> points;
+    std::vector<colored_point> points;
     std::string names;                  ///< of the images, each with a terminating zero
     std::filesystem::path images_file;  ///< the file with the images, for messages
 

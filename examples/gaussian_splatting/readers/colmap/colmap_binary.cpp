@@ -119,11 +119,11 @@ void read_binary_points(const std::filesystem::path& file, colmap_model& model) 
     for (std::size_t i = 0; i < count; ++i) {
         reader.take<std::uint64_t>();  // its id
         const auto position = reader.take_doubles<3>();
-        glm::u8vec3 colour;
-        for (int channel = 0; channel < 3; ++channel) colour[channel] = reader.take<std::uint8_t>();
+        glm::u8vec3 color;
+        for (int channel = 0; channel < 3; ++channel) color[channel] = reader.take<std::uint8_t>();
         reader.take<double>();  // its reprojection error
         reader.skip_records(track_element);
-        add_point(model, position, colour, reader.file());
+        add_point(model, position, color, reader.file());
     }
     reader.expect_end();
 }

@@ -34,7 +34,7 @@ void add_camera(colmap_model& model, std::uint32_t id, const camera_model& kind,
 void add_image(colmap_model& model, const std::array<double, 4>& quaternion,
                const std::array<double, 3>& translation, std::uint32_t camera_id, std::string_view name,
                const std::string& where);
-void add_point(colmap_model& model, const std::array<double, 3>& position, glm::u8vec3 colour,
+void add_point(colmap_model& model, const std::array<double, 3>& position, glm::u8vec3 color,
                const std::string& where);
 
 }  // namespace gs

@@ -58,11 +58,11 @@ void add_image(colmap_model& model, const std::array<double, 4>& quaternion,
     model.images.push_back(added);
 }
 
-void add_point(colmap_model& model, const std::array<double, 3>& position, glm::u8vec3 colour,
+void add_point(colmap_model& model, const std::array<double, 3>& position, glm::u8vec3 color,
                const std::string& where) {
     const glm::dvec3 place(position[0], position[1], position[2]);
     if (!is_valid_position(place)) throw error(where + ": the position of a point" + invalid_position);
-    model.points.push_back({place, colour});
+    model.points.push_back({place, color});
 }
 
 }  // namespace gs

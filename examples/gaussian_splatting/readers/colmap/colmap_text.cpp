@@ -149,16 +149,15 @@ void read_text_images(const std::filesystem::path& file, colmap_model& model) {
 
 void read_text_points(const std::filesystem::path& file, colmap_model& model) {
     text_reader reader(file);
-    model.points.reserve(reader.count_records<coloured_point>(1, "1 0 0 0 0 0 0 0\n"));
+    model.points.reserve(reader.count_records<colored_point>(1, "1 0 0 0 0 0 0 0\n"));
     while (reader.next_record()) {
         reader.number<std::uint64_t>("the point's id");
         const auto position = reader.doubles<3>("a coordinate");
-        glm::u8vec3 colour;
-        for (int channel = 0; channel < 3; ++channel)
-            colour[channel] = reader.number<std::uint8_t>("a colour");
+        glm::u8vec3 color;
+        for (int channel = 0; channel < 3; ++channel) color[channel] = reader.number<std::uint8_t>("a color");
         reader.number<double>("the reprojection error");
         reader.expect_groups_of(2, "the point's track");
-        add_point(model, position, colour, reader.where());
+        add_point(model, position, color, reader.where());
     }
 }
 

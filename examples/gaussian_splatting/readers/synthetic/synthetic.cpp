@@ -46,7 +46,7 @@ struct albedo {
 };
 
 struct ball {
-    vec centre;
+    vec center;
     double radius;
     albedo paint;
 };
@@ -94,15 +94,15 @@ world spheres_world() {
 world alpha_world() {
     world w;
     w.balls = {{{0, 0, 0}, 0.55, {{0.06, 0.26, 0.50}, {0.92, 0.70, 0.38}, pattern::bands, {4, -3, 14}}}};
-    const vec colours[] = {{0.90, 0.26, 0.14}, {0.95, 0.65, 0.10}, {0.30, 0.66, 0.22},
-                           {0.08, 0.55, 0.60}, {0.45, 0.22, 0.72}, {0.88, 0.25, 0.50}};
+    const vec colors[] = {{0.90, 0.26, 0.14}, {0.95, 0.65, 0.10}, {0.30, 0.66, 0.22},
+                          {0.08, 0.55, 0.60}, {0.45, 0.22, 0.72}, {0.88, 0.25, 0.50}};
     for (int i = 0; i < 6; ++i) {
         const double angle = i * std::numbers::pi / 3;
         const double radius = 0.15 + 0.03 * (i % 3);
-        const vec centre{0.95 * std::cos(angle), 0.95 * std::sin(angle), 0.3 * std::sin(2 * angle)};
-        const vec& colour = colours[i];
+        const vec center{0.95 * std::cos(angle), 0.95 * std::sin(angle), 0.3 * std::sin(2 * angle)};
+        const vec& color = colors[i];
         const pattern kind = i % 2 == 0 ? pattern::checks : pattern::bands;
-        w.balls.push_back({centre, radius, {colour, 0.5 * colour + 0.45, kind, {14, 14, 14}}});
+        w.balls.push_back({center, radius, {color, 0.5 * color + 0.45, kind, {14, 14, 14}}});
     }
     w.transparent = true;
     return w;
@@ -135,7 +135,7 @@ world world_of(const std::string& text) {
 /// pixel.
 double rounded_square_wave(double sine) { return sine / std::sqrt(sine * sine + 0.15) * std::sqrt(1.15); }
 
-vec colour_at(const albedo& paint, const vec& p) {
+vec color_at(const albedo& paint, const vec& p) {
     double wave = 0;
     if (paint.kind == pattern::bands) {
         wave = std::sin(glm::dot(paint.wave, p));
@@ -148,7 +148,7 @@ vec colour_at(const albedo& paint, const vec& p) {
 /// The distance along the ray to its entry into the ball. Preconditions: `direction` has length
 /// one, and the ray starts outside.
 double distance_to(const ball& b, const vec& origin, const vec& direction) {
-    const vec to_origin = origin - b.centre;
+    const vec to_origin = origin - b.center;
     const double along = glm::dot(to_origin, direction);
     const double discriminant = along * along - glm::dot(to_origin, to_origin) + b.radius * b.radius;
     if (discriminant < 0) return std::numeric_limits<double>::infinity();
@@ -175,11 +175,11 @@ std::optional<surface_point> first_hit(const world& w, const vec& origin, const 
     }
     if (w.ground && distance_to(*w.ground, origin, direction) < nearest) {
         const vec p = origin + distance_to(*w.ground, origin, direction) * direction;
-        return surface_point{p, {0, 0, 1}, colour_at(w.ground->paint, p)};
+        return surface_point{p, {0, 0, 1}, color_at(w.ground->paint, p)};
     }
     if (hit == nullptr) return std::nullopt;
     const vec p = origin + nearest * direction;
-    return surface_point{p, (p - hit->centre) / hit->radius, colour_at(hit->paint, p - hit->centre)};
+    return surface_point{p, (p - hit->center) / hit->radius, color_at(hit->paint, p - hit->center)};
 }
 
 /// The visible share of a round sun with the angular radius `sun_softness` if one ball occludes it:
@@ -187,19 +187,19 @@ std::optional<surface_point> first_hit(const world& w, const vec& origin, const 
 /// away from the sun.
 double sun_past(const ball& b, const vec& position, const vec& sun) {
     constexpr double sun_softness = 0.12;
-    const vec to_centre = b.centre - position;
-    const double along = glm::dot(to_centre, sun);
+    const vec to_center = b.center - position;
+    const double along = glm::dot(to_center, sun);
     if (along <= 0) return 1;
-    const double miss = glm::length(to_centre - along * sun);
+    const double miss = glm::length(to_center - along * sun);
     return glm::smoothstep(b.radius - sun_softness * along, b.radius + sun_softness * along, miss);
 }
 
 /// The visible share of the sky if one ball occludes it: one minus its solid angle, weighted by the
 /// cosine.
 double sky_past(const ball& b, const surface_point& s) {
-    const vec to_centre = b.centre - s.position;
-    const double distance = glm::length(to_centre);
-    const double cosine = glm::dot(s.normal, to_centre) / distance;
+    const vec to_center = b.center - s.position;
+    const double distance = glm::length(to_center);
+    const double cosine = glm::dot(s.normal, to_center) / distance;
     return 1 - std::max(cosine, 0.0) * b.radius * b.radius / (distance * distance);
 }
 
@@ -223,9 +223,9 @@ vec sky(const world& w, const vec& direction) {
 /// (Schlick's formula). Precondition: `to_eye` has length one.
 vec shade(const world& w, const surface_point& s, const vec& to_eye) {
     static const vec sun_direction = to_sun();
-    const vec sun_colour{0.90, 0.83, 0.71};
-    const vec sky_colour{0.25, 0.31, 0.40};
-    const vec bounce_colour{0.13, 0.11, 0.10};
+    const vec sun_color{0.90, 0.83, 0.71};
+    const vec sky_color{0.25, 0.31, 0.40};
+    const vec bounce_color{0.13, 0.11, 0.10};
 
     double sun = std::max(glm::dot(s.normal, sun_direction), 0.0);
     double sky = 1;
@@ -233,9 +233,9 @@ vec shade(const world& w, const surface_point& s, const vec& to_eye) {
         if (sun > 0) sun *= sun_past(b, s.position, sun_direction);
         sky *= sky_past(b, s);
     }
-    const vec ambient = glm::mix(bounce_colour, sky_colour, 0.5 + 0.5 * s.normal.z);
+    const vec ambient = glm::mix(bounce_color, sky_color, 0.5 + 0.5 * s.normal.z);
     const double pool = pool_of_light(w, s.position);
-    vec colour = pool * (sun * sun_colour + sky * ambient) * s.albedo;
+    vec color = pool * (sun * sun_color + sky * ambient) * s.albedo;
     if (w.how.gloss > 0) {
         const double facing = std::max(glm::dot(s.normal, to_eye), 0.0);
         const vec mirrored = 2 * facing * s.normal - to_eye;
@@ -243,10 +243,10 @@ vec shade(const world& w, const surface_point& s, const vec& to_eye) {
         const double lobe =
             sun > 0 ? std::pow(std::max(glm::dot(mirrored, sun_direction), 0.0), sharpness) : 0;
         const double share = w.how.gloss * (head_on + (1 - head_on) * std::pow(1 - facing, 5));
-        colour += pool * share *
-                  (2 * lobe * sun_colour + glm::mix(bounce_colour, 2.0 * sky_colour, 0.5 + 0.5 * mirrored.z));
+        color += pool * share *
+                 (2 * lobe * sun_color + glm::mix(bounce_color, 2.0 * sky_color, 0.5 + 0.5 * mirrored.z));
     }
-    return glm::sqrt(glm::clamp(colour, 0.0, 1.0));
+    return glm::sqrt(glm::clamp(color, 0.0, 1.0));
 }
 
 std::uint8_t to_byte(double in_unit_interval) {
@@ -266,12 +266,12 @@ camera spiral_camera(int i, int size, const synthetic_parameters& how) {
     const double farther = how.distance * std::pow(how.scales, std::fmod(i * std::numbers::sqrt2, 1.0));
     const vec eye =
         farther * camera_distance * vec{across * std::cos(angle), across * std::sin(angle), height};
-    const auto looking = [&](double reach) {
-        return look_at(eye, vec{0}, {0, 0, 1}, size, 0.5 * size / reach);
+    const auto looking = [&](double radius) {
+        return look_at(eye, vec{0}, {0, 0, 1}, size, 0.5 * size / radius);
     };
     if (how.fisheye == 0) return looking(std::tan(0.5 * field_of_view));
     const fisheye lens({0.02, -0.006, 0.001, -0.0001});  // similar to lenses of action cameras
-    camera c = looking(lens.reach(how.fisheye * std::numbers::pi / 360));
+    camera c = looking(lens.radius(how.fisheye * std::numbers::pi / 360));
     c.fisheye = lens;
     return c;
 }
@@ -292,11 +292,11 @@ double exposure_of(const world& w, std::size_t photo) {
 }
 
 void render_row(const world& w, const camera& c, std::size_t photo, int row, std::uint8_t* rgba) {
-    const vec origin = c.centre();
+    const vec origin = c.center();
     const double exposure = w.how.exposure > 0 ? exposure_of(w, photo) : 1;
     std::mt19937_64 random((photo << 32) + static_cast<std::size_t>(row));
     for (int column = 0; column < c.width; ++column, rgba += 4) {
-        vec colour{0};
+        vec color{0};
         int hits = 0;
         for (int sample = 0; sample < samples_per_side * samples_per_side; ++sample) {
             const double x = column + (sample % samples_per_side + 0.5) / samples_per_side;
@@ -304,13 +304,13 @@ void render_row(const world& w, const camera& c, std::size_t photo, int row, std
             const vec direction = c.ray(x, y);
             const std::optional<surface_point> hit = first_hit(w, origin, direction);
             if (!hit && w.how.sky == 0) continue;
-            colour += hit ? shade(w, *hit, -direction) : sky(w, direction);
+            color += hit ? shade(w, *hit, -direction) : sky(w, direction);
             ++hits;
         }
         constexpr double weight = 1.0 / (samples_per_side * samples_per_side);
         rgba[3] = w.transparent ? to_byte(weight * hits) : std::uint8_t{255};
         for (int channel = 0; channel < 3; ++channel) {
-            double shown = exposure * weight * colour[channel];
+            double shown = exposure * weight * color[channel];
             if (w.how.noise > 0 && hits > 0) shown += w.how.noise * normal(random);
             const double most = rgba[3] / 255.0;  // premultiplied
             rgba[channel] = to_byte(std::clamp(shown, 0.0, most));
@@ -323,8 +323,8 @@ void paint_passer(const world& w, std::size_t photo, bool masks, image& pixels) 
     std::mt19937_64 random(photo + (std::uint64_t{1} << 63));
     const double x = uniform(random) * pixels.width, y = uniform(random) * pixels.height;
     const double square = w.how.passers * pixels.width * pixels.height / std::numbers::pi;
-    std::uint8_t colour[4] = {0, 0, 0, 255};
-    for (int c = 0; c < 3; ++c) colour[c] = to_byte(uniform(random));
+    std::uint8_t color[4] = {0, 0, 0, 255};
+    for (int c = 0; c < 3; ++c) color[c] = to_byte(uniform(random));
     std::size_t i = 0;
     for (int row = 0; row < pixels.height; ++row)
         for (int column = 0; column < pixels.width; ++column, ++i) {
@@ -333,7 +333,7 @@ void paint_passer(const world& w, std::size_t photo, bool masks, image& pixels) 
             if (masks)
                 pixels.mask_pixel(i);
             else
-                std::copy(colour, colour + 4, &pixels.rgba[4 * i]);
+                std::copy(color, color + 4, &pixels.rgba[4 * i]);
         }
 }
 
@@ -345,7 +345,7 @@ depth_map estimated_depths(const world& w, const camera& c, std::size_t photo) {
     std::vector<double> inverse;
     for (int row = 0; row < c.height; ++row)
         for (int column = 0; column < c.width; ++column) {
-            const std::optional<surface_point> hit = first_hit(w, c.centre(), c.ray(column + 0.5, row + 0.5));
+            const std::optional<surface_point> hit = first_hit(w, c.center(), c.ray(column + 0.5, row + 0.5));
             const auto seen = hit ? c.see(hit->position) : std::nullopt;
             inverse.push_back(seen ? 1 / seen->depth : 0);
         }
@@ -403,20 +403,20 @@ std::vector<view> spread(std::vector<view> all, std::size_t count) {
 
 /// Points at which rays through random pixels of random views hit a surface. As in a cloud from
 /// structure from motion, a camera sees each point, and points are denser where more cameras look.
-std::vector<coloured_point> seen_points(const world& w, const std::vector<view>& views, std::size_t count,
-                                        std::uint64_t seed) {
+std::vector<colored_point> seen_points(const world& w, const std::vector<view>& views, std::size_t count,
+                                       std::uint64_t seed) {
     std::mt19937_64 random(seed);
-    std::vector<coloured_point> points;
+    std::vector<colored_point> points;
     while (points.size() < count) {
         const auto chosen = static_cast<std::size_t>(uniform(random) * static_cast<double>(views.size()));
         const camera& c = views[chosen].camera;
         const double x = uniform(random) * c.width;
         const double y = uniform(random) * c.height;
         const vec direction = c.ray(x, y);
-        const std::optional<surface_point> hit = first_hit(w, c.centre(), direction);
+        const std::optional<surface_point> hit = first_hit(w, c.center(), direction);
         if (!hit) continue;
-        const vec colour = shade(w, *hit, -direction);
-        points.push_back({hit->position, {to_byte(colour.r), to_byte(colour.g), to_byte(colour.b)}});
+        const vec color = shade(w, *hit, -direction);
+        points.push_back({hit->position, {to_byte(color.r), to_byte(color.g), to_byte(color.b)}});
     }
     return points;
 }
@@ -489,8 +489,8 @@ void photograph_synthetic(const std::string& name, std::vector<view>& views) {
     take_photos(world_of(name), views);
 }
 
-std::vector<coloured_point> synthetic_points(const std::string& name, const std::vector<view>& views,
-                                             std::size_t count, std::uint64_t seed) {
+std::vector<colored_point> synthetic_points(const std::string& name, const std::vector<view>& views,
+                                            std::size_t count, std::uint64_t seed) {
     return seen_points(world_of(name), views, count, seed);
 }
 

@@ -31,7 +31,7 @@ void photograph_synthetic(const std::string& name, std::vector<view>& views);
 
 /// Draws `count` further surface points of the scene `name`. Precondition: some view sees a
 /// surface.
-std::vector<coloured_point> synthetic_points(const std::string& name, const std::vector<view>& views,
-                                             std::size_t count, std::uint64_t seed);
+std::vector<colored_point> synthetic_points(const std::string& name, const std::vector<view>& views,
+                                            std::size_t count, std::uint64_t seed);
 
 }  // namespace gs

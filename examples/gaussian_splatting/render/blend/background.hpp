@@ -8,21 +8,21 @@
 
 namespace gs::raster {
 
-/// What lies behind all splats, where `at` a pixel's place in a plane: one colour, or one a pixel.
+/// What lies behind all splats, where `at` a pixel's place in a plane: one color, or one a pixel.
 /// @{
 template <class Real>
 struct constant_background {
-    vec3<Real> colour;
+    vec3<Real> color;
 
     template <class W>
     WARPAGG_HD warpagg::value_t<W, Real> at(const W&, const warpagg::value_t<W, unsigned>&, unsigned channel,
                                             unsigned, const warpagg::mask_t<W>&) const {
-        return warpagg::value_t<W, Real>(colour[static_cast<int>(channel)]);
+        return warpagg::value_t<W, Real>(color[static_cast<int>(channel)]);
     }
 };
 template <class Real>
 struct image_background {
-    const Real* planes;  ///< three, as the picture's
+    const Real* planes;  ///< three, as the image's
 
     template <class W>
     WARPAGG_HD warpagg::value_t<W, Real> at(const W& w, const warpagg::value_t<W, unsigned>& pixel,

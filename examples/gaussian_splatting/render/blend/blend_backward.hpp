@@ -30,16 +30,16 @@ using sum_in_memory = typename sum_of<Real, Policy>::type;
 template <class Real, class Backdrop = constant_background<Real>>
 struct blended {
     Backdrop background;
-    const Real* picture;        ///< three planes
+    const Real* render;         ///< three planes
     const Real* transmittance;  ///< and what else `blend_forward` writes
     const std::uint32_t* last;
     Real* checkpoints;
-    const Real* gradient;  ///< dL/dpicture: three planes
+    const Real* gradient;  ///< dL/dimage: three planes
 };
 
 /// The gradient of `blend_forward`: back to front over what each pixel saw, T recovered by division, nine
 /// sums a Gaussian (see `sum`) handed to `warp_reduce_atomic` with `Policy`. With g = dL/dC and B_i the
-/// colour behind splat i per unit of transmittance, background included, dL/dalpha_i = T_i g (c_i - B_i): one
+/// color behind splat i per unit of transmittance, background included, dL/dalpha_i = T_i g (c_i - B_i): one
 /// scalar g B is carried instead of three channels, and nothing is divided by 1 - alpha but T. A lane's
 /// pixels lie in a column, where u is the same: it is multiplied into the sums once. `Split`: one warp a
 /// patch and segment, else one a patch. `AskFirst`: skip what no pixel of the patch sees before any of it is
@@ -147,7 +147,7 @@ struct blend_backward {
                 checkpoint<W, Real, Patch>(view.checkpoints, tile + next, in_tile).load(w, k, front);
                 real rest(0);
                 for (unsigned c = 0; c < 3; ++c)
-                    rest = fma(g[c], w.load(view.picture, at + c * plane, p.inside[k]) - front[c + 1], rest);
+                    rest = fma(g[c], w.load(view.render, at + c * plane, p.inside[k]) - front[c + 1], rest);
                 T = select(later, front[0], T);
                 behind = select(later, rest / front[0], behind);
             }
@@ -161,12 +161,12 @@ struct blend_backward {
         const unsigned rank = s.rank();
         const unsigned record = s.gaussian() * record_stride;
         const column_view<W, Real> seen(s, p.x);
-        real v[rows], strength[rows];
+        real v[rows], log2_alpha[rows];
         mask_t<W> counts[rows];
         const std::uint32_t reached = rows_with<Cut>(w, [&](unsigned k) {
             v[k] = seen.v(p.y + Real(k * Patch::block));
-            strength[k] = seen.strength(v[k]);
-            return counts[k] = is_hit(strength[k]) && end[k] >= rank;
+            log2_alpha[k] = seen.log2_alpha(v[k]);
+            return counts[k] = is_hit(log2_alpha[k]) && end[k] >= rank;
         });
         if constexpr (Cut::sparse) {
             if (reached == 0) return;
@@ -179,7 +179,7 @@ struct blend_backward {
         for (real& x : part) x = real(0);
         for_each_row<Cut>(reached, [&](unsigned k) {
             auto& [g, T, behind] = pixels[k];
-            const capped_alpha<W, Real> capped(strength[k]);
+            const capped_alpha<W, Real> capped(log2_alpha[k]);
             const real alpha = select(counts[k], capped.alpha, real(0));
             T = warpagg::math::divide(T, Real(1) - alpha);
             const real weight = alpha * T;

@@ -18,7 +18,7 @@ struct blend_forward {
     tile_order order;
     Backdrop background;
 
-    Real* picture;              ///< three planes
+    Real* render;               ///< three planes
     Real* transmittance;        ///< what is left behind the last splat
     std::uint32_t* last;        ///< one past the place, in the tile's list, of the last splat that counted
     Real* checkpoints;          ///< by segment: see there
@@ -41,7 +41,7 @@ struct blend_forward {
         const patch p(w, tile, in_tile, lists.tiles_across, lists.width, lists.height);
         const tile_range range = lists.ranges[tile];
 
-        real state[rows][4];  // T, negative once the pixel has ended, and the colour so far
+        real state[rows][4];  // T, negative once the pixel has ended, and the color so far
         value_t<W, unsigned> end[rows];
         for (unsigned k = 0; k < rows; ++k) {
             state[k][0] = select(p.inside[k], real(1), real(-1));
@@ -67,14 +67,14 @@ struct blend_forward {
                 const staged_splat<Real>& s = stage.splats[i];
                 const value_t<W, unsigned> rank(s.rank());
                 const column_view<W, Real> seen(s, p.x);
-                real strength[rows];
+                real log2_alpha[rows];
                 const std::uint32_t reached = rows_with<Cut>(w, [&](unsigned k) {
-                    strength[k] = seen.strength(seen.v(p.y + Real(k * patch::block)));
-                    return is_hit(strength[k]);
+                    log2_alpha[k] = seen.log2_alpha(seen.v(p.y + Real(k * patch::block)));
+                    return is_hit(log2_alpha[k]);
                 });
                 for_each_row<Cut>(reached & living, [&](unsigned k) {
-                    const mask_t<W> hit = is_hit(strength[k]);
-                    const real alpha = capped_alpha<W, Real>(strength[k]).alpha;
+                    const mask_t<W> hit = is_hit(log2_alpha[k]);
+                    const real alpha = capped_alpha<W, Real>(log2_alpha[k]).alpha;
                     real& T = state[k][0];
                     const real behind = fma(-alpha, T, T);
                     const mask_t<W> counts = hit && behind >= real(Real(least_transmittance));
@@ -102,7 +102,7 @@ struct blend_forward {
             const auto pixel = p.pixel + k * p.step;
             const real T = warpagg::math::abs(state[k][0]);
             for (unsigned c = 0; c < 3; ++c)
-                w.store(picture, pixel + c * plane,
+                w.store(render, pixel + c * plane,
                         fma(T, background.at(w, pixel, c, plane, p.inside[k]), state[k][c + 1]), p.inside[k]);
             w.store(transmittance, pixel, T, p.inside[k]);
             w.store(last, pixel, end[k], p.inside[k]);

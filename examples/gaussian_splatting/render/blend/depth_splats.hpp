@@ -28,7 +28,7 @@ struct depth_splats {
     }
 };
 
-/// The sum of red becomes that of inverse depths, and is zero again for the picture's own. One index a
+/// The sum of red becomes that of inverse depths, and is zero again for the image's own. One index a
 /// Gaussian.
 template <class Sum>
 struct set_red_aside {

@@ -12,7 +12,7 @@ namespace gs::raster {
 template <class Real>
 struct alignas(16) staged_splat {
     Real p, u0, r, v0;
-    Real q, strength, red, green;
+    Real q, log2_opacity, red, green;
     Real blue;
     Real rank_bits, gaussian_bits;  ///< of whole numbers: all of it is stored as `Real`
     Real unused;
@@ -32,14 +32,14 @@ struct column_view {
 
     WARPAGG_HD column_view(const staged_splat<Real>& s, const real& x)
         : u(fma(real(s.p), x, real(s.u0))),
-          left_(fma(-u, u, real(s.strength))),
+          left_(fma(-u, u, real(s.log2_opacity))),
           shear_(fma(real(s.r), x, real(s.v0))),
           q_(s.q) {}
 
     WARPAGG_HD real v(const real& y) const { return fma(q_, y, shear_); }
     /// log2 of alpha there, before it is capped. Forward and backward share it, and its rounding is pinned,
     /// so that both see the same alpha to the bit.
-    WARPAGG_HD real strength(const real& v) const { return fma(-v, v, left_); }
+    WARPAGG_HD real log2_alpha(const real& v) const { return fma(-v, v, left_); }
 
   private:
     real left_, shear_, q_;

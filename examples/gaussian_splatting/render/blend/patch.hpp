@@ -22,12 +22,12 @@ struct patch {
     static_assert(W::size % across == 0 && tile_size % across == 0 && tile_size % down == 0);
     static constexpr unsigned per_row = tile_size / across, per_tile = per_row * (tile_size / down);
 
-    Real tile_left, tile_top;    ///< centre of the tile's first pixel
-    Real left, top;              ///< centre of the patch's first pixel
+    Real tile_left, tile_top;    ///< center of the tile's first pixel
+    Real left, top;              ///< center of the patch's first pixel
     value_t<W, Real> x, y;       ///< the lane's first pixel, from the tile's
-    value_t<W, unsigned> pixel;  ///< its place in a plane of the picture
+    value_t<W, unsigned> pixel;  ///< its place in a plane of the image
     unsigned step;               ///< from one pixel of the lane to its next
-    mask_t<W> inside[rows];      ///< they are in the picture
+    mask_t<W> inside[rows];      ///< they are in the image
 
     WARPAGG_HD patch(const W& w, unsigned tile, unsigned in_tile, unsigned tiles_across, int width,
                      int height)
@@ -51,9 +51,9 @@ struct patch {
 
 /// Alpha is at least `least_alpha`.
 template <class V>
-WARPAGG_HD auto is_hit(const V& strength) {
+WARPAGG_HD auto is_hit(const V& log2_alpha) {
     constexpr double log2_least_alpha = -7.994353436858858;
-    return strength >= V(warpagg::scalar_t<V>(log2_least_alpha));
+    return log2_alpha >= V(warpagg::scalar_t<V>(log2_least_alpha));
 }
 
 /// Some pixel of the lane.
@@ -92,8 +92,8 @@ struct capped_alpha {
     value_t<W, Real> alpha;
     mask_t<W> free;
 
-    WARPAGG_HD explicit capped_alpha(const value_t<W, Real>& strength) {
-        const value_t<W, Real> most{Real(most_alpha)}, full = warpagg::math::exp2(strength);
+    WARPAGG_HD explicit capped_alpha(const value_t<W, Real>& log2_alpha) {
+        const value_t<W, Real> most{Real(most_alpha)}, full = warpagg::math::exp2(log2_alpha);
         free = full < most;
         alpha = warpagg::math::min(full, most);
     }

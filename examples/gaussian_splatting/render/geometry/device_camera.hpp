@@ -26,13 +26,13 @@ struct device_camera {
     Real fx, fy, cx, cy;
     glm::mat<3, 3, Real> rotation;
     glm::vec<3, Real> translation;
-    glm::vec<3, Real> centre;
-    /// Bounds of x/z and y/z in the Jacobian of the projection: the picture and 15 % of its width (height) on
+    glm::vec<3, Real> center;
+    /// Bounds of x/z and y/z in the Jacobian of the projection: the image and 15 % of its width (height) on
     /// every side, so that the affine approximation of far-off Gaussians stays bounded (Zwicker et al. 2001).
     Real least_x, most_x, least_y, most_y;
     /// A fisheye's.
     glm::vec<4, Real> bends;  ///< see `fisheye::k`
-    Real least_cosine;        ///< of angles from its axis, to the corners of the picture and the same margin
+    Real least_cosine;        ///< of angles from its axis, to the corners of the image and the same margin
     Real end;                 ///< see `fisheye::end`
 
     /// A row of the rotation: an axis of camera space, in the world.
@@ -41,10 +41,10 @@ struct device_camera {
     }
 };
 
-/// Throws `error` where a picture is too large: places in its three planes are numbers of 31 bits.
+/// Throws `error` where a image is too large: places in its three planes are numbers of 31 bits.
 inline void require_drawable(const camera& view) {
     if (std::int64_t{view.width} * view.height > std::int64_t{1} << 29)
-        throw error("a picture of " + std::to_string(view.width) + "x" + std::to_string(view.height) +
+        throw error("a image of " + std::to_string(view.width) + "x" + std::to_string(view.height) +
                     " has more than 2^29 pixels: lower --resolution");
 }
 
@@ -60,7 +60,7 @@ device_camera<Real> for_device(const camera& c) {
     d.cy = constant<Real>(c.cy);
     d.rotation = glm::mat<3, 3, Real>(c.rotation);
     d.translation = glm::vec<3, Real>(c.translation);
-    d.centre = glm::vec<3, Real>(c.centre());
+    d.center = glm::vec<3, Real>(c.center());
     d.least_x = constant<Real>((-margin_x - c.cx) / c.fx);
     d.most_x = constant<Real>((c.width + margin_x - c.cx) / c.fx);
     d.least_y = constant<Real>((-margin_y - c.cy) / c.fy);

@@ -60,11 +60,11 @@ struct fisheye_projection {
         py = camera.fy * ((vec3<Real>(Real(0), s, Real(0)) + at.y * ds) * camera.rotation);
     }
 
-    WARPAGG_HD vec3<Real> position_gradient(const vec2<Real>& centre, const vec3<Real>& dpx,
+    WARPAGG_HD vec3<Real> position_gradient(const vec2<Real>& center, const vec3<Real>& dpx,
                                             const vec3<Real>& dpy, const device_camera<Real>& camera) const {
         // By the rows of the Jacobian in camera space, s e_x + x ds and s e_y + y ds.
         const vec3<Real> dx = camera.fx * (camera.rotation * dpx), dy = camera.fy * (camera.rotation * dpy);
-        const Real cx = camera.fx * centre.x, cy = camera.fy * centre.y;
+        const Real cx = camera.fx * center.x, cy = camera.fy * center.y;
         const Real by_s = cx * at.x + cy * at.y + dx.x + dy.y;
         vec3<Real> by_at = by_s * ds + change_of_ds(at.x * dx + at.y * dy);
         by_at.x += cx * s + glm::dot(dx, ds);
@@ -117,7 +117,7 @@ struct fisheye_projection {
     }
 };
 
-/// The direction in camera space of what is seen at a place of the picture, in focal lengths from its centre.
+/// The direction in camera space of what is seen at a place of the image, in focal lengths from its center.
 template <class Real>
 WARPAGG_HD vec3<Real> fisheye_ray(const vec2<Real>& place, const device_camera<Real>& camera) {
     using warpagg::math::max;
@@ -127,10 +127,10 @@ WARPAGG_HD vec3<Real> fisheye_ray(const vec2<Real>& place, const device_camera<R
     Real angle = min(out, camera.end);
     for (int step = 0; step < 8; ++step) {  // Newton's
         const Real w = angle * angle;
-        const Real reach = angle * (one + w * (k.x + w * (k.y + w * (k.z + w * k.w))));
+        const Real radius = angle * (one + w * (k.x + w * (k.y + w * (k.z + w * k.w))));
         const Real slope =
             one + w * (Real(3) * k.x + w * (Real(5) * k.y + w * (Real(7) * k.z + w * (Real(9) * k.w))));
-        angle = min(max(angle + (out - reach) / max(slope, constant<Real>(1e-3)), Real(0)), camera.end);
+        angle = min(max(angle + (out - radius) / max(slope, constant<Real>(1e-3)), Real(0)), camera.end);
     }
     // Sine and cosine by their series at an eighth of the angle, at most 22 degrees, doubled three times.
     const Real part = angle * constant<Real>(0.125), w = part * part;

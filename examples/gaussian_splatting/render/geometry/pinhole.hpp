@@ -38,13 +38,13 @@ struct pinhole_projection {
         py = camera.fy * rz * (camera.axis(1) - v * camera.axis(2));
     }
 
-    WARPAGG_HD vec3<Real> position_gradient(const vec2<Real>& centre, const vec3<Real>& dpx,
+    WARPAGG_HD vec3<Real> position_gradient(const vec2<Real>& center, const vec3<Real>& dpx,
                                             const vec3<Real>& dpy, const device_camera<Real>& camera) const {
         const Real rz = 1 / at.z;
         // px = fx / z (row 0 - u row 2), and u = x / z unless it is clamped.
         const Real du = select(u_free, -camera.fx * rz * glm::dot(dpx, camera.axis(2)), Real(0));
         const Real dv = select(v_free, -camera.fy * rz * glm::dot(dpy, camera.axis(2)), Real(0));
-        vec3<Real> by_at(camera.fx * rz * centre.x, camera.fy * rz * centre.y, Real(0));
+        vec3<Real> by_at(camera.fx * rz * center.x, camera.fy * rz * center.y, Real(0));
         by_at.z = -rz * (by_at.x * at.x + by_at.y * at.y) - rz * (glm::dot(dpx, px) + glm::dot(dpy, py)) -
                   rz * (du * u + dv * v);
         by_at.x += du * rz;

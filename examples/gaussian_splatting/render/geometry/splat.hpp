@@ -8,18 +8,18 @@ namespace gs::raster {
 
 inline constexpr int tile_size = 16;  ///< pixels along a side of a tile, the unit of binning
 
-/// A Gaussian as the picture sees it. Its alpha at offset d from its centre is 2^(strength - u^2 - v^2) with
-/// u = p dx and v = q dy + r dx, and zero where the exponent u^2 + v^2 exceeds `reach`, where alpha falls
-/// below `least_alpha`. As a sum of squares the exponent is never negative, however long and thin the splat
-/// is. Lane values as `Real` are several splats.
+/// A Gaussian as the image sees it. Its alpha at offset d from its center is 2^(log2_opacity - u^2 - v^2)
+/// with u = p dx and v = q dy + r dx, and zero where the exponent u^2 + v^2 exceeds `cutoff`, where alpha
+/// falls below `least_alpha`. As a sum of squares the exponent is never negative, however long and thin the
+/// splat is. Lane values as `Real` are several splats.
 template <class Real>
 struct alignas(16) alignas(Real) splat {
     // The first eight say which pixels it reaches.
     Real x, y;                  ///< pixels
     Real p, q, r;               ///< Cholesky factor of the inverse covariance over 2 ln 2
     Real dx_per_dy, dy_per_dx;  ///< the dx of least exponent at a given dy, over dy; and the other way round
-    Real reach;                 ///< log2(opacity / least_alpha); zero or less draws nothing
-    Real strength;              ///< log2(opacity)
+    Real cutoff;                ///< log2(opacity / least_alpha); zero or less draws nothing
+    Real log2_opacity;          ///< log2(opacity)
     Real red, green, blue;
 };
 
@@ -41,7 +41,7 @@ struct whitened {
     WARPAGG_HD V exponent() const { return warpagg::math::fma(u, u, v * v); }
 };
 
-/// The least exponent over the offsets [x0, x1] × [y0, y1]. The form is convex: the minimum is at the centre
+/// The least exponent over the offsets [x0, x1] × [y0, y1]. The form is convex: the minimum is at the center
 /// if the box holds it, else on one of the two sides that face it. Each lane may have a splat of its own.
 template <class V>
 WARPAGG_HD V least_exponent(const V& p, const V& q, const V& r, const V& dx_per_dy, const V& dy_per_dx,

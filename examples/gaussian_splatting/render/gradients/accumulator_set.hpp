@@ -16,7 +16,7 @@ namespace gs::raster {
 /// A variant of the backward blending: tile lists split over warps, and sums in floats.
 struct native_sums {
     /// Whether a kernel exists for a `Backdrop` other than one color.
-    static constexpr bool supports_backdrop = true;
+    static constexpr bool supports_background_image = true;
     template <class Real, class Cut, class Backdrop = constant_background<Real>>
     using kernel =
         blend_backward<Real, Cut, true, warpagg::policy<warpagg::reduce::scatter, warpagg::idle::assume_busy>,
@@ -27,7 +27,7 @@ struct native_sums {
 /// always kept in double.
 template <class Accumulate, bool SupportsBackdrop = true>
 struct sums_kept_in {
-    static constexpr bool supports_backdrop = SupportsBackdrop;
+    static constexpr bool supports_background_image = SupportsBackdrop;
     template <class Real>
     using kept =
         std::conditional_t<std::is_same_v<Real, float>, warpagg::accumulate::between_warps<Accumulate>,
@@ -63,8 +63,8 @@ struct accumulator_set {
     static void with_kernel(accumulator chosen, const F& f) {
         visit(chosen, [&]<class Variant>(Variant) { f(typename Variant::template kernel<Real, Cut>{}); });
     }
-    static constexpr bool supports_backdrop(accumulator chosen) {
-        constexpr std::array supports{Variants::supports_backdrop...};
+    static constexpr bool supports_background_image(accumulator chosen) {
+        constexpr std::array supports{Variants::supports_background_image...};
         return supports[static_cast<std::size_t>(chosen)];
     }
 };

@@ -31,7 +31,7 @@ class gradient_sums {
 
   public:
     /// A warp's sum in fixed point may be up to this many times the largest gradient of a pixel. It has 64
-    /// pixels, moments of up to 8 and differences of colours, most of them below 1.
+    /// pixels, moments of up to 8 and differences of colors, most of them below 1.
     static constexpr float headroom = 4096;
 
     explicit gradient_sums(Device& device) : device_(device) {
@@ -63,7 +63,7 @@ class gradient_sums {
         if constexpr (requires { kernel.how.accumulating().fault; }) {
             if (warps > std::size_t{1} << fixed_log_warps)
                 throw error("sums in fixed point are of up to 2^" + std::to_string(fixed_log_warps) +
-                            " patches, and a picture has " + std::to_string(warps) +
+                            " patches, and a image has " + std::to_string(warps) +
                             ": lower --resolution, or train without --deterministic");
             kernel.how = typename Kernel::policy(
                 {}, {}, {fixed_sums{fault_.data(), fixed_sums::scale_to_fit(headroom * largest)}});

@@ -15,14 +15,14 @@ using warpagg::mask_t;
 using warpagg::value_t;
 using warpagg::math::select;
 
-/// A warp's Gaussians, one a lane: neighbours of a block.
+/// A warp's Gaussians, one a lane: neighbors of a block.
 template <class W>
 struct gaussian_row {
     std::size_t first;
     mask_t<W> inside;  ///< there is such a Gaussian
     mask_t<W> active;  ///< and the step concerns it
 
-    /// Up to which degree their colours depend on direction, of what a model has: the same in all lanes.
+    /// Up to which degree their colors depend on direction, of what a model has: the same in all lanes.
     template <class Real>
     WARPAGG_HD int degree_of(const parameter_arrays<Real>& gaussians, int sh_degree) const {
         return first < gaussians.gaussians_with_sh ? sh_degree : 0;

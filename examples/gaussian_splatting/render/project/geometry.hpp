@@ -10,8 +10,8 @@
 
 namespace gs::raster {
 
-/// Colours are held between 0 and this, so that their squares stay finite; photos end at 1.
-inline constexpr double most_colour = 32768;
+/// Colors are held between 0 and this, so that their squares stay finite; photos end at 1.
+inline constexpr double most_color = 32768;
 
 /// The rotation of a unit quaternion w x y z; columns are the principal axes.
 template <class Real>

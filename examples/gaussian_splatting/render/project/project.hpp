@@ -57,10 +57,10 @@ struct project {
         w.store(corners, 2 * i, drawn(d.x0 | d.y0 << number(16u)), inside);
         w.store(corners, 2 * i + 1, drawn(d.x1 | d.y1 << number(16u)), inside);
         const splat<real>& s = d.shape;
-        const real values[splat_width] = {drawn(s.x),         drawn(s.y),     drawn(s.p),
-                                          drawn(s.q),         drawn(s.r),     drawn(s.dx_per_dy),
-                                          drawn(s.dy_per_dx), drawn(s.reach), drawn(s.strength),
-                                          drawn(s.red),       drawn(s.green), drawn(s.blue)};
+        const real values[splat_width] = {drawn(s.x),         drawn(s.y),      drawn(s.p),
+                                          drawn(s.q),         drawn(s.r),      drawn(s.dx_per_dy),
+                                          drawn(s.dy_per_dx), drawn(s.cutoff), drawn(s.log2_opacity),
+                                          drawn(s.red),       drawn(s.green),  drawn(s.blue)};
         w.store_packed(reinterpret_cast<Real*>(splats), i * splat_width, values, inside);
     }
 
@@ -80,9 +80,9 @@ struct project {
         real opacity = sigmoid(logit);
         if constexpr (Effects.antialiasing) opacity *= opacity_left(whitened_axes<real>(f.shape, f.ax, f.ay));
         splat<real>& s = d.shape;
-        s.strength = warpagg::math::log2(opacity);
-        s.reach = warpagg::math::log2(opacity * constant<real>(1 / least_alpha));
-        row.active = row.active && f.drawable && is_finite(logit) && s.reach > real(0);
+        s.log2_opacity = warpagg::math::log2(opacity);
+        s.cutoff = warpagg::math::log2(opacity * constant<real>(1 / least_alpha));
+        row.active = row.active && f.drawable && is_finite(logit) && s.cutoff > real(0);
         if (!w.any(row.active)) return;
         s.x = f.seen.x;
         s.y = f.seen.y;
@@ -91,19 +91,19 @@ struct project {
         s.r = f.shape.r;
         s.dx_per_dy = f.shape.dx_per_dy;
         s.dy_per_dx = f.shape.dy_per_dx;
-        const real far = warpagg::math::sqrt(s.reach);
+        const real far = warpagg::math::sqrt(s.cutoff);
         bound(far * f.shape.width, far * f.shape.height, d);
         row.active = reaches_any_tile(w, s, d.x0, d.x1, d.y0, d.y1, row.active);
         if (!w.any(row.active)) return;
 
-        const vec3<real> rgb = colour(w, row, mean);
+        const vec3<real> rgb = color(w, row, mean);
         row.active = row.active && is_finite(rgb);
         s.red = held(rgb.x);
         s.green = held(rgb.y);
         s.blue = held(rgb.z);
     }
 
-    /// The tiles that hold a pixel centre within these half extents.
+    /// The tiles that hold a pixel center within these half extents.
     WARPAGG_HD void bound(const real& half_x, const real& half_y, drawing& d) const {
         using namespace warpagg::math;
         const auto tile = [](const real& pixel, unsigned end) {
@@ -119,12 +119,12 @@ struct project {
     }
 
     static WARPAGG_HD real held(const real& channel) {
-        return warpagg::math::min(warpagg::math::max(channel, real(0)), constant<real>(most_colour));
+        return warpagg::math::min(warpagg::math::max(channel, real(0)), constant<real>(most_color));
     }
 
-    WARPAGG_HD vec3<real> colour(const W& w, const gaussian_row<W>& row, const vec3<real>& mean) const {
+    WARPAGG_HD vec3<real> color(const W& w, const gaussian_row<W>& row, const vec3<real>& mean) const {
         const int degree = row.degree_of(gaussians, sh_degree);
-        const vec3<real> direction = unit(mean - camera.centre).direction;
+        const vec3<real> direction = unit(mean - camera.center).direction;
         real basis[16]{};
         sh_basis(degree, direction, basis);
         vec3<real> sum(constant<real>(0.5));

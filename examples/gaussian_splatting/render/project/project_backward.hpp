@@ -25,7 +25,7 @@ inline constexpr unsigned sum_inverse_depth = sum_count;
 
 /// What densification wants to know of a Gaussian, over the iterations since it last asked.
 struct visibility {
-    float gradient;  ///< sum of the norms of dL/d(centre), in halves of the picture's sides
+    float gradient;  ///< sum of the norms of dL/d(center), in halves of the image's sides
     float seen;      ///< iterations in which it was drawn
 };
 
@@ -75,8 +75,8 @@ struct project_backward {
     const std::uint32_t* tiles;
     const Real* sums;  ///< `record_stride` a Gaussian
     Sink sink;
-    visibility* seen;    ///< null: nobody wants to know
-    list_capacity room;  ///< of the view
+    visibility* seen;        ///< null: nobody wants to know
+    list_capacity capacity;  ///< of the view
 
     WARPAGG_HD void operator()(const W& w, unsigned warp_index) const {
         if (sink.idle()) return;
@@ -90,9 +90,9 @@ struct project_backward {
             row.active = row.active || s[k] != real(0);
         }
         if constexpr (Effects.depth) row.active = load_depth_sum(w, i, drawn, s) || row.active;
-        vec2<real> centre(real(0));
-        if (Sink::takes_zeros || w.any(row.active)) centre = differentiate(w, row, i, s);
-        if (seen != nullptr) note(w, i, drawn, row.active, centre);
+        vec2<real> center(real(0));
+        if (Sink::takes_zeros || w.any(row.active)) center = differentiate(w, row, i, s);
+        if (seen != nullptr) note(w, i, drawn, row.active, center);
     }
 
   private:
@@ -103,7 +103,7 @@ struct project_backward {
         return s[sum_inverse_depth] != real(0);
     }
 
-    /// Returns the gradient of the centre, in pixels.
+    /// Returns the gradient of the center, in pixels.
     WARPAGG_HD vec2<real> differentiate(const W& w, const gaussian_row<W>& row, const value_t<W, unsigned>& i,
                                         const real* s) const {
         const auto mean = row.template load<3>(w, gaussians.mean, 0, 3);
@@ -116,7 +116,7 @@ struct project_backward {
         // the rows (p, 0), (r, q), the inverse covariance is 2 ln2 M^T M and (u, v) = M d.
         const real two_ln2 = constant<real>(1.3862943611198906);
         const real p = f.shape.p, q = f.shape.q, r = f.shape.r;
-        const vec2<real> centre = two_ln2 * vec2<real>(p * s[sum_su] + r * s[sum_sv], q * s[sum_sv]);
+        const vec2<real> center = two_ln2 * vec2<real>(p * s[sum_su] + r * s[sum_sv], q * s[sum_sv]);
 
         // dL/dcovariance = (2 ln2)^2 / 2 M^T W M with W the second moments, and the covariance is the Gram
         // matrix of ax and ay, whose whitened forms are `axes`.
@@ -127,17 +127,17 @@ struct project_backward {
         if constexpr (Effects.antialiasing) add_opacity_left_gradient(axes, s[sum_s], nx, ny);
         const vec3<real> dax = p * nx + r * ny, day = q * ny;
 
-        // The mean moves the centre and the Jacobian, the depth, and the direction that the colour is seen
+        // The mean moves the center and the Jacobian, the depth, and the direction that the color is seen
         // from.
-        vec3<real> by_position = f.seen.position_gradient(centre, f.rotation * (dax * f.scale),
+        vec3<real> by_position = f.seen.position_gradient(center, f.rotation * (dax * f.scale),
                                                           f.rotation * (day * f.scale), camera);
         if constexpr (Effects.depth)
             by_position += f.seen.inverse_depth_gradient(s[sum_inverse_depth], camera);
         put(parameter::log_scale, 0, 3, log_scale, nx * axes.x + ny * axes.y);
         put(parameter::quaternion, 0, 4, quaternion, turn(f, dax * f.scale, day * f.scale));
         put(parameter::opacity, 0, 1, opacity, glm::vec<1, real>(s[sum_s] * sigmoid(-opacity.x)));
-        put(parameter::mean, 0, 3, mean, by_position + colour(w, row, put, i, mean, s));
-        return centre;
+        put(parameter::mean, 0, 3, mean, by_position + color(w, row, put, i, mean, s));
+        return center;
     }
 
     /// ax = (px R) * scale: through R to the quaternion.
@@ -152,19 +152,19 @@ struct project_backward {
 
     /// Returns the mean's gradient through the direction.
     template <class Put>
-    WARPAGG_HD vec3<real> colour(const W& w, const gaussian_row<W>& row, const Put& put,
-                                 const value_t<W, unsigned>& i, const vec3<real>& mean, const real* s) const {
+    WARPAGG_HD vec3<real> color(const W& w, const gaussian_row<W>& row, const Put& put,
+                                const value_t<W, unsigned>& i, const vec3<real>& mean, const real* s) const {
         // A channel that the forward pass held at a bound takes no gradient.
         constexpr unsigned red = offsetof(splat<Real>, red) / sizeof(Real);
         const auto free = [&](unsigned channel) {
             const real shown =
                 w.load(reinterpret_cast<const Real*>(splats), i * splat_width + red + channel, row.active);
-            return select(shown > real(0) && shown < constant<real>(most_colour), s[sum_red + channel],
+            return select(shown > real(0) && shown < constant<real>(most_color), s[sum_red + channel],
                           real(0));
         };
         const vec3<real> g(free(0), free(1), free(2));
         const int degree = row.degree_of(gaussians, sh_degree);
-        const unit<3, real> sight(mean - camera.centre);
+        const unit<3, real> sight(mean - camera.center);
         const vec3<real> direction = sight.direction;
         real basis[16]{}, weight[16]{};
         sh_basis(degree, direction, basis);
@@ -188,10 +188,10 @@ struct project_backward {
 
     /// A step that is left out (see `list_capacity`), or a gradient that is, says nothing of the Gaussian.
     WARPAGG_HD void note(const W& w, const value_t<W, unsigned>& i, const mask_t<W>& drawn,
-                         const mask_t<W>& active, const vec2<real>& centre) const {
-        if (room.exceeded()) return;
-        const vec2<real> halves(select(active, centre.x * real(Real(camera.width) / 2), real(0)),
-                                select(active, centre.y * real(Real(camera.height) / 2), real(0)));
+                         const mask_t<W>& active, const vec2<real>& center) const {
+        if (capacity.exceeded()) return;
+        const vec2<real> halves(select(active, center.x * real(Real(camera.width) / 2), real(0)),
+                                select(active, center.y * real(Real(camera.height) / 2), real(0)));
         const real most = largest(halves);
         const vec2<real> part = halves / select(most > real(0), most, real(1));
         const real norm = most * warpagg::math::sqrt(glm::dot(part, part));

@@ -16,7 +16,7 @@ namespace gs::raster {
 ///     x, y                 where, in pixels
 ///     px, py               the rows of the Jacobian of that, by the place in the world
 ///     inverse_depth_gradient(by_inverse, camera)   by the place in the world, from that by 1 / depth
-///     position_gradient(centre, dpx, dpy, camera)  by the place in the world, from those by (x, y), px and
+///     position_gradient(center, dpx, dpy, camera)  by the place in the world, from those by (x, y), px and
 ///     py
 template <class Real, effect_set Effects>
 using projection_of = std::conditional_t<Effects.fisheye, fisheye_projection<Real>, pinhole_projection<Real>>;

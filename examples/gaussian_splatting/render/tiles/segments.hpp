@@ -62,7 +62,7 @@ struct number_segments {
 /// Values that a segment's checkpoint takes.
 inline constexpr std::size_t checkpoint_values = 4 * tile_size * tile_size;
 
-/// What a tile's pixels had come to where a segment begins: transmittance and colour. The forward blending
+/// What a tile's pixels had come to where a segment begins: transmittance and color. The forward blending
 /// writes it, the backward one of the segment before begins there. By blocks of a pixel a lane, so that
 /// patches of one width share it whatever their height.
 template <class W, class Real, class Patch>

@@ -14,7 +14,7 @@ struct tile_range {
     std::uint32_t begin, end;
 };
 
-/// What a view's blending reads: the picture's tiles, and for each the splats that it meets, front to back.
+/// What a view's blending reads: the image's tiles, and for each the splats that it meets, front to back.
 template <class Real>
 struct tile_lists {
     const splat<Real>* splats;

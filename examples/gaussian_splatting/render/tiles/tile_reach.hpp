@@ -20,19 +20,19 @@ struct alignas(4) tile_box {
     WARPAGG_HD std::uint32_t size() const { return std::uint32_t(x1 - x0) * std::uint32_t(y1 - y0); }
 };
 
-/// Whether the splat's ellipse reaches the rectangle of pixel centres from the first to the last tile's.
+/// Whether the splat's ellipse reaches the rectangle of pixel centers from the first to the last tile's.
 template <class Real, class Index>
 WARPAGG_HD flag_of<Real> reaches_tiles(const splat<Real>& s, const Index& first_column,
                                        const Index& last_column, const Index& first_row,
                                        const Index& last_row) {
     using scalar = warpagg::scalar_t<Real>;
-    const auto centre = [](const Index& tile) {  // of its first pixel
+    const auto center = [](const Index& tile) {  // of its first pixel
         return warpagg::math::convert<scalar>(tile * Index(tile_size)) + constant<Real>(0.5);
     };
     const Real side = constant<Real>(tile_size - 1);
-    return least_exponent<Real>(s.p, s.q, s.r, s.dx_per_dy, s.dy_per_dx, centre(first_column) - s.x,
-                                centre(last_column) - s.x + side, centre(first_row) - s.y,
-                                centre(last_row) - s.y + side) <= s.reach;
+    return least_exponent<Real>(s.p, s.q, s.r, s.dx_per_dy, s.dy_per_dx, center(first_column) - s.x,
+                                center(last_column) - s.x + side, center(first_row) - s.y,
+                                center(last_row) - s.y + side) <= s.cutoff;
 }
 
 /// Whether it reaches pixels of the tile in this column and row.
@@ -43,7 +43,7 @@ WARPAGG_HD flag_of<Real> reaches_tile(const splat<Real>& s, const Index& column,
 
 /// Whether splats reach any tile in their columns [x0, x1) and rows [y0, y1), a splat a lane, of those that
 /// are `asked`. Tiles are looked at one by one only in rows that are reached as a whole: the box of a large
-/// splat that passes beside the picture has thousands.
+/// splat that passes beside the image has thousands.
 template <class W, class Real, class Number>
 WARPAGG_HD mask_t<W> reaches_any_tile(const W& w, const splat<Real>& s, const Number& x0, const Number& x1,
                                       const Number& y0, const Number& y1, const mask_t<W>& asked) {
