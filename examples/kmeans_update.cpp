@@ -55,6 +55,6 @@ int main(int argc, char** argv) {
         };
         update("8 clusters, noise", example::uniform(n, 8), 8);
         update("256 clusters, noise", example::uniform(n, 256), 256);
-        update("256 clusters, a image", render(n, 256), 256);
+        update("256 clusters, an image", render(n, 256), 256);
     });
 }

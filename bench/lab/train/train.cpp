@@ -84,13 +84,16 @@ int train(int argc, char** argv) {
         if (s.effects.explicit_choice("sky").value_or(false))
             throw error("only --gradient split and --accumulate fixed can train a sky");
         s.effects.explicit_choices["sky"] = false;
+        s.effects.text += ",-sky";
     }
     cli::train(s, uses_gpu(cli::name_of(s.device)) ? make_cuda_engine() : make_cpu_engine(), how);
 
-    const nlohmann::ordered_json chosen{{"gradient", rung.value_or("split")},
-                                        {"accumulate", way.value_or(s.deterministic ? "fixed" : "native")}};
-    for (const char* file : {"metrics.json", "settings.json"})
-        add_to_json(std::filesystem::path(s.output) / file, chosen);
+    const std::string kept_in = way.value_or(s.deterministic ? "fixed" : "native");
+    const nlohmann::ordered_json chosen{{"gradient", rung.value_or("split")}, {"accumulate", kept_in}};
+    const std::filesystem::path output = s.output;
+    add_to_json(output / "settings.json", chosen);
+    add_to_json(output / "metrics.json", chosen);
+    add_to_json(output / "metrics.json", {{"accumulator", kept_in}});
     return 0;
 }
 

@@ -22,7 +22,7 @@ struct named_camera {
 };
 
 /// Cameras on a circle around the middle of the Gaussians, slightly above the plane in which they spread
-/// most. Precondition: the model is normalized by itself, see `frame_of`.
+/// most. Precondition: the model is normalized by itself, see `normalization_of`.
 std::vector<named_camera> orbit(const gaussians& model, int views, int size) {
     const std::size_t n = model.count();
     std::array<glm::dvec3, 2> quartiles;  // robust against floaters

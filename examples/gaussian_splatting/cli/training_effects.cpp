@@ -13,8 +13,8 @@ features::feature_set resolve_effects(const settings& s, const scene& scene, con
     const std::string background = "--background " + name_of(s.background);
     std::vector<features::selected_feature> fixed;
     if (s.sh_degree) fixed.push_back(features::explicit_sh_degree(*s.sh_degree));
-    if (s.background != background_kind::automatic) fixed.push_back({"sky", false, background});
     features::feature_set features = features::resolve(scene, s.effects, fixed);
+    if (s.background != background_kind::automatic) features.turn_off("sky", background);
     for (const auto& f : features.all()) context.say(f.name + (f.on ? " on: " : " off: ") + f.reason);
     const bool changes_with_exposures =
         s.background == background_kind::white || s.background == background_kind::random;

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "../densify/adaptive/adaptive_schedule.hpp"
+#include "../features/sh_degree/sh_degree_feature.hpp"
 #include "option.hpp"
 #include "report.hpp"
 
@@ -35,16 +36,6 @@ std::size_t peak_host_bytes() {
 
 }  // namespace
 
-namespace {
-
-/// The SH degree that training begins with.
-int first_sh_degree(const features::feature_set& features) {
-    const std::vector<float> values = features.values_if_on("direction");
-    return values.empty() ? 0 : static_cast<int>(values[0]);
-}
-
-}  // namespace
-
 settings resolved(settings s, const train::train_options& options, const std::string& effects_in_use) {
     const train::schedule& plan = options.schedule;
     s.schedule = plan;
@@ -55,7 +46,7 @@ settings resolved(settings s, const train::train_options& options, const std::st
     adaptive.densify_until_iter = densification.densify_until();
     adaptive.densify_grad_threshold = densification.growth_threshold();
     adaptive.prune_share = densification.share_to_prune();
-    s.sh_degree = first_sh_degree(options.features);
+    s.sh_degree = features::first_sh_degree(options.features.values_if_on("direction"));
     s.effects.text = effects_in_use;
     s.max_cap = options.max_cap;
     s.save_iterations = options.save_iterations;

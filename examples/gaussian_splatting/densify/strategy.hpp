@@ -63,11 +63,11 @@ class strategy : public timetable {
     /// the strategy fails if the backward pass does not sum one of them.
     virtual std::vector<std::string> gradient_columns() const { return {}; }
 
-    /// Work of each step, such as noise or penalties on parameters. It is part of the iteration that a GPU
-    /// records and replays: it may launch kernels, but neither wait nor read a result.
+    /// Work of each step, such as noise or penalties on parameters. A GPU captures it as part of the step's
+    /// graph: it may launch kernels, but neither wait nor read a result.
     virtual void after_step(int /*iteration*/, const step_context<Device>& /*context*/) {}
-    /// Share of the key under which iterations are recorded. `after_step` may allocate memory only in the
-    /// first iteration with a new key. The number of Gaussians is part of the key already.
+    /// Part of the step's graph key: see `device_feature::memory_key`. `after_step` may allocate memory only
+    /// in the first step with a new key. The number of Gaussians is part of the key already.
     virtual std::size_t memory_key(int /*iteration*/) const { return 0; }
 
     /// Adds, moves and removes Gaussians, and may wait for the device. Afterwards the statistics are zero.

@@ -74,8 +74,8 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 /// - `for_each_warp<W>(n, f)`: runs `f(W{}, i)` for each i in [0, n), on one warp each. W is `warp`
 ///   by default. A kernel that `has_scratch` gets its scratch memory as a third argument.
 /// - `iteration(key, f)`: runs `f()`, which launches one training iteration. `f` does not wait,
-///   and allocates only in the first iteration with this key. A device may record the launches and
-///   replay them for equal keys.
+///   and allocates only in the first iteration with this key. From the second one on, a device may
+///   capture the launches and submit them as one graph.
 /// - `wait()`: returns when everything launched so far has run.
 ///
 /// Copies of n values

@@ -28,7 +28,8 @@ class engine {
     /// sizes, each half of the one before.
     virtual void set_views(const std::vector<view>& train, const std::vector<view>& test,
                            int downscales = 0) = 0;
-    /// Replaces the model; Adam's moments become zero.
+    /// Replaces the model; Adam's moments become zero. Features keep what they have learned besides the
+    /// model, such as exposures.
     virtual void set_model(const gaussians& model) = 0;
     virtual gaussians get_model() = 0;
 

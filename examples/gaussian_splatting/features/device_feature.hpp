@@ -9,6 +9,7 @@
 #include "../engine/training_setup.hpp"
 #include "../model/gaussians.hpp"
 #include "../render/renderer.hpp"
+#include "../scene/image_pyramid.hpp"
 
 namespace gs::features {
 
@@ -27,8 +28,9 @@ struct step {
     }
 };
 
-/// The part of a feature that takes part in steps on a device. A step calls the hooks in the order in which
-/// they stand here; none may wait for the device.
+/// The part of a feature that takes part in steps on a device. A step calls `memory_key` and
+/// `gradient_scale` first and then `before_blend` to `learn` in the order of their declaration. None of them
+/// may wait for the device.
 template <class Renderer>
 class device_feature : public train::feature_state {
   public:
@@ -36,14 +38,14 @@ class device_feature : public train::feature_state {
 
     /// Training begins. The base's `set_values` follows if the feature is on.
     virtual void begin(const train::training_setup&) {}
-    /// The training views at each level of downsampling, the full size first.
-    virtual void set_views(const std::vector<std::vector<view>>&) {}
+    virtual void set_views(const image_pyramid&) {}
     virtual void set_model(const gaussians&) {}
     virtual void get_model(gaussians&) {}
 
-    /// Equal keys promise equal kernels of equal sizes and equal memory in all hooks below: the key is part
-    /// of that of the step's graph. Every value of the host that decides about them belongs into it, apart
-    /// from the number of Gaussians, the capacity of the lists and the size of the view.
+    /// Equal keys promise that the hooks below launch the same kernels over the same ranges and allocate
+    /// nothing new: see `device::graph_key`. Every host value that decides about that belongs into the key,
+    /// except the number of Gaussians, the capacity of the tile lists, and the size, lens and mask of the
+    /// view.
     virtual std::size_t memory_key(const step&) const { return 0; }
 
     /// The largest magnitude of a gradient per pixel that the feature passes to the renderer by itself: see

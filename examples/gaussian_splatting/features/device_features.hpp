@@ -44,7 +44,7 @@ class device_features {
                 f->set_values(values->second);
         }
     }
-    void set_views(const std::vector<std::vector<view>>& levels) {
+    void set_views(const image_pyramid& levels) {
         for (auto& [name, f] : parts_) f->set_views(levels);
     }
     void set_model(const gaussians& model) {

@@ -105,6 +105,11 @@ std::vector<float> feature_set::values_if_on(std::string_view name) const {
     return found != nullptr && found->on ? found->values : std::vector<float>{};
 }
 
+void feature_set::turn_off(std::string_view name, const std::string& reason) {
+    for (selected_feature& f : all_)
+        if (f.name == name && f.on) f = {f.name, false, reason};
+}
+
 void feature_set::prepare(scene& scene, gaussians& model) const {
     for (const auto& f : all_features())
         if (const selected_feature* selected = find(all_, f->name())) f->prepare(*selected, scene, model);

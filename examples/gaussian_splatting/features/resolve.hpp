@@ -43,6 +43,9 @@ class feature_set {
     /// Its values; an empty list if it is off.
     std::vector<float> values_if_on(std::string_view name) const;
 
+    /// Turns a feature off for a reason. A feature that is off keeps its own reason.
+    void turn_off(std::string_view name, const std::string& reason);
+
     /// Calls the hooks of every feature.
     /// @{
     void prepare(scene& scene, gaussians& model) const;

@@ -15,8 +15,8 @@
 
 namespace gs::features {
 
-/// All features: the order is that of `inspect`, and of the steps' hooks. A feature with a part on the device
-/// names it `on_device`.
+/// All features, in the order in which `inspect` prints them and a step calls their hooks. A feature with a
+/// part on the device has a member template `on_device<Renderer>`, a `device_feature<Renderer>`.
 using table = std::tuple<sh_degree_feature, exposure_feature, antialiasing_feature, sky_feature,
                          masks_feature, depth_feature, lens_feature, background_feature>;
 

@@ -30,7 +30,7 @@ struct loss_report {
 /// `Real` is float in training, and double where tests compare the gradient with finite
 /// differences.
 ///
-/// All pointers are to device memory. Training records the launches of a step and replays them, so
+/// All pointers are to device memory. A GPU captures the launches of a step as a graph, so
 /// `set_target` and `gradient` must not wait for the device, and may allocate only when the size of
 /// the target is new.
 template <class Real>

@@ -17,12 +17,8 @@ using reader_table = std::span<const reader* const>;
 const reader& reader_of(const std::string& data, reader_table readers) {
     for (const reader* one : readers)
         if (one->probe(data)) return *one;
-    std::string known;
-    for (const reader* one : readers)
-        known +=
-            (known.empty() ? "" : ", ") + std::string(one->accepts) + " (" + std::string(one->name) + ")";
     throw error(data + (std::filesystem::exists(data) ? " is not a scene" : " does not exist") +
-                "; a scene is one of: " + known);
+                "; a scene is " + accepted_scenes(readers));
 }
 
 bool uses(const reader& one, const reader_option& option) {
@@ -35,7 +31,7 @@ void refuse_foreign_options(const load_options& options, const reader& chosen, r
         for (const reader_option& option : other->options)
             if (option.is_set(options) && !uses(chosen, option))
                 throw error(std::string(option.name) + " does not apply to " + std::string(chosen.name) +
-                            " scenes, only to " + std::string(other->name) + " scenes");
+                            " scenes, only to " + readers_with(option.name, readers) + " scenes");
 }
 
 scene_description describe(const load_options& options, const log_function& log, reader_table readers) {

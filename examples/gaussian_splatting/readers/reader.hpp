@@ -48,7 +48,7 @@ inline constexpr reader_option test_every_option{
 /// later, or holds the pixels that a reader has made.
 struct image_record {
     std::string name;       ///< unique within the scene; with '/' between folders
-    gs::camera camera;      ///< at the size of the image when the camera was calibrated
+    gs::camera camera;      ///< for images of the size for which it was calibrated; at least 1×1
     bool held_out = false;  ///< a test image, if `load_options::eval` is set
 
     std::filesystem::path file;   ///< PNG or JPEG; may be a scaled copy
@@ -73,7 +73,7 @@ struct scene_description {
 /// A kind of scene. To add one, write its folder and add a row to the table in readers.cpp.
 struct reader {
     std::string_view name;     ///< in messages, as in "COLMAP scenes"
-    std::string_view accepts;  ///< what `probe` looks for, as in "a folder with sparse/0 or sparse"
+    std::string_view accepts;  ///< what `probe` looks for, as in "a COLMAP folder with sparse/0 or sparse"
 
     /// Whether `load_options::data` is such a scene. Looks only at names: the first reader that
     /// returns true reads the scene, and reports everything that is wrong with it.
@@ -88,5 +88,10 @@ struct reader {
 
 /// All readers, in the order in which they are asked.
 std::span<const reader* const> all_readers();
+
+/// What readers accept, for messages: "A, B or C".
+std::string accepted_scenes(std::span<const reader* const> readers = all_readers());
+/// Names of the readers that use an option, for messages: "A and B".
+std::string readers_with(std::string_view option, std::span<const reader* const> readers = all_readers());
 
 }  // namespace gs

@@ -1,11 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <vector>
+
 #include "colmap/colmap.hpp"
 #include "reader.hpp"
 #include "synthetic/synthetic.hpp"
 #include "transforms/blender.hpp"
 
 namespace gs {
+namespace {
+
+std::string enumerated(const std::vector<std::string_view>& parts, const char* last_separator) {
+    std::string text;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        text += (i == 0 ? "" : i + 1 < parts.size() ? ", " : last_separator) + std::string(parts[i]);
+    return text;
+}
+
+}  // namespace
 
 std::span<const reader* const> all_readers() {
     static constexpr const reader* table[] = {
@@ -14,6 +27,20 @@ std::span<const reader* const> all_readers() {
         &colmap_reader,
     };
     return table;
+}
+
+std::string accepted_scenes(std::span<const reader* const> readers) {
+    std::vector<std::string_view> parts;
+    for (const reader* one : readers) parts.push_back(one->accepts);
+    return enumerated(parts, " or ");
+}
+
+std::string readers_with(std::string_view option, std::span<const reader* const> readers) {
+    std::vector<std::string_view> names;
+    for (const reader* one : readers)
+        if (std::ranges::find(one->options, option, &reader_option::name) != one->options.end())
+            names.push_back(one->name);
+    return enumerated(names, " and ");
 }
 
 }  // namespace gs

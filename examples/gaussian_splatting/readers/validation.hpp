@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <vector>
 
-#include "../scene/undistort.hpp"
+#include "reader.hpp"
 
 namespace gs {
 
@@ -21,5 +23,14 @@ inline constexpr const char* invalid_intrinsics =
 /// overflow.
 bool is_valid_position(const glm::dvec3& position);
 inline constexpr const char* invalid_position = " is not finite, or beyond 1e30";
+
+/// The rotation that is nearest to `matrix`, or nothing if `matrix` is a reflection or its columns
+/// are not orthonormal to within 1e-3. Newton's iteration for the polar decomposition (Higham
+/// 1986, equation 3.3).
+std::optional<glm::dmat3> nearest_rotation(const glm::dmat3& matrix);
+
+/// Holds out every `load_options::test_every`-th image, sorted by name, from the first, if
+/// `load_options::eval` is set. Throws `error` if `test_every` is less than 1.
+void hold_out_views(std::vector<image_record>& images, const load_options& options);
 
 }  // namespace gs

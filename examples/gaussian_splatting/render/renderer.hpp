@@ -19,7 +19,7 @@
 
 namespace gs::raster {
 
-/// Gaussians to a image and, from dL/dimage, to the gradients of their parameters. Holds what lies in
+/// Gaussians to an image and, from dL/dimage, to the gradients of their parameters. Holds what lies in
 /// between. `Accumulators`: an `accumulator_set`, from which `backward` chooses at run time.
 template <device::device Device, class Real, class Cut = cut_for<typename Device::warp>,
           class Accumulators = product_accumulators>

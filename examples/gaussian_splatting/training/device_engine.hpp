@@ -59,7 +59,9 @@ class device_engine final : public engine, device::profiler {
     }
 
     void set_views(const std::vector<view>& train, const std::vector<view>& test, int downscales) override {
-        const auto levels = downsampled_levels(train, downscales);
+        const auto smaller = downsampled_levels(train, downscales);
+        image_pyramid levels{train};
+        levels.insert(levels.end(), smaller.begin(), smaller.end());
         views_.set(levels, test);
         features_.set_views(levels);
         set_level(0);
@@ -92,7 +94,6 @@ class device_engine final : public engine, device::profiler {
 
     void begin(const training_setup& setup) override {
         start(setup);
-        loss_->take();
         monitor_.take_faults();
     }
 

@@ -6,14 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "../core/error.hpp"
-#include "../core/parallel.hpp"
 #include "../device/device.hpp"
 #include "../metrics/target_image.hpp"
-#include "../scene/downsample.hpp"
+#include "../scene/image_pyramid.hpp"
 
 namespace gs::train {
 
@@ -33,14 +33,14 @@ class device_views {
 
     explicit device_views(Device& device) : device_(device) {}
 
-    /// Uploads the photos. `levels` holds the training views at each size, the full size first.
-    void set(const std::vector<std::vector<view>>& levels, const std::vector<view>& held_out) {
+    /// Uploads the photos.
+    void set(const image_pyramid& levels, std::span<const view> held_out) {
         std::size_t bytes = 0;
-        for (const auto& views : levels) bytes += bytes_of(views);
+        for (const auto views : levels) bytes += bytes_of(views);
         bytes_.resize(bytes + bytes_of(held_out));
         bytes = 0;
         train_.clear();
-        for (const auto& views : levels) train_.push_back(upload(views, bytes));
+        for (const auto views : levels) train_.push_back(upload(views, bytes));
         held_out_ = upload(held_out, bytes);
         std::vector<glm::vec3> centers;
         for (const view& v : levels[0]) centers.emplace_back(v.camera.center());
@@ -68,12 +68,12 @@ class device_views {
     }
 
   private:
-    static std::size_t bytes_of(const std::vector<view>& views) {
+    static std::size_t bytes_of(std::span<const view> views) {
         std::size_t bytes = 0;
         for (const view& v : views) bytes += v.pixels.rgba.size();
         return bytes;
     }
-    std::vector<photo> upload(const std::vector<view>& views, std::size_t& first) {
+    std::vector<photo> upload(std::span<const view> views, std::size_t& first) {
         std::vector<photo> all;
         for (const view& v : views) {
             device_.upload(bytes_.data() + first, v.pixels.rgba.data(), v.pixels.rgba.size());
@@ -89,17 +89,5 @@ class device_views {
     std::vector<std::vector<photo>> train_{1};
     std::vector<photo> held_out_;
 };
-
-/// The training views at full size and at `downscales` smaller ones, each half of the one before.
-inline std::vector<std::vector<view>> downsampled_levels(const std::vector<view>& train, int downscales) {
-    std::vector<std::vector<view>> levels(1 + static_cast<std::size_t>(downscales),
-                                          std::vector<view>(train.size()));
-    levels[0] = train;
-    for_each_in_parallel((levels.size() - 1) * train.size(), [&](std::size_t i) {
-        const std::size_t level = i / train.size(), which = i % train.size();
-        levels[1 + level][which] = downsampled(train[which], 2 << level);
-    });
-    return levels;
-}
 
 }  // namespace gs::train

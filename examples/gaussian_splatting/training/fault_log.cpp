@@ -26,9 +26,7 @@ void fault_log::check(const fault_reports& found, const scene& scene, int iterat
              " is not finite or too large to square; such gradients are left out");
     if (sum.count > 0 && left_out_sums_ == 0)
         warn(where(sum) +
-             ": a sum of gradients exceeds the fixed-point range that gradient_scale() of the loss allows; "
-             "such "
-             "sums are left out");
+             ": a sum of gradients exceeds the range of its fixed-point number; such sums are left out");
     left_out_gradients_ += gradient.count;
     left_out_sums_ += sum.count;
     if (value.count > 0)

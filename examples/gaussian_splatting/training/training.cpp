@@ -7,19 +7,11 @@
 #include <random>
 #include <utility>
 
-#include "../core/error.hpp"
-#include "fault_log.hpp"
 #include "view_order.hpp"
 
 namespace gs::train {
 
 namespace {
-
-using clock = std::chrono::steady_clock;
-
-double seconds_since(clock::time_point from) {
-    return std::chrono::duration<double>(clock::now() - from).count();
-}
 
 std::array<float, 3> random_color(std::mt19937_64& random) {
     const auto channel = [&] { return static_cast<float>(random() >> 40) * 0x1p-24f; };
@@ -47,7 +39,7 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
 
 training::training(train::engine& engine, const gs::scene& scene, const train_options& options,
                    const train_events& events)
-    : engine_(engine), scene_(scene), options_(options), schedule_(options.schedule) {
+    : engine_(engine), scene_(scene), options_(options), schedule_(options.schedule), clock_(events.seconds) {
     schedule_.extent = scene.extent();
     engine_.begin(setup_of(scene, options, schedule_));
     add_step();
@@ -98,24 +90,30 @@ void training::add_reports(const train_events& events) {
     const int last = schedule_.iterations;
     const auto tests = [this](int iteration) { return options_.test_iterations.contains(iteration); };
     const auto saves = [this](int iteration) { return options_.save_iterations.contains(iteration); };
-    add({phase::observe, "check and report",
-         [=](int iteration) {
-             return iteration % report_every == 0 || iteration == last || tests(iteration) ||
-                    saves(iteration);
-         },
+    const auto reports = [=](int iteration) {
+        return iteration % report_every == 0 || iteration == last || tests(iteration);
+    };
+    add({phase::observe, "check for faults",
+         [=](int iteration) { return reports(iteration) || saves(iteration); },
          [=, this](int iteration) {
              const step_report report = engine_.take_report();
+             const auto steps = static_cast<std::uint64_t>(iteration - checked_);
+             losses_.add(report.loss, steps - report.skipped);
+             checked_ = iteration;
              result_.skipped_steps += report.skipped;
              faults_.check(report.faults, scene_, iteration, events.warn);
-             events.report({iteration, last, report.loss.loss, report.loss.psnr(), engine_.count(),
-                            seconds_since(start_) - outside_});
+         }});
+    add({phase::observe, "report", reports, [=, this](int iteration) {
+             const loss_report mean = losses_.take();
+             events.report(
+                 {iteration, last, mean.loss, mean.psnr(), engine_.count(), clock_() - start_ - outside_});
          }});
     const auto call = [this](const std::function<void(int)>& callback) {
         return [=, this](int iteration) {
             engine_.profile().wait();
-            const auto from = clock::now();
+            const double from = clock_();
             callback(iteration);
-            outside_ += seconds_since(from);
+            outside_ += clock_() - from;
         };
     };
     add({phase::observe, "test", tests, call(events.test)});
@@ -127,10 +125,10 @@ void training::run_phase(train::phase phase, int iteration) {
     for (const action& a : actions_) {
         if (a.phase != phase || !a.due(iteration)) continue;
         if (timed) engine_.profile().wait();
-        const auto from = clock::now();
+        const double from = clock_();
         a.run(iteration);
         if (phase == phase::restructure) restructured_ = true;
-        if (timed) result_.densify_seconds += seconds_since(from);
+        if (timed) result_.densify_seconds += clock_() - from;
     }
 }
 
@@ -138,7 +136,7 @@ train_result training::run() {
     level_ = schedule_.downscales_at(1);
     engine_.reserve(level_);
     engine_.profile().wait();
-    start_ = clock::now();
+    start_ = clock_();
     for (int iteration = 1; iteration <= schedule_.iterations; ++iteration) {
         restructured_ = false;
         for (const auto phase : {phase::prepare, phase::step, phase::restructure, phase::size_lists,
@@ -146,8 +144,7 @@ train_result training::run() {
             run_phase(phase, iteration);
     }
     engine_.profile().wait();
-    result_.seconds = seconds_since(start_) - outside_;
-    result_.sh_degree = schedule_.sh_degree;
+    result_.seconds = clock_() - start_ - outside_;
     result_.left_out_gradients = faults_.left_out_gradients();
     result_.left_out_sums = faults_.left_out_sums();
     return result_;

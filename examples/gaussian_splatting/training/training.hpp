@@ -47,12 +47,11 @@ struct progress {
 
 struct train_result {
     double seconds = 0;          ///< in the loop, without callbacks
-    double densify_seconds = 0;  ///< of these, for changing the number of Gaussians and sizing the lists
+    double densify_seconds = 0;  ///< of these, in the phases `restructure` and `size_lists`
     std::uint64_t skipped_steps = 0;
     std::uint64_t left_out_gradients = 0;  ///< elements that were not finite
     std::uint64_t left_out_sums = 0;       ///< steps in which a sum did not fit in fixed point
     std::uint64_t without_gradient = 0;    ///< largest number at any densification; see `engine::densify`
-    int sh_degree = 0;                     ///< in the end
     std::map<std::string, nlohmann::ordered_json> feature_reports;  ///< by feature, for metrics.json
 };
 
@@ -62,6 +61,32 @@ struct train_events {
     std::function<void(int iteration)> save;
     std::function<void(int iteration)> test;
     std::function<void(const std::string&)> warn = [](const std::string&) {};
+    /// The clock that times the run, in seconds from any start.
+    std::function<double()> seconds = [] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    };
+};
+
+/// The mean loss over steps of several reports of the engine.
+class mean_loss {
+  public:
+    void add(const loss_report& report, std::uint64_t steps) {
+        if (steps == 0) return;
+        const auto weight = static_cast<double>(steps);
+        sum_.loss += weight * report.loss;
+        sum_.square_error += weight * report.square_error;
+        weight_ += weight;
+    }
+    /// The mean of what was added since the last call.
+    loss_report take() {
+        const loss_report mean{sum_.loss / weight_, sum_.square_error / weight_};
+        *this = {};
+        return mean;
+    }
+
+  private:
+    loss_report sum_;
+    double weight_ = 0;
 };
 
 /// When an action runs within an iteration. Actions of one phase run in the order in which they were added.
@@ -118,8 +143,10 @@ class training {
     int level_ = 0;              ///< how many times photos are halved
     bool restructured_ = false;  ///< in this iteration
     fault_log faults_;
-    double outside_ = 0;  ///< seconds in callbacks
-    std::chrono::steady_clock::time_point start_;
+    int checked_ = 0;  ///< the last iteration that was checked for faults
+    mean_loss losses_;
+    std::function<double()> clock_;
+    double start_ = 0, outside_ = 0;  ///< seconds at the start, and in callbacks
 };
 
 /// Trains the model that `engine` holds with the features of `options`. See `training`.

@@ -139,7 +139,7 @@ TEST_CASE("train refuses a scene with an unreadable photo") {
             write_file(photo(data), whole.substr(0, whole.size() / 2));
         },
         {"photo_2.png"});
-    // The signature and the header of a image of 0x0 pixels, with its right checksum.
+    // The signature and the header of an image of 0x0 pixels, with its right checksum.
     const std::string no_pixels{"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\0\0\0\0\0\x08\x02\0\0\0\xb4\xe9\xeb\x45",
                                 33};
     check_spoilt_scene_is_refused([&](const fs::path& data) { write_file(photo(data), no_pixels); },

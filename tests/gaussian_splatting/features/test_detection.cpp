@@ -109,7 +109,7 @@ TEST_CASE("a sky is what it was made of, and begins from that") {
     CHECK(fit_sky(made("spheres,sky=0.04"), {}).brightness < 0.08);
     gs::scene bare = scene;
     bare.points.clear();
-    CHECK_FALSE(fit_sky(bare, {}).is_asked);
+    CHECK_FALSE(fit_sky(bare, {}).has_points);
     CHECK_THROWS_WITH_AS(made("alpha,sky=1"), doctest::Contains("it has no sky"), gs::error);
 }
 

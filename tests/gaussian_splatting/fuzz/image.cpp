@@ -37,7 +37,7 @@ bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1A\
 
 std::size_t padded(int side) { return (static_cast<std::size_t>(side) + 31) / 32 * 32; }
 
-/// What a image takes to decode: RGBA, and a progressive JPEG's coefficients, two bytes in each of three
+/// What an image takes to decode: RGBA, and a progressive JPEG's coefficients, two bytes in each of three
 /// planes of whole blocks; some rows, of up to 8 bytes a sample; inflate's window.
 std::size_t decoding(int width, int height) {
     const std::size_t pixels = padded(width) * padded(height);

@@ -20,7 +20,7 @@ namespace hard_cases {
 
 using gs::accumulator;
 
-/// A image of a few Gaussians and a photo to compare it with.
+/// An image of a few Gaussians and a photo to compare it with.
 struct render_case {
     int sh_degree = 3;
     gs::effect_set effects;
@@ -87,7 +87,7 @@ struct blend_result {
     std::vector<std::array<double, 9>> sums;
 };
 
-/// A image beside a photo, premultiplied RGBA over a background.
+/// An image beside a photo, premultiplied RGBA over a background.
 struct compare_case {
     int width, height;
     std::vector<double> render;

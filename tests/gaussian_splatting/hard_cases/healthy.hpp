@@ -8,7 +8,7 @@
 
 namespace hard_cases {
 
-/// A crowd of faint Gaussians: a NaN that becomes the cap of alpha shows. In a image of one patch, as by
+/// A crowd of faint Gaussians: a NaN that becomes the cap of alpha shows. In an image of one patch, as by
 /// default, sums have one order on every device.
 render_case faint_crowd(unsigned seed, std::size_t count, int width = 8, int height = 4);
 

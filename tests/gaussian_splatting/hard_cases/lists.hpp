@@ -12,7 +12,7 @@ namespace hard_cases {
 /// Splats made by hand, in pixels.
 
 /// A round one of this standard deviation before the pixel's filter: 0 covers a pixel and its neighbors,
-/// 1000 gives a image of a few tiles the same alpha everywhere.
+/// 1000 gives an image of a few tiles the same alpha everywhere.
 inline flat_splat round_splat(double x, double y, double width, double opacity) {
     return {x, y, opacity, {width, 0, 0}, {0, width, 0}, {0, 0, 0}};
 }

@@ -142,7 +142,7 @@ TEST_CASE("NaN injection: 22 values in every parameter of one Gaussian of a crow
            std::to_string(injected.bad) + " of no Gaussian, " + std::to_string(injected.drawn) + " drawn");
 }
 
-TEST_CASE("NaN injection: 22 values in place, shape and opacity, in a image of six tiles") {
+TEST_CASE("NaN injection: 22 values in place, shape and opacity, in an image of six tiles") {
     const injected_crowd injected(40, 24, 4);
     REQUIRE(injected.all.size() == 22 * 11);
     on_each_backend([&](const backend& b) {

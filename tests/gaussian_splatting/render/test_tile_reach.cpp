@@ -16,7 +16,7 @@ using gs::raster::tile_size;
 
 namespace {
 
-/// Of any size, thinness and direction, in a image of 40 x 30 tiles and around it.
+/// Of any size, thinness and direction, in an image of 40 x 30 tiles and around it.
 splat<float> random_splat(std::mt19937& random) {
     std::uniform_real_distribution<float> unit(0, 1);
     splat<float> s{};

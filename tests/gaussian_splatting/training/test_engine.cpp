@@ -240,7 +240,7 @@ TEST_CASE("a Gaussian that a view does not see keeps its bits, whatever its mome
     }
 }
 
-TEST_CASE("a image too large to be numbered is refused") {
+TEST_CASE("an image too large to be numbered is refused") {
     const gs::scene scene = small_scene();
     gs::camera large = scene.test[0].camera;
     large.width = large.height = 23171;  // squared, beyond 2^29

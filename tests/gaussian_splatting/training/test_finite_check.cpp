@@ -195,7 +195,7 @@ TEST_CASE("training warns once of sums that fixed point cannot hold") {
         const auto result = gs::train::train(*e, scene, options, events);
         CHECK(result.left_out_sums >= 1);
         REQUIRE(warnings.size() == 1);
-        CHECK(warnings[0].find("exceeds the fixed-point range") != std::string::npos);
+        CHECK(warnings[0].find("exceeds the range of its fixed-point number") != std::string::npos);
         CHECK(warnings[0].find("view ") != std::string::npos);
     }
 }

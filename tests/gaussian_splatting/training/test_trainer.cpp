@@ -35,6 +35,7 @@ class recorder final : public gs::train::engine, gs::device::profiler {
     std::vector<std::size_t> adjusted_after;  ///< so many steps
     std::vector<int> degrees;
     std::vector<std::size_t> pruned_sh_after;  ///< so many steps
+    double seconds = 0;                        ///< one per step
 
     explicit recorder(std::size_t count) : sh_(*this) {
         count_ = count;
@@ -49,7 +50,10 @@ class recorder final : public gs::train::engine, gs::device::profiler {
         timetable_ = schedule_.get();
     }
     void reserve(int downscales) override { sizes_reserved.push_back(downscales); }
-    void step(const step_plan& plan) override { steps.push_back({plan, sizes_reserved.back()}); }
+    void step(const step_plan& plan) override {
+        steps.push_back({plan, sizes_reserved.back()});
+        ++seconds;
+    }
     std::uint64_t densify(int iteration) override {
         if (schedule_->densifies(iteration)) {
             const densify_config c = schedule_->densify_config_at(iteration, count_);
@@ -68,7 +72,12 @@ class recorder final : public gs::train::engine, gs::device::profiler {
         CHECK(static_cast<std::size_t>(iteration) == steps.size());
         adjusted_after.push_back(steps.size());
     }
-    gs::train::step_report take_report() override { return {}; }
+    /// The loss of a step is its iteration.
+    gs::train::step_report take_report() override {
+        const auto first = reported_ + 1, last = steps.size();
+        reported_ = last;
+        return {{static_cast<double>(first + last) / 2, 1}, 0, {}};
+    }
     gs::train::feature_state& feature(std::string_view) override { return sh_; }
     std::vector<float> render(const gs::camera&, const std::array<float, 3>&, int) override { return {}; }
     gs::train::image_quality measure(std::size_t, const std::array<float, 3>&, std::vector<float>*) override {
@@ -96,6 +105,7 @@ class recorder final : public gs::train::engine, gs::device::profiler {
     void wait() override {}
 
     std::unique_ptr<gs::train::adaptive_schedule> schedule_;
+    std::size_t reported_ = 0;  ///< the last step that was
     sh_state sh_;
 };
 
@@ -208,4 +218,40 @@ TEST_CASE("Gaussians lose bands once none comes or goes, and bands have been rev
     o.schedule.sh_degree_interval = 6;  // reviewed after 12, with two new ones the last time
     const revision adds{[](int) { return 2; }, 0.01};
     CHECK(trained(o, 50, 0, adds)->pruned_sh_after == std::vector<std::size_t>{18});
+}
+
+TEST_CASE("training: an iteration that only saves reports nothing, and its loss counts in the next report") {
+    gs::scene scene;
+    scene.train.resize(1);
+    gs::train::train_options o;
+    o.schedule.iterations = 200;
+    o.save_iterations = {50};
+    recorder engine(10);
+    std::vector<std::pair<int, double>> reports;
+    std::vector<int> saves;
+    const gs::train::train_events events{
+        .report = [&](const gs::train::progress& p) { reports.emplace_back(p.iteration, p.loss); },
+        .save = [&](int iteration) { saves.push_back(iteration); },
+        .test = [](int) {}};
+    gs::train::training(engine, scene, o, events).run();
+    CHECK(saves == std::vector{50});
+    CHECK(reports == std::vector<std::pair<int, double>>{{100, 50.5}, {200, 150.5}});
+}
+
+TEST_CASE("training: the time of callbacks does not count") {
+    gs::scene scene;
+    scene.train.resize(1);
+    gs::train::train_options o;
+    o.schedule.iterations = 100;
+    o.save_iterations = {10, 100};
+    o.test_iterations = {20};
+    recorder engine(10);
+    std::vector<double> reported;
+    const gs::train::train_events events{
+        .report = [&](const gs::train::progress& p) { reported.push_back(p.seconds); },
+        .save = [&](int) { engine.seconds += 1000; },
+        .test = [&](int) { engine.seconds += 5000; },
+        .seconds = [&] { return engine.seconds; }};
+    CHECK(gs::train::training(engine, scene, o, events).run().seconds == 100);
+    CHECK(reported == std::vector<double>{20, 100});
 }

@@ -13,8 +13,8 @@
 namespace gs::device {
 
 /// Checks the promise of a graph key: iterations with equal keys launch the same kernels over the same
-/// ranges, and only the first of them allocates memory. A GPU that records and replays iterations relies on
-/// it; here a broken promise is an error. Cost: a few comparisons per launch.
+/// ranges, and only the first of them allocates memory. A GPU captures all but the first as graphs, during
+/// which nothing can be allocated; here a broken promise is an error. Cost: a few comparisons per launch.
 class key_check {
   public:
     /// Every type of kernel has its own address.
@@ -66,7 +66,7 @@ class key_check {
     [[noreturn]] void fail(const char* what) const {
         throw error(std::string("a training step ") + what +
                     " although its graph key equals that of an earlier step: add the host value that decides "
-                    "about it to the memory_key() of the feature, strategy or loss that reads it");
+                    "about it to the memory_key() of the feature or strategy that reads it");
     }
 
     std::map<graph_key, std::vector<launch>> launches_;

@@ -178,8 +178,9 @@ class cuda {
                    count, digit * digit_bits, sort_memory(sort_memory_.data(), tiles, digit), to[0], to[1]);
     }
 
-    /// Iterations of the same key need the same memory. From the second one on, they are launched
-    /// as one graph, except those that are timed.
+    /// Iterations of the same key need the same memory. From the second one on, their launches are captured
+    /// and submitted as one graph, because nothing can be allocated during a capture. Timed iterations are
+    /// not captured.
     template <class F>
     void iteration(const graph_key& key, const F& f) {
         const bool is_new = keys_.insert(key).second;

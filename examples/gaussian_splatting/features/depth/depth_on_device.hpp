@@ -23,10 +23,10 @@ class depth_on_device final : public device_feature<Renderer> {
         iterations_ = setup.facts.iterations;
         if (!setup.has("depth")) fits_.clear();
     }
-    void set_views(const std::vector<std::vector<view>>& levels) override {
+    void set_views(const image_pyramid& levels) override {
         fits_.clear();
         std::size_t values = 0;
-        for (const auto& views : levels)
+        for (const auto views : levels)
             for (const view& v : views) values += v.depths.values.size();
         maps_.resize(values);
         first_.assign(levels.size(), {});

@@ -37,7 +37,7 @@ inline std::vector<exposure> exposures_from(const std::vector<float>& values) {
 }
 /// @}
 
-/// A image as its photo's exposure shows it: one index a pixel.
+/// An image as its photo's exposure shows it: one index a pixel.
 struct expose {
     const float* render;  ///< three planes, as `exposed`
     const float* exposure;

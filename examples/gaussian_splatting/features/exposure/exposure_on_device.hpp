@@ -22,18 +22,17 @@ class exposure_on_device final : public device_feature<Renderer> {
         iterations_ = setup.facts.iterations;
         views_ = static_cast<std::size_t>(setup.facts.views);
         learns_ = setup.has("exposure");
+        reset();
     }
-    void set_views(const std::vector<std::vector<view>>& levels) override {
+    void set_views(const image_pyramid& levels) override {
         learns_ = false;
-        of_training_.set(std::vector<exposure>(levels[0].size(), identity_exposure));
-        of_held_out_.set({});
+        views_ = levels[0].size();
+        reset();
     }
 
-    void set_values(const std::vector<float>& values) override { of_training_.set(exposures_from(values)); }
-    std::vector<float> values() const override { return flattened(of_training_.get()); }
-    void set_held_out_values(const std::vector<float>& values) override {
-        of_held_out_.set(exposures_from(values));
-    }
+    void set_values(const std::vector<float>& values) override { of_training_.set(values); }
+    std::vector<float> values() const override { return of_training_.get(); }
+    void set_held_out_values(const std::vector<float>& values) override { of_held_out_.set(values); }
     void normalize() override { of_training_.normalize(); }
 
     std::size_t memory_key(const step&) const override { return learns_ ? 1 : 0; }
@@ -50,9 +49,12 @@ class exposure_on_device final : public device_feature<Renderer> {
     }
 
   private:
-    /// Adam's learning rate, which falls to a tenth. Each exposure can come as far as 0.6, however few steps
-    /// show its photo, unless those are fewer than 30. In Kerbl et al. 2024's implementation the rate falls
-    /// from 0.01.
+    void reset() {
+        of_training_.set(flattened(std::vector<exposure>(views_, identity_exposure)));
+        of_held_out_.set({});
+    }
+    /// Adam's learning rate, which falls to a tenth. It is higher the fewer steps show each view, so that
+    /// exposures can change by 0.6 if at least 30 steps show a view. Kerbl et al. 2024 begin at 0.01.
     float rate_at(int iteration) const {
         const double first =
             std::min(0.05, 1.5 * static_cast<double>(views_) / static_cast<double>(iterations_));

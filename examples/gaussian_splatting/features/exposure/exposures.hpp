@@ -10,7 +10,7 @@
 
 namespace gs::features {
 
-/// The exposures of photos, on the device. They can learn: by Adam, each by the steps that show its photo.
+/// The exposures of a list of views, on the device. Adam trains each in the steps that show its view.
 template <device::device Device>
 class exposures {
     template <class T>
@@ -20,23 +20,21 @@ class exposures {
   public:
     explicit exposures(Device& device) : device_(device), numbers_(device) {}
 
-    /// What the photos begin from, as if no step had shown any.
-    void set(const std::vector<exposure>& all) {
-        std::vector<float> values;
-        for (const exposure& e : all) values.insert(values.end(), e.begin(), e.end());
-        numbers_.set(values);
-    }
+    /// Replaces all exposures; Adam's moments become zero. `exposure_width` values per view.
+    void set(const std::vector<float>& values) { numbers_.set(values); }
+    std::vector<float> get() const { return numbers_.get(); }
 
     std::size_t count() const { return numbers_.rows(); }
 
-    /// The image of a view, on the device, as its photo would have it.
+    /// The render with the exposure of a view applied: three planes on the device, valid until the next call.
     const float* show(std::size_t view, const float* render, std::size_t pixels) {
         exposed_.resize(3 * pixels);
         device_.for_each_index(pixels, expose{render, numbers_.row(view), pixels, exposed_.data()});
         return exposed_.data();
     }
 
-    /// From the gradient by what `show` returned to that by its image; learns from it.
+    /// The gradient with respect to the render, from the gradient with respect to the result of `show`. Also
+    /// trains the exposure.
     const float* learn(std::size_t view, const float* render, const float* by_exposed, std::size_t pixels,
                        float rate, const raster::list_capacity& capacity) {
         by_render_.resize(3 * pixels);
@@ -50,14 +48,6 @@ class exposures {
     /// See `normalize_exposures`.
     void normalize() {
         device_.for_each_index(exposure_width, normalize_exposures{numbers_.row(0), count()});
-    }
-
-    std::vector<exposure> get() const {
-        std::vector<exposure> all(count());
-        const std::vector<float> values = numbers_.get();
-        for (std::size_t i = 0; i < values.size(); ++i)
-            all[i / exposure_width][i % exposure_width] = values[i];
-        return all;
     }
 
   private:

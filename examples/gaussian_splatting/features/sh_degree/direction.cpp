@@ -10,6 +10,7 @@
 #include "../../core/median.hpp"
 #include "../../core/parallel.hpp"
 #include "../../model/spherical_harmonics.hpp"
+#include "../text.hpp"
 
 namespace gs::features {
 namespace {
@@ -18,7 +19,7 @@ constexpr double ridges[] = {0.3, 1, 3, 10};  ///< on all but the constant, in u
 constexpr float one_size = 1.6f;
 constexpr double outlier = 4.0;  ///< in standard deviations: something else was in front
 
-constexpr std::size_t enough_points = 50, some_points = 10;
+constexpr std::size_t some_points = 10;
 constexpr double least_share = 0.03;       ///< of the unexplained mean square, for each further degree
 constexpr double least_amplitude = 0.002;  ///< and this root mean square, of full brightness
 

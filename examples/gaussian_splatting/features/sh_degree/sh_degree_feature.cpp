@@ -25,6 +25,7 @@ int revise(train::training& training, int sh_degree) {
     const sh_review review =
         revise_sh_degree(training.engine(), training.scene(), training.options().background.color, sh_degree);
     auto& report = training.result().feature_reports["direction"];
+    report["sh_degree_at_first"] = sh_degree;
     report["unexplained_half_way"] = review.unexplained;
     if (review.change) report["change_without_highest_band"] = *review.change;
     return review.sh_degree;
@@ -51,16 +52,15 @@ finding sh_degree_feature::analyze(const scene_statistics& statistics) const {
 }
 
 void sh_degree_feature::prepare(const selected_feature& selected, scene&, gaussians& model) const {
-    model.sh_degree = first_sh_degree(selected);
+    model.sh_degree = first_sh_degree(selected.values);
     model.sh_rest.assign(model.count() * static_cast<std::size_t>(model.rest_width()), 0.0f);
 }
 
 void sh_degree_feature::schedule(const selected_feature& selected, train::training& training) const {
-    const int degree = first_sh_degree(selected);
+    const int degree = first_sh_degree(selected.values);
     training.schedule().sh_degree = degree;
     training.result().feature_reports["direction"]["sh_degree"] = degree;
     if (selected.values.size() < 2 || selected.values[1] == 0) return;
-    training.result().feature_reports["direction"]["sh_degree_at_first"] = degree;
     schedule_revision(
         training, [&training](int so_far) { return revise(training, so_far); }, prune_change_limit);
 }
@@ -70,8 +70,8 @@ selected_feature explicit_sh_degree(int degree) {
         "direction", degree > 0, "--sh-degree " + std::to_string(degree), {static_cast<float>(degree), 0}};
 }
 
-int first_sh_degree(const selected_feature& selected) {
-    return selected.values.empty() ? 0 : static_cast<int>(selected.values[0]);
+int first_sh_degree(const std::vector<float>& values) {
+    return values.empty() ? 0 : static_cast<int>(values[0]);
 }
 
 void schedule_revision(train::training& training, std::function<int(int sh_degree)> revise,

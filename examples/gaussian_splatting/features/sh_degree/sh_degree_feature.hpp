@@ -27,8 +27,8 @@ class sh_degree_feature final : public feature {
 /// What `--sh-degree` specifies.
 selected_feature explicit_sh_degree(int degree);
 
-/// The degree that training begins with.
-int first_sh_degree(const selected_feature& selected);
+/// The degree that training begins with, from the values of the feature; 0 if they are empty.
+int first_sh_degree(const std::vector<float>& values);
 
 /// Calls `revise` once, half-way, with the degree so far; colors have the degree that it returns from then
 /// on. If `prune_change` is set, frees the bands of Gaussians that hardly need them once the number of

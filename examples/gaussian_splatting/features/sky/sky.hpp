@@ -11,7 +11,7 @@
 
 namespace gs::features {
 
-/// The sky of a model on the device, if it has one. It can learn.
+/// The learned background of a model on the device, if it has one.
 template <device::device Device>
 class sky {
     using warp = typename Device::warp;
@@ -20,12 +20,12 @@ class sky {
   public:
     explicit sky(Device& device) : device_(device), numbers_(device) {}
 
-    /// `sky_width` coefficients, or none.
+    /// `sky_width` coefficients, or none for no sky.
     void set(const std::vector<float>& coefficients) { numbers_.set(coefficients); }
     std::vector<float> get() const { return numbers_.get(); }
     bool exists() const { return numbers_.rows() > 0; }
 
-    /// What a camera sees of it: three planes on the device, or null without a sky.
+    /// The background of a camera: three planes on the device, or null if the model has no sky.
     const float* draw(const camera& camera) {
         if (!exists()) return nullptr;
         raster::require_drawable(camera);
@@ -37,7 +37,8 @@ class sky {
         return planes_.data();
     }
 
-    /// From the gradient by a image before what `draw` has drawn last.
+    /// Trains the sky by the gradient with respect to the render in front of what `draw` drew last.
+    /// `transmittance`: the share of the sky's light in each pixel.
     void learn(const camera& camera, const float* transmittance, const float* by_render, float rate,
                const raster::list_capacity& capacity) {
         const train::ordered_sums sums = numbers_.sums(patches(camera));

@@ -30,7 +30,7 @@ sky_fit best_fit(const scene_statistics& statistics) {
 finding sky_feature::analyze(const scene_statistics& statistics) const {
     sky_fit s = best_fit(statistics);
     s.coefficients.resize(sky_width);
-    if (!s.is_asked) return {{}, "no telling: the scene has no points", "off", s.coefficients};
+    if (!s.has_points) return {{}, "no telling: the scene has no points", "off", s.coefficients};
     if (statistics.scene().has_alpha) return {false, has_alpha, "off"};
     const bool exists =
         s.share >= least_share && s.share >= least_of_empty * s.empty && s.brightness >= least_brightness;

@@ -138,7 +138,7 @@ double distance(const cell& c, const std::array<glm::dvec3, terms>& sky) {
 sky_fit fit_sky(const scene& of, const std::vector<double>& brighter) {
     sky_fit found;
     if (of.points.empty()) return found;
-    found.is_asked = true;
+    found.has_points = true;
     std::vector<photo_cells> photos(of.train.size());
     for_each_in_parallel(photos.size(), [&](std::size_t v) {
         photos[v] = cells_of(of.train[v], of.points);

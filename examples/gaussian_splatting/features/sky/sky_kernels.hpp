@@ -16,7 +16,7 @@ namespace gs::features {
 /// not held to any range.
 inline constexpr unsigned sky_coefficients = sh_coefficients(sky_degree);
 
-/// Pixels of a image for a warp: as many columns as it has lanes, of some rows. `Fisheye`: the camera has
+/// Pixels of an image for a warp: as many columns as it has lanes, of some rows. `Fisheye`: the camera has
 /// such a lens.
 template <class W, bool Fisheye>
 struct sky_patch {
@@ -52,7 +52,7 @@ struct sky_patch {
     }
 };
 
-/// The sky behind a image.
+/// The sky behind an image.
 template <class W, bool Fisheye>
 struct draw_sky {
     using real = warpagg::value_t<W, float>;

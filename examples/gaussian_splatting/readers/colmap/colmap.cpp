@@ -84,8 +84,6 @@ std::vector<image_record> image_records(const colmap_model& model, const std::fi
 }
 
 scene_description describe(const load_options& options, const log_function& log) {
-    if (options.eval && options.test_every < 1)
-        throw error("test_every must be at least 1, not " + std::to_string(options.test_every));
     const std::filesystem::path data = options.data, photos = data / options.images;
     colmap_model model = read_colmap_model(model_folder(data));
     scene_description result;
@@ -93,9 +91,7 @@ scene_description describe(const load_options& options, const log_function& log)
                                   options.depths ? data / "depths" : std::filesystem::path());
     if (!std::filesystem::is_directory(photos))
         throw error("the folder of photos " + photos.string() + " does not exist");
-    if (options.eval)
-        for (std::size_t i = 0; i < result.images.size(); i += static_cast<std::size_t>(options.test_every))
-            result.images[i].held_out = true;
+    hold_out_views(result.images, options);
     result.points = std::move(model.points);
     if (result.points.empty()) log("the COLMAP model has no points");
     return result;
@@ -121,7 +117,7 @@ colmap_model read_colmap_model(const std::filesystem::path& folder) {
 }
 
 constinit const reader colmap_reader{
-    "COLMAP", "a folder with sparse/0 or sparse",
+    "COLMAP", "a COLMAP folder with sparse/0 or sparse",
     [](const std::string& data) {
         return std::filesystem::is_directory(std::filesystem::path(data) / "sparse");
     },

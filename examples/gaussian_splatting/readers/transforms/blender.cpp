@@ -121,7 +121,7 @@ scene_description describe(const load_options& options, const log_function&) {
 }  // namespace
 
 constinit const reader blender_reader{
-    "Blender", "a folder with transforms_train.json",
+    "Blender", "a Blender folder with transforms_train.json",
     [](const std::string& data) {
         return std::filesystem::exists(std::filesystem::path(data) / training_file);
     },

@@ -41,10 +41,10 @@ struct device_camera {
     }
 };
 
-/// Throws `error` where a image is too large: places in its three planes are numbers of 31 bits.
+/// Throws `error` where an image is too large: places in its three planes are numbers of 31 bits.
 inline void require_drawable(const camera& view) {
     if (std::int64_t{view.width} * view.height > std::int64_t{1} << 29)
-        throw error("a image of " + std::to_string(view.width) + "x" + std::to_string(view.height) +
+        throw error("an image of " + std::to_string(view.width) + "x" + std::to_string(view.height) +
                     " has more than 2^29 pixels: lower --resolution");
 }
 

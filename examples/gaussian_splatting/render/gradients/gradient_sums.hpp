@@ -63,7 +63,7 @@ class gradient_sums {
         if constexpr (requires { kernel.how.accumulating().fault; }) {
             if (warps > std::size_t{1} << fixed_log_warps)
                 throw error("sums in fixed point are of up to 2^" + std::to_string(fixed_log_warps) +
-                            " patches, and a image has " + std::to_string(warps) +
+                            " patches, and an image has " + std::to_string(warps) +
                             ": lower --resolution, or train without --deterministic");
             kernel.how = typename Kernel::policy(
                 {}, {}, {fixed_sums{fault_.data(), fixed_sums::scale_to_fit(headroom * largest)}});
