@@ -71,7 +71,7 @@ def inspect(program, scene):
         if done.returncode:
             raise SystemExit(f"{scene} could not be inspected: {done.stderr.strip()}")
         found = json.loads(file.read_text())["effects"]
-    return {"effects": {e["name"]: {key: e[key] for key in ("called_for", "evidence")} for e in found}, "seconds": seconds}
+    return {"effects": {e["name"]: {key: e[key] for key in ("recommended", "evidence")} for e in found}, "seconds": seconds}
 
 
 def run(arguments):
@@ -97,17 +97,17 @@ def run(arguments):
     aside.replace(output)
 
 
-def called_for(one, effect):
-    return one["effects"][effect]["called_for"] or False
+def recommended(one, effect):
+    return one["effects"][effect]["recommended"] or False
 
 
 def wrong(one):
-    return [effect for effect, has in one["truth"].items() if called_for(one, effect) != has]
+    return [effect for effect, has in one["truth"].items() if recommended(one, effect) != has]
 
 
 def counts(runs, effect):
     """How many runs have the effect and are said to, are only said to, and only have it."""
-    pairs = [(called_for(r, effect), r["truth"][effect]) for r in runs]
+    pairs = [(recommended(r, effect), r["truth"][effect]) for r in runs]
     return tuple(pairs.count(pair) for pair in ((True, True), (True, False), (False, True)))
 
 
@@ -116,7 +116,7 @@ def share(part, whole):
 
 
 def said(one, effect):
-    return {True: "yes", False: "no", None: "no telling"}[one["effects"][effect]["called_for"]]
+    return {True: "yes", False: "no", None: "no telling"}[one["effects"][effect]["recommended"]]
 
 
 def evidence(one, effect):

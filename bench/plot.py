@@ -49,7 +49,7 @@ def where(result):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("file")
-    parser.add_argument("picture")
+    parser.add_argument("plot")
     arguments = parser.parse_args()
     import matplotlib
     matplotlib.use("Agg")
@@ -60,7 +60,7 @@ def main():
     errors_by_condition(left, [r for r in result["rows"] if r["sums"] == 1])
     errors_by_time(right, result["rows"], "condition 1e06")
     figure.suptitle(where(result), fontsize=8)
-    figure.savefig(arguments.picture, bbox_inches="tight", metadata={"Date": None})
+    figure.savefig(arguments.plot, bbox_inches="tight", metadata={"Date": None})
 
 
 main()

@@ -95,7 +95,7 @@ def plot(arguments):
              title=result["runs"][0]["scene"])
     axis.grid(alpha=0.3)
     axis.legend(fontsize=8)
-    figure.savefig(arguments.picture, dpi=120, bbox_inches="tight")
+    figure.savefig(arguments.plot, dpi=120, bbox_inches="tight")
 
 
 def add_run(commands, action):
@@ -117,7 +117,7 @@ def main():
     shower.set_defaults(action=lambda arguments: show(json.loads(pathlib.Path(arguments.file).read_text())))
     plotter = commands.add_parser("plot")
     plotter.add_argument("file")
-    plotter.add_argument("picture")
+    plotter.add_argument("plot")
     plotter.set_defaults(action=plot)
     own, passed_on = own_and_passed_on()
     arguments = parser.parse_args(own)

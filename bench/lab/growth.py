@@ -94,7 +94,7 @@ def plot(arguments):
         axis.grid(which="both", alpha=0.2)
     axes[0].set_ylabel(f"ms, {rows[0]['device']}")
     axes[0].legend(fontsize=8)
-    figure.savefig(arguments.picture, dpi=120, bbox_inches="tight")
+    figure.savefig(arguments.plot, dpi=120, bbox_inches="tight")
 
 
 def main():
@@ -110,7 +110,7 @@ def main():
     shower.set_defaults(action=table)
     plotter = commands.add_parser("plot")
     plotter.add_argument("file")
-    plotter.add_argument("picture")
+    plotter.add_argument("plot")
     plotter.set_defaults(action=plot)
     own, passed_on = own_and_passed_on()
     arguments = parser.parse_args(own)

@@ -250,7 +250,7 @@ def plot(arguments):
     ratio.axhline(1, color="0.5", linewidth=0.8)
     figure.suptitle(scenes[0]["kernel"]["device"], fontsize=9)
     figure.tight_layout()
-    figure.savefig(arguments.picture, metadata={"Date": None})
+    figure.savefig(arguments.plot, metadata={"Date": None})
 
 
 def main():
@@ -272,7 +272,7 @@ def main():
     shower.set_defaults(action=lambda arguments: print(tables(json.loads(pathlib.Path(arguments.file).read_text()))))
     plotter = commands.add_parser("plot")
     plotter.add_argument("file")
-    plotter.add_argument("picture")
+    plotter.add_argument("plot")
     plotter.set_defaults(action=plot)
     own, passed_on = own_and_passed_on()
     arguments = parser.parse_args(own)

@@ -220,7 +220,7 @@ def plot(arguments):
     axis.grid(alpha=0.2)
     axis.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.01, 0.5), title="filled: on the front", title_fontsize=7)
     figure.text(0.5, 0.0, where(result), fontsize=6, ha="center")
-    figure.savefig(arguments.picture, bbox_inches="tight", metadata={"Date": None})
+    figure.savefig(arguments.plot, bbox_inches="tight", metadata={"Date": None})
 
 
 def main():
@@ -235,7 +235,7 @@ def main():
     shower.set_defaults(action=lambda arguments: print(table(json.loads(pathlib.Path(arguments.file).read_text())), end=""))
     plotter = commands.add_parser("plot")
     plotter.add_argument("file")
-    plotter.add_argument("picture")
+    plotter.add_argument("plot")
     plotter.set_defaults(action=plot)
     own, passed_on = own_and_passed_on()
     arguments = parser.parse_args(own)

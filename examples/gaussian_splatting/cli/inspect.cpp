@@ -24,7 +24,7 @@ void inspect(const settings& s) {
                     found.evidence.c_str(), "", found.choice.c_str(), costs_and_gains.c_str());
         all.push_back(
             {{"name", name},
-             {"called_for", found.recommended ? nlohmann::ordered_json(*found.recommended) : nullptr},
+             {"recommended", found.recommended ? nlohmann::ordered_json(*found.recommended) : nullptr},
              {"evidence", found.evidence},
              {"choice", found.choice},
              {"expected", costs_and_gains}});

@@ -20,21 +20,21 @@ COLOUR = "direction"
 
 def told(case, **color):
     """The run of a scene of which all is decided right but its color, as said."""
-    effects = {name: {"called_for": has, "evidence": "seen"} for name, has in case["truth"].items()}
+    effects = {name: {"recommended": has, "evidence": "seen"} for name, has in case["truth"].items()}
     effects[COLOUR].update(color)
     return {**case, "effects": effects, "seconds": 0.5}
 
 
 def mixtures(*pairs):
     """With gloss or not, and whether color is called for."""
-    return [told(decisions.synthetic("mixture", "spheres", {"gloss": 0.5} if has else {}), called_for=called_for)
-            for has, called_for in pairs]
+    return [told(decisions.synthetic("mixture", "spheres", {"gloss": 0.5} if has else {}), recommended=recommended)
+            for has, recommended in pairs]
 
 
 class Arithmetic(unittest.TestCase):
     def row(self, runs, noise="0"):
         """Precision, recall, and the counts of color."""
-        pure = [told(decisions.synthetic("pure", "alpha", {}), called_for=None, evidence="no telling: 7 points")]
+        pure = [told(decisions.synthetic("pure", "alpha", {}), recommended=None, evidence="no telling: 7 points")]
         real = [{**pure[0], "kind": "real", "scene": "lego", "truth": None}]
         result = {"runs": [*pure, *runs, *real], "seed": 3, "processor": " a CPU", "compiler": "c++", "commit": "none"}
         self.text = decisions.tables(result)
@@ -59,7 +59,7 @@ class Arithmetic(unittest.TestCase):
 
     def test_misses_have_their_evidence(self):
         glossy = decisions.synthetic("mixture", "spheres", {"gloss": 0.4})
-        self.row([told(glossy, called_for=None, evidence="no telling: 9 points")])
+        self.row([told(glossy, recommended=None, evidence="no telling: 9 points")])
         self.assertIn("| `alpha` | right: no telling | right: no | right: no | right: no | right: no | right: no | right: no | right: yes |", self.text)
         self.assertIn(f"| `spheres,gloss=0.4` | {COLOUR} | no telling | 9 points |", self.text)
         self.assertIn("| lego | no telling: 7 points | no: seen | no: seen | no: seen | no: seen | no: seen | no: seen | yes: seen | 0.50 |", self.text)

@@ -529,7 +529,7 @@ TEST_CASE("whatever is cut off or changed in an image, the outcome is an error o
     CHECK(gs_test::read_file(folder / "stderr").empty());
 }
 
-TEST_CASE("shrink is the exact area average, rounded to nearest") {
+TEST_CASE("downsampling is the exact area average, rounded to nearest") {
     const image source = random_image(14, 9, 3);
     for (const auto& size : {std::pair{14, 9}, {7, 3}, {5, 4}, {13, 8}, {1, 9}, {14, 1}, {1, 1}}) {
         const int width = size.first, height = size.second;
@@ -564,7 +564,7 @@ TEST_CASE("a transparent pixel's hidden color does not bleed into the average") 
     CHECK(mean.has_alpha);
 }
 
-TEST_CASE("shrinking an opaque image keeps it opaque") {
+TEST_CASE("downsampling keeps an opaque image opaque") {
     image opaque = random_image(10, 10, 5);
     for (std::size_t i = 3; i < opaque.rgba.size(); i += 4) opaque.rgba[i] = 255;
     opaque.has_alpha = false;
@@ -573,7 +573,7 @@ TEST_CASE("shrinking an opaque image keeps it opaque") {
     for (std::size_t i = 3; i < small.rgba.size(); i += 4) REQUIRE(small.rgba[i] == 255);
 }
 
-TEST_CASE("a shrunk view has the camera of its photo") {
+TEST_CASE("a downsampled view has the camera of its photo") {
     gs::view full;
     full.name = "a.png";
     full.pixels = random_image(35, 9, 4);

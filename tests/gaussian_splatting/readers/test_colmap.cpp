@@ -591,7 +591,7 @@ TEST_CASE("the resolution scales photos and intrinsics by the same exact ratios"
     CHECK(says(error_of_loading(options), {"resolution", "at least 1"}));
 }
 
-TEST_CASE("a photo never shrinks below one pixel") {
+TEST_CASE("a photo is never downsampled below one pixel") {
     const temporary_folder folder;
     model_record model = plain_model();
     for (auto& c : model.cameras) c.width = 40, c.height = 2;
@@ -656,7 +656,7 @@ TEST_CASE("photos of fisheye lenses stay as they are, in binary and in text") {
     }
 }
 
-TEST_CASE("masks leave out where they are black, in photos that were bent and shrunk as well") {
+TEST_CASE("masks exclude black pixels, also in undistorted and downsampled photos") {
     for (const double bent : {0.0, 0.1}) {
         CAPTURE(bent);
         const distorted_case lens = radial(-bent, bent / 2);
@@ -730,7 +730,7 @@ void write_gray(const std::filesystem::path& file, int width, int height,
 
 }  // namespace
 
-TEST_CASE("depth maps come with their photos, bent and shrunk as these, and some photos have none") {
+TEST_CASE("depth maps are undistorted and downsampled with their photos, and some photos have none") {
     for (const double bent : {0.0, 0.1}) {
         CAPTURE(bent);
         const distorted_case lens = radial(-bent, bent / 2);

@@ -152,7 +152,7 @@ TEST_CASE("gradients of centers, in halves of the image, are alike on photos of 
     }
 }
 
-TEST_CASE("views that were not shrunk are not to be had") {
+TEST_CASE("a level that was not downsampled is an error") {
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {
         const auto e = make();

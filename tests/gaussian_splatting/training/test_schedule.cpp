@@ -27,7 +27,7 @@ TEST_CASE("a degree of spherical harmonics every interval") {
     CHECK(s.sh_degree_at(6999) == 2);
 }
 
-TEST_CASE("photos are shrunk less and less") {
+TEST_CASE("images are downsampled less and less") {
     schedule s;
     s.resolution_schedule = 10;
     CHECK(s.downscales_at(10) == 1);

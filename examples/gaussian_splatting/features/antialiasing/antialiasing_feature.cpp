@@ -11,7 +11,7 @@
 namespace gs::features {
 
 finding antialiasing_feature::analyze(const scene_statistics& statistics) const {
-    constexpr double called_for = 2;  // times as large
+    constexpr double least_ratio = 2;
     std::vector<double> ratios;
     for (const auto& seen : statistics.points()) {
         if (seen.size() < scene_statistics::least_photos_of_point) continue;
@@ -20,7 +20,7 @@ finding antialiasing_feature::analyze(const scene_statistics& statistics) const 
     }
     if (ratios.size() < enough_points) return {{}, too_few_points(ratios.size(), "in sight"), "off"};
     const double ratio = median(ratios);
-    const bool spreads = ratio >= called_for;
+    const bool spreads = ratio >= least_ratio;
     return {spreads, text("the median point is %.1f times as large in one photo as in another", ratio),
             spreads ? "on" : "off"};
 }

@@ -81,10 +81,10 @@ sh_review revise_sh_degree(train::engine& engine, const scene& scene, const std:
     }
     review.unexplained = left.unexplained;
     // Where too few points tell, no band is added.
-    const int called_for = left.is_known() ? left.degree() : 0;
-    review.sh_degree = std::max(sh_degree, called_for);
+    const int recommended = left.is_known() ? left.degree() : 0;
+    review.sh_degree = std::max(sh_degree, recommended);
     if (sh_degree > 0) review.change = change_above(sh_degree - 1, engine, scene, background);
-    if (called_for > 0) return review;
+    if (recommended > 0) return review;
     while (review.change && *review.change < band_change_limit) {
         --review.sh_degree;
         review.change.reset();
