@@ -114,7 +114,7 @@ void run(trial& t, gs::train::engine& engine, ordered_json& row) {
 
     gs::train::train_options o;
     o.schedule = t.schedule;
-    o.densification.adaptive = t.adaptive;
+    o.densification.of<gs::train::adaptive_config>() = t.adaptive;
     o.max_cap = t.cap;
     o.seed = t.seed;
     const gs::train::train_events events{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "option.hpp"
+#include "option_table.hpp"
 
 namespace gs::cli {
 

@@ -3,7 +3,6 @@
 #include "check_settings.hpp"
 
 #include "../core/error.hpp"
-#include "../densify/adaptive/adaptive_schedule.hpp"
 
 namespace gs::cli {
 
@@ -25,21 +24,6 @@ void check_downscales(const train::schedule& plan) {
                     ", but there are only " + std::to_string(plan.iterations) + ": lower one of them");
 }
 
-void check_pruning(const settings& s) {
-    const train::adaptive_schedule plan(s.densification.adaptive, {.iterations = s.schedule.iterations});
-    if (plan.share_to_prune() > 0 && plan.densify_until() >= s.schedule.iterations)
-        throw error("--prune-share prunes after densification, which --densify-until-iter ends at " +
-                    std::to_string(plan.densify_until()) + ", but there are only " +
-                    std::to_string(s.schedule.iterations) +
-                    " iterations: lower --densify-until-iter or set --prune-share 0");
-}
-
-void check_budget(const settings& s) {
-    if (s.budget && s.max_cap && *s.budget > *s.max_cap)
-        throw error("--budget " + std::to_string(*s.budget) + " is more than --max-cap " +
-                    std::to_string(*s.max_cap) + ": lower the budget or raise the cap");
-}
-
 void check_background(const settings& s) {
     if (s.command != command::train && s.background == background_kind::random)
         throw error("--background random is for train: give " + name_of(s.command) + " white or black");
@@ -47,11 +31,14 @@ void check_background(const settings& s) {
 
 }  // namespace
 
+void check_belongs_to_strategy(const options::option& row, const std::string& strategy) {
+    if (row.strategy.empty() || row.strategy == strategy) return;
+    throw error(row.name() + " belongs to --strategy " + row.strategy + ", but the strategy is " + strategy +
+                ": leave it out or choose that strategy");
+}
+
 void set_dependent_values(settings& s) {
     s.scene.seed = s.seed;
-    train::adaptive_config& adaptive = s.densification.adaptive;
-    adaptive.budget = s.budget.value_or(0);
-    if (s.budget && !adaptive.prune_share) adaptive.prune_share = 0;
     if (s.command == command::train) {
         s.scene.masks = s.effects.allows("masks");
         s.scene.depths = s.effects.allows("depth");
@@ -64,8 +51,8 @@ void check_settings(const settings& s) {
     check_iterations(s.save_iterations, s.schedule.iterations, "--save-iterations");
     check_iterations(s.test_iterations, s.schedule.iterations, "--test-iterations");
     check_downscales(s.schedule);
-    check_pruning(s);
-    check_budget(s);
+    s.densification.check(
+        {.iterations = s.schedule.iterations, .max_gaussians = s.max_cap.value_or(0), .seed = s.seed});
     check_background(s);
 }
 

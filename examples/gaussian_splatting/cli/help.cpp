@@ -11,6 +11,8 @@ namespace gs::cli {
 
 namespace {
 
+using options::alternatives;
+
 constexpr std::size_t line_width = 100;
 
 /// Fills lines of at most `line_width` characters that begin with `indent`.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "option.hpp"
+#include "option_table.hpp"
 
 namespace gs::cli {
 

@@ -14,12 +14,14 @@
 #include "check_settings.hpp"
 #include "help.hpp"
 #include "nearest_word.hpp"
-#include "option.hpp"
+#include "option_table.hpp"
 
 namespace gs::cli {
 
 namespace {
 
+using options::alternatives;
+using options::refused_word;
 using words = std::vector<std::string>;
 
 bool contains(const words& all, const std::string& word) { return std::ranges::find(all, word) != all.end(); }
@@ -166,6 +168,8 @@ settings parse(words given) {
     if (contains(given, "--help") || contains(given, "-h"))
         print_and_exit(help_text(s.command, options.rows()));
     options.read(given);
+    for (const option& row : options.rows())
+        if (options.is_explicit(row.name())) check_belongs_to_strategy(row, s.densification.name);
     apply_quality_preset(s.quality, options.rows(),
                          [&](const std::string& name) { return options.is_explicit(name); });
     set_dependent_values(s);

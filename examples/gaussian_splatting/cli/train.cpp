@@ -22,7 +22,9 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     train::train_options o;
     o.schedule = s.schedule;
     o.densification = s.densification;
-    o.max_cap = s.max_cap.value_or(std::max(train::default_cap(scene), s.budget.value_or(0)));
+    o.loss = s.loss;
+    o.max_cap =
+        s.max_cap.value_or(std::max(train::default_cap(scene), s.densification.target_count().value_or(0)));
     o.seed = s.seed;
     o.background = context.background(scene.has_alpha && !features.is_on("exposure"));
     o.save_iterations = s.save_iterations;
@@ -36,7 +38,7 @@ train::train_options options_of(const settings& s, const scene& scene, const com
 /// where they matter.
 gaussians first_model(const scene& scene, const train::train_options& o) {
     constexpr std::size_t most_random = 100000;
-    const std::size_t budget = o.densification.adaptive.budget, most = budget > 0 ? budget : o.max_cap;
+    const std::size_t most = o.densification.target_count().value_or(o.max_cap);
     const auto points = scene.points.empty()
                             ? random_points(scene, std::min(most_random, most / 2 + 1), o.seed)
                             : scene.points;

@@ -6,9 +6,8 @@
 
 #include <algorithm>
 
-#include "../densify/adaptive/adaptive_schedule.hpp"
 #include "../features/sh_degree/sh_degree_feature.hpp"
-#include "option.hpp"
+#include "option_table.hpp"
 #include "report.hpp"
 
 namespace gs::cli {
@@ -41,11 +40,7 @@ settings resolved(settings s, const train::train_options& options, const std::st
     s.schedule = plan;
     s.schedule.sh_lr = plan.sh_rate();
     s.schedule.resolution_schedule = plan.resolution_interval();
-    train::adaptive_config& adaptive = s.densification.adaptive;
-    const train::adaptive_schedule densification(adaptive, {.iterations = plan.iterations});
-    adaptive.densify_until_iter = densification.densify_until();
-    adaptive.densify_grad_threshold = densification.growth_threshold();
-    adaptive.prune_share = densification.share_to_prune();
+    s.densification = s.densification.resolved({.iterations = plan.iterations, .seed = s.seed});
     s.sh_degree = features::first_sh_degree(options.features.values_if_on("direction"));
     s.effects.text = effects_in_use;
     s.max_cap = options.max_cap;
@@ -56,7 +51,9 @@ settings resolved(settings s, const train::train_options& options, const std::st
 ordered_json settings_json(settings s) {
     ordered_json all;
     for (const option& row : option_table(s))
-        if (row.belongs_to(command::train) && row.is_recorded) all[row.key()] = row.value.json();
+        if (row.belongs_to(command::train) && row.is_recorded &&
+            (row.strategy.empty() || row.strategy == s.densification.name))
+            all[row.key()] = row.value.json();
     return all;
 }
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
-#include <string_view>
+#include <tuple>
+#include <type_traits>
 
 #include "../core/error.hpp"
 #include "adaptive/adaptive.hpp"
@@ -14,41 +14,32 @@
 
 namespace gs::train {
 
-/// Creates a strategy for a training on a device.
-template <device::device Device>
-using strategy_factory = std::unique_ptr<strategy<Device>> (*)(Device&, const strategy_settings&,
-                                                               const training_facts&);
+/// Strategies on a device, one for each settings type of `strategy_settings`.
+template <device::device Device, class... Strategy>
+struct strategy_list {
+    static_assert(sizeof...(Strategy) == std::tuple_size_v<strategy_settings::configs>,
+                  "each strategy has settings in strategy_settings.hpp, and each settings a strategy");
 
-/// The factory of `Strategy`, whose settings are the member `Config` of `strategy_settings`.
-template <device::device Device, template <device::device> class Strategy, auto Config>
-std::unique_ptr<strategy<Device>> create(Device& device, const strategy_settings& settings,
-                                         const training_facts& facts) {
-    return std::make_unique<Strategy<Device>>(device, settings.*Config, facts);
-}
-
-template <device::device Device>
-struct strategy_entry {
-    std::string_view name;
-    strategy_factory<Device> make;
-};
-
-/// All strategies: a new one needs a line here and a member in `strategy_settings`.
-template <device::device Device>
-inline constexpr std::array strategies{
-    strategy_entry<Device>{"adaptive", create<Device, adaptive, &strategy_settings::adaptive>},
-};
-
-/// Creates the strategy that `settings` name. Throws `error` if there is none of that name.
-template <device::device Device>
-std::unique_ptr<strategy<Device>> make_strategy(Device& device, const strategy_settings& settings,
-                                                const training_facts& facts) {
-    std::string known;
-    for (const auto& entry : strategies<Device>) {
-        if (entry.name == settings.name) return entry.make(device, settings, facts);
-        known += known.empty() ? "" : ", ";
-        known += entry.name;
+    /// Creates the strategy that `settings` name. The device must outlive it. Throws `error`, which lists the
+    /// names, if there is none.
+    static std::unique_ptr<strategy<Device>> make(Device& device, const strategy_settings& settings,
+                                                  const training_facts& facts) {
+        std::unique_ptr<strategy<Device>> made;
+        const auto make_if_named = [&]<class One>(std::type_identity<One>) {
+            using config = typename One::settings;
+            if (settings.name == config::name)
+                made = std::make_unique<One>(device, settings.of<config>(), facts);
+        };
+        (make_if_named(std::type_identity<Strategy>{}), ...);
+        if (made) return made;
+        std::string known;
+        for (const std::string& one : strategy_settings::names()) known += (known.empty() ? "" : ", ") + one;
+        throw error("no densification strategy is called \"" + settings.name + "\"; choose one of: " + known);
     }
-    throw error("unknown densification strategy '" + settings.name + "': choose one of " + known);
-}
+};
+
+/// All strategies. A new one is an entry here; its settings are an entry of `strategy_settings::configs`.
+template <device::device Device>
+using strategies = strategy_list<Device, adaptive<Device>>;
 
 }  // namespace gs::train

@@ -47,7 +47,7 @@ struct run_context : trained_gaussians<Device> {
 };
 
 /// A densification strategy decides which Gaussians to add, move and remove. The engine creates one for each
-/// training from the table in strategies.hpp and calls it in this order in each iteration:
+/// training from the list in strategies.hpp and calls it in this order in each iteration:
 ///
 ///     (the training step, which collects statistics if `wants`)
 ///     after_step  at the end of the step

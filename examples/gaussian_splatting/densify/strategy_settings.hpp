@@ -2,16 +2,91 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <concepts>
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
 
 #include "adaptive/adaptive_config.hpp"
+#include "timetable.hpp"
+
+namespace gs::options {
+struct option;
+}
 
 namespace gs::train {
 
-/// The name of a densification strategy (see strategies.hpp) and the settings of each one.
+/// The settings of a densification strategy, and what the program needs to know of a strategy without a
+/// device.
+template <class T>
+concept strategy_config = std::copyable<T> && requires(T config, const T& set, const training_facts& facts) {
+    /// What --strategy calls the strategy.
+    { T::name } -> std::convertible_to<std::string_view>;
+    /// The options that set members of `config`, which must outlive them. `commands`, `group` and
+    /// `strategy` of a row may be left empty.
+    { config.options() } -> std::same_as<std::vector<options::option>>;
+    /// Throws `error` if values contradict each other or the training, of which only `iterations` and
+    /// `seed` are known, and `max_gaussians` if --max-cap is given (otherwise it is 0).
+    { set.check(facts) } -> std::same_as<void>;
+    /// The settings with the values that dependent defaults come to, for settings.json.
+    { set.resolved(facts) } -> std::same_as<T>;
+    /// The number of Gaussians that the user asks for; none if the strategy decides.
+    { set.target_count() } -> std::same_as<std::optional<std::size_t>>;
+};
+
+/// The name of a densification strategy and the settings of each one.
 struct strategy_settings {
+    /// A new strategy is an entry here.
+    using configs = std::tuple<adaptive_config>;
+
     std::string name = "adaptive";
-    adaptive_config adaptive{};
+    configs all;
+
+    template <strategy_config Config>
+    Config& of() {
+        return std::get<Config>(all);
+    }
+    template <strategy_config Config>
+    const Config& of() const {
+        return std::get<Config>(all);
+    }
+
+    /// Calls `visit` with the settings of each strategy.
+    void for_each(auto visit) {
+        std::apply([&](auto&... config) { (visit(config), ...); }, all);
+    }
+
+    /// Of the strategy that `name` names, see `strategy_config`.
+    /// @{
+    void check(const training_facts& facts) const {
+        if_chosen([&](const auto& config) { config.check(facts); });
+    }
+    std::optional<std::size_t> target_count() const {
+        std::optional<std::size_t> count;
+        if_chosen([&](const auto& config) { count = config.target_count(); });
+        return count;
+    }
+    /// @}
+    strategy_settings resolved(const training_facts& facts) const {
+        strategy_settings copy = *this;
+        copy.for_each([&](auto& config) { config = config.resolved(facts); });
+        return copy;
+    }
+
+    static std::vector<std::string> names() {
+        std::vector<std::string> all_names;
+        strategy_settings().for_each([&](auto& config) { all_names.emplace_back(config.name); });
+        return all_names;
+    }
+
+  private:
+    void if_chosen(auto visit) const {
+        std::apply([&](const auto&... config) { ((config.name == name ? visit(config) : void()), ...); },
+                   all);
+    }
 };
 
 }  // namespace gs::train

@@ -5,7 +5,7 @@
 /// @file
 /// The interface of an image loss: a measure of the difference between a render and its target that
 /// training minimizes. To add a loss, implement `loss` in a folder of its own, with the device as a
-/// template parameter, and add a line to the table in losses.hpp.
+/// template parameter, and add it to the list in losses.hpp.
 
 #include <cmath>
 #include <span>
@@ -15,7 +15,7 @@
 
 namespace gs::train {
 
-/// The loss that training minimizes by default: see the table in losses.hpp.
+/// The loss that training minimizes by default: see the list in losses.hpp.
 inline constexpr const char* default_loss = "l1_ssim";
 
 /// Means over the renders of several steps.

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <vector>
 
 #include "../core/error.hpp"
 #include "../device/device.hpp"
@@ -14,36 +15,28 @@
 
 namespace gs::train {
 
-/// Creates a loss on a device, which must outlive it.
-template <device::device Device>
-using loss_factory = std::unique_ptr<loss<float>> (*)(Device& device);
+/// Losses with distinct names on a device.
+template <device::device Device, class... Loss>
+struct loss_list {
+    static std::vector<std::string> names() { return {std::string(Loss::name)...}; }
 
-template <device::device Device>
-struct loss_entry {
-    std::string_view name;
-    loss_factory<Device> make;
-};
-
-template <class Loss, device::device Device>
-std::unique_ptr<loss<float>> make_loss(Device& device) {
-    return std::make_unique<Loss>(device);
-}
-
-/// All losses. A new one is a line here.
-template <device::device Device>
-inline constexpr std::array losses{
-    loss_entry<Device>{"l1_ssim", make_loss<l1_ssim<Device, float>>},
-};
-
-/// Throws `error`, which lists the names, if no loss has this name.
-template <device::device Device>
-loss_factory<Device> find_loss(std::string_view name) {
-    std::string names;
-    for (const loss_entry<Device>& entry : losses<Device>) {
-        if (entry.name == name) return entry.make;
-        names += (names.empty() ? "" : ", ") + std::string(entry.name);
+    /// Creates the loss with this name. The device must outlive it. Throws `error`, which lists the
+    /// names, if there is none.
+    static std::unique_ptr<loss<float>> make(Device& device, std::string_view name) {
+        std::unique_ptr<loss<float>> made;
+        const auto make_if_named = [&]<class One>(std::type_identity<One>) {
+            if (One::name == name) made = std::make_unique<One>(device);
+        };
+        (make_if_named(std::type_identity<Loss>{}), ...);
+        if (made) return made;
+        std::string known;
+        for (const std::string& one : names()) known += (known.empty() ? "" : ", ") + one;
+        throw error("no loss is called \"" + std::string(name) + "\"; choose one of: " + known);
     }
-    throw error("no loss is called \"" + std::string(name) + "\"; choose one of: " + names);
-}
+};
+
+/// All losses. A new one is an entry here.
+template <device::device Device>
+using losses = loss_list<Device, l1_ssim<Device, float>>;
 
 }  // namespace gs::train

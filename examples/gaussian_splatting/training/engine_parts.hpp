@@ -15,8 +15,9 @@ namespace gs::train {
 template <device::device Device>
 struct engine_parts {
     std::unique_ptr<loss<float>> (*make_loss)(Device&, const std::string& name) =
-        [](Device& device, const std::string& name) { return find_loss<Device>(name)(device); };
-    strategy_factory<Device> make_strategy = train::make_strategy<Device>;
+        [](Device& device, const std::string& name) { return losses<Device>::make(device, name); };
+    std::unique_ptr<strategy<Device>> (*make_strategy)(Device&, const strategy_settings&,
+                                                       const training_facts&) = strategies<Device>::make;
 };
 
 }  // namespace gs::train

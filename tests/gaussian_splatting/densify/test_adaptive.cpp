@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <set>
 
 #include "../training/engines.hpp"
@@ -90,7 +91,7 @@ TEST_CASE("adaptive: a budget limits growth to the Gaussians with the largest gr
         config.densify_grad_threshold = 0;  // every Gaussian
         config.densify_until_iter = 3;      // densifies twice
         config.least_opacity = 0;
-        const auto grown = [&](std::size_t budget) {
+        const auto grown = [&](std::optional<std::size_t> budget) {
             e->set_model(model);
             e->reserve();
             e->step(still);
@@ -99,7 +100,7 @@ TEST_CASE("adaptive: a budget limits growth to the Gaussians with the largest gr
             return e->get_model();
         };
         CHECK(grown(1000).count() == 1000);
-        const gaussians few = grown(1080), many = grown(0);
+        const gaussians few = grown(1080), many = grown({});
         CHECK(few.count() == 1040);
         CHECK(many.count() == 1100);
         // The 40 copied ones are among the 100.
@@ -356,7 +357,7 @@ TEST_CASE("adaptive: an opacity reset lowers opacities and never raises them") {
         e->set_model(model);
         gs::train::training_setup setup;
         setup.facts.white = true;
-        setup.densification.adaptive.densify_from_iter = 7;
+        setup.densification.of<gs::train::adaptive_config>().densify_from_iter = 7;
         e->begin(setup);
         e->adjust(6);
         CHECK(e->get_model().opacity == model.opacity);

@@ -114,7 +114,7 @@ std::vector<render_case> trained(gs::train::engine& engine, const gs::scene& sce
     engine.set_model(gs::from_points(gs::random_points(scene, 5000, 1), 3, 5000, 1));
     o.schedule.iterations = iterations;
     o.schedule.sh_degree_interval = iterations / 4;
-    o.densification.adaptive.densify_from_iter = iterations / 4;
+    o.densification.of<gs::train::adaptive_config>().densify_from_iter = iterations / 4;
     o.max_cap = gs::train::default_cap(scene);
     gs::train::train_events events;
     events.report = [](const gs::train::progress&) {};

@@ -20,10 +20,10 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene, accumulator 
     gs::train::train_options o;
     o.schedule.iterations = 120;
     o.schedule.sh_degree_interval = 40;
-    o.densification.adaptive.densify_from_iter = 40;
-    o.densification.adaptive.densify_until_iter = 100;
-    o.densification.adaptive.densification_interval = 30;
-    o.densification.adaptive.densify_grad_threshold = 1e-5;
+    o.densification.of<gs::train::adaptive_config>().densify_from_iter = 40;
+    o.densification.of<gs::train::adaptive_config>().densify_until_iter = 100;
+    o.densification.of<gs::train::adaptive_config>().densification_interval = 30;
+    o.densification.of<gs::train::adaptive_config>().densify_grad_threshold = 1e-5;
     o.max_cap = 4000;
     o.gradient = how;
     e.set_views(scene.train, {}, o.schedule.num_downscales);

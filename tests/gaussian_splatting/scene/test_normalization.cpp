@@ -61,8 +61,8 @@ gs::gaussians trained(gs::train::engine& engine, const gs::scene& scene) {
     engine.set_views(scene.train, scene.test, o.schedule.num_downscales);
     engine.set_model(gs::from_points(scene.points, 0, 3000, 1));
     o.schedule.iterations = 200;
-    o.densification.adaptive.densify_from_iter = 50;
-    o.densification.adaptive.densification_interval = 25;
+    o.densification.of<gs::train::adaptive_config>().densify_from_iter = 50;
+    o.densification.of<gs::train::adaptive_config>().densification_interval = 25;
     o.max_cap = 4000;
     const gs::train::train_events events{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
     gs::train::train(engine, scene, o, events);

@@ -64,7 +64,7 @@ inline std::uint64_t densify_once(gs::train::engine& e, gs::train::adaptive_conf
     gs::train::training_setup setup;
     setup.facts.extent = extent;
     setup.facts.max_gaussians = cap;
-    setup.densification.adaptive = config;
+    setup.densification.of<gs::train::adaptive_config>() = config;
     e.begin(setup);
     return e.densify(1);
 }
@@ -72,8 +72,8 @@ inline std::uint64_t densify_once(gs::train::engine& e, gs::train::adaptive_conf
 /// Removes this share of the Gaussians, by what steps have collected.
 inline void prune_once(gs::train::engine& e, double share) {
     gs::train::training_setup setup;
-    setup.densification.adaptive.densify_until_iter = 0;
-    setup.densification.adaptive.prune_share = share;
+    setup.densification.of<gs::train::adaptive_config>().densify_until_iter = 0;
+    setup.densification.of<gs::train::adaptive_config>().prune_share = share;
     e.begin(setup);
     e.densify(1);
 }

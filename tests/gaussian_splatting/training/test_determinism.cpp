@@ -24,7 +24,7 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene) {
     gs::train::train_options o;
     o.schedule.iterations = 200;
     o.schedule.sh_degree_interval = 40;
-    auto& adaptive = o.densification.adaptive;
+    auto& adaptive = o.densification.of<gs::train::adaptive_config>();
     adaptive.densify_from_iter = 60;
     adaptive.densification_interval = 40;
     adaptive.densify_until_iter = 170;

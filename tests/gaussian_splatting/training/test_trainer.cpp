@@ -16,6 +16,7 @@
 
 namespace {
 
+using gs::train::adaptive_config;
 using gs::train::densify_config;
 using gs::train::step_plan;
 
@@ -46,7 +47,8 @@ class recorder final : public gs::train::engine, gs::device::profiler {
     void set_model(const gs::gaussians&) override {}
     gs::gaussians get_model() override { return {}; }
     void begin(const gs::train::training_setup& setup) override {
-        schedule_ = std::make_unique<gs::train::adaptive_schedule>(setup.densification.adaptive, setup.facts);
+        schedule_ = std::make_unique<gs::train::adaptive_schedule>(setup.densification.of<adaptive_config>(),
+                                                                   setup.facts);
         timetable_ = schedule_.get();
     }
     void reserve(int downscales) override { sizes_reserved.push_back(downscales); }
@@ -121,7 +123,7 @@ std::unique_ptr<recorder> trained(gs::train::train_options o, std::size_t gaussi
     gs::scene scene;
     scene.train.resize(3);
     o.schedule.iterations = 21;
-    auto& adaptive = o.densification.adaptive;
+    auto& adaptive = o.densification.of<adaptive_config>();
     adaptive.prune_share = adaptive.prune_share.value_or(0);
     adaptive.densify_from_iter = 2;
     adaptive.densification_interval = 2;
@@ -174,8 +176,8 @@ TEST_CASE("colors that depend on direction learn every so many steps") {
 
 TEST_CASE("a budget is grown to evenly from where training stands, whatever is dropped, and below the cap") {
     gs::train::train_options o;
-    o.densification.adaptive.budget = 60;
-    o.densification.adaptive.revised_opacity = false;
+    o.densification.of<adaptive_config>().budget = 60;
+    o.densification.of<adaptive_config>().revised_opacity = false;
     const auto made = trained(o, 30);
     CHECK(made->counts == std::vector<std::size_t>{35, 40, 45, 50, 55, 60});
     for (const densify_config& c : made->densifications) {
@@ -184,14 +186,14 @@ TEST_CASE("a budget is grown to evenly from where training stands, whatever is d
     }
     CHECK(trained(o, 30, 5)->counts == std::vector<std::size_t>{30, 31, 34, 38, 44, 55});
     CHECK(trained(o, 70)->counts == std::vector<std::size_t>(6, 70));
-    o.densification.adaptive.budget = 120;
+    o.densification.of<adaptive_config>().budget = 120;
     CHECK(trained(o, 30)->densifications.back().cap == 100);
 }
 
 TEST_CASE("pruning comes once the views have been round after densification") {
     gs::train::train_options o;
     CHECK(trained(o)->pruned_after.empty());
-    o.densification.adaptive.prune_share = 0.25;
+    o.densification.of<adaptive_config>().prune_share = 0.25;
     const auto made = trained(o);  // densifies before 15; three views
     CHECK(made->pruned_after == std::vector<std::size_t>{18});
     CHECK(made->sizes_reserved.size() == 1 + 1 + 6 + 1);
@@ -204,7 +206,7 @@ TEST_CASE("Gaussians lose bands once none comes or goes, and bands have been rev
     o.schedule.sh_degree = 1;
     o.schedule.sh_degree_interval = 2;
     CHECK(trained(o, 50, 0, keeps)->pruned_sh_after == std::vector<std::size_t>{15});  // densifies before
-    o.densification.adaptive.prune_share = 0.25;
+    o.densification.of<adaptive_config>().prune_share = 0.25;
     CHECK(trained(o, 50, 0, keeps)->pruned_sh_after == std::vector<std::size_t>{18});  // prunes
     o.schedule.sh_degree_interval = 10;
     for (const int degree : {0, 1, 2}) {
@@ -214,7 +216,7 @@ TEST_CASE("Gaussians lose bands once none comes or goes, and bands have been rev
         // Reviewed after 20: none are there, or new ones have no time before the end.
         CHECK(made->pruned_sh_after == std::vector<std::size_t>(degree == 1 ? 1 : 0, 20));
     }
-    o.densification.adaptive.prune_share = 0;
+    o.densification.of<adaptive_config>().prune_share = 0;
     o.schedule.sh_degree_interval = 6;  // reviewed after 12, with two new ones the last time
     const revision adds{[](int) { return 2; }, 0.01};
     CHECK(trained(o, 50, 0, adds)->pruned_sh_after == std::vector<std::size_t>{18});

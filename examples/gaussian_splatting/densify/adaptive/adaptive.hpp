@@ -17,6 +17,8 @@ namespace gs::train {
 template <device::device Device>
 class adaptive final : public strategy<Device> {
   public:
+    using settings = adaptive_config;
+
     adaptive(Device& device, const adaptive_config& config, const training_facts& facts)
         : schedule_(config, facts), densifier_(device) {}
 

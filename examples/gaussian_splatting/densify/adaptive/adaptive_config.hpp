@@ -4,12 +4,22 @@
 
 #include <cstddef>
 #include <optional>
+#include <string_view>
+#include <vector>
+
+#include "../timetable.hpp"
+
+namespace gs::options {
+struct option;
+}
 
 namespace gs::train {
 
 /// Settings of the strategy `adaptive`. Intervals are positive. Optional settings without a value follow from
 /// the training: see `adaptive_schedule`.
 struct adaptive_config {
+    static constexpr std::string_view name = "adaptive";
+
     int densify_from_iter = 500;  ///< densifies after this iteration
     std::optional<int> densify_until_iter{};
     int densification_interval = 100;
@@ -17,9 +27,18 @@ struct adaptive_config {
     int opacity_reset_interval = 3000;
     std::optional<double> prune_share{};
     float least_opacity = 0.005f;  ///< removes Gaussians below it
-    /// Number of Gaussians to grow to, evenly and regardless of the gradient threshold; 0: by the threshold.
-    std::size_t budget = 0;
+    /// Number of Gaussians to grow to, evenly and regardless of the gradient threshold. None: by the
+    /// threshold.
+    std::optional<std::size_t> budget{};
     bool revised_opacity = true;  ///< see `densify_config`
+
+    /// See `strategy_config`.
+    /// @{
+    std::vector<options::option> options();
+    void check(const training_facts& facts) const;
+    adaptive_config resolved(const training_facts& facts) const;
+    std::optional<std::size_t> target_count() const { return budget; }
+    /// @}
 };
 
 }  // namespace gs::train

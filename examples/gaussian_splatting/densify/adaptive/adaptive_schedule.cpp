@@ -26,7 +26,8 @@ densify_config adaptive_schedule::densify_config_at(int iteration, std::size_t g
     config.gradient = static_cast<float>(growth_threshold());
     config.least_opacity = config_.least_opacity;
     config.cap = facts_.max_gaussians;
-    if (const std::size_t budget = config_.budget; budget > 0) {
+    if (config_.budget) {
+        const std::size_t budget = *config_.budget;
         const auto left = static_cast<std::size_t>(densifications_from(iteration));
         config.gradient = 0;
         config.cap = std::min(config.cap, budget);
@@ -53,7 +54,7 @@ double adaptive_schedule::share_to_prune() const {
     const int interval = config_.densification_interval;
     const int first = (config_.densify_from_iter / interval + 1) * interval;
     const bool grows = first < densify_until() && densify_until() < facts_.iterations;
-    return config_.prune_share.value_or(grows ? 0.2 : 0.0);
+    return config_.prune_share.value_or(grows && !config_.budget ? 0.2 : 0.0);
 }
 
 int adaptive_schedule::prune_after() const {

@@ -37,7 +37,7 @@ class adaptive_schedule final : public timetable {
 
     /// Whether the share `share_to_prune` is removed after this iteration.
     bool prunes(int iteration) const { return iteration == prune_after(); }
-    /// By default a fifth if densification adds Gaussians and ends before training does.
+    /// By default a fifth if densification adds Gaussians without a budget and ends before training does.
     double share_to_prune() const;
     /// The iteration when each training view has been seen about once since the last densification; 0: never.
     int prune_after() const;

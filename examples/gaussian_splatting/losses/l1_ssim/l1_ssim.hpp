@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string_view>
+
 #include "../../device/device.hpp"
 #include "../../metrics/image_comparison.hpp"
 #include "../loss.hpp"
@@ -19,6 +21,8 @@ inline constexpr double l1_ssim_weight = 0.2;
 template <device::device Device, class Real>
 class l1_ssim final : public loss<Real> {
   public:
+    static constexpr std::string_view name = "l1_ssim";
+
     explicit l1_ssim(Device& device) : device_(device), comparison_(device) {}
 
     void set_target(const target_image& target) override {

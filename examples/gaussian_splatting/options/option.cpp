@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace gs::cli {
+namespace gs::options {
 
 namespace {
 
@@ -40,4 +40,4 @@ std::string option::key() const {
     return key;
 }
 
-}  // namespace gs::cli
+}  // namespace gs::options

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "settings.hpp"
+#include "enum_names.hpp"
 
-namespace gs::cli {
+namespace gs::options {
 
 /// An option does not accept a word. `what()` continues a sentence that begins with the option's name.
 struct refused_word : std::runtime_error {
@@ -70,7 +70,8 @@ option_value text(std::string& member, const std::string& type);
 option_value flag(bool& member);
 /// Numbers of iterations.
 option_value iterations(std::set<int>& member);
-option_value effect_list(features::selection& member);
+/// One of `names`, which are those of a door's table.
+option_value word(std::string& member, std::vector<std::string> names);
 
 /// A flag that sets `member` to one value.
 template <class Member>
@@ -127,4 +128,4 @@ option_value choice(Enum& member) {
 }
 /// @}
 
-}  // namespace gs::cli
+}  // namespace gs::options

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace gs::cli {
+namespace gs::options {
 
 namespace {
 
@@ -82,11 +82,11 @@ option_value iterations(std::set<int>& member) {
             .is_list = true};
 }
 
-option_value effect_list(features::selection& member) {
-    return {.type = "LIST",
-            .range = "",
-            .read = [&member](const std::string& word) { member = features::parse_selection(word); },
-            .json = [&member] { return nlohmann::ordered_json(member.text); }};
+option_value word(std::string& member, std::vector<std::string> names) {
+    return {.type = "WORD",
+            .range = alternatives(names),
+            .read = [names, &member](const std::string& word) { member = names[read_choice(word, names)]; },
+            .json = [&member] { return json_of(member); }};
 }
 
-}  // namespace gs::cli
+}  // namespace gs::options

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
+#include "option_table.hpp"
+
 #include <limits>
 
-#include "option.hpp"
+#include "../losses/loss_names.hpp"
 
 // The table of all options, group by group. An option is one row here and one member of `settings`. From the
 // table come the command line, its checks and its help, settings.json, and docs/reference/cli.md.
@@ -12,7 +14,15 @@ namespace gs::cli {
 namespace {
 
 using rows = std::vector<option>;
+using namespace options;
 using enum command;
+
+option_value effect_list(features::selection& member) {
+    return {.type = "LIST",
+            .range = "",
+            .read = [&member](const std::string& word) { member = features::parse_selection(word); },
+            .json = [&member] { return nlohmann::ordered_json(member.text); }};
+}
 
 rows grouped(const std::string& heading, rows all) {
     for (option& row : all) row.group = heading;
@@ -194,8 +204,13 @@ rows learning_rate_options(settings& s) {
                       .help = help,
                       .default_text = default_text};
     };
-    return grouped("Learning rates of Adam",
-                   {rate("--position-lr-init", plan.position_lr_init,
+    return grouped("Loss and learning rates of Adam",
+                   {{.names = "--loss",
+                     .commands = {train},
+                     .value = word(s.loss, train::loss_names()),
+                     .help = "Measure of the difference between a render and its photo that training "
+                             "minimizes"},
+                    rate("--position-lr-init", plan.position_lr_init,
                          "Learning rate of positions in the first iteration, relative to the scene's extent"),
                     rate("--position-lr-final", plan.position_lr_final,
                          "Learning rate of positions in the last iteration, relative to the scene's extent"),
@@ -208,67 +223,31 @@ rows learning_rate_options(settings& s) {
 }
 
 rows densification_options(settings& s) {
-    train::adaptive_config& plan = s.densification.adaptive;
-    return grouped(
-        "Densification",
-        {{.names = "--densify-from-iter",
-          .commands = {train},
-          .value = whole(plan.densify_from_iter, 0, most_iterations),
-          .help = "Last iteration before densification begins",
-          .unit = "iterations"},
-         {.names = "--densify-until-iter",
-          .commands = {train},
-          .value = whole(plan.densify_until_iter, 0, most_iterations),
-          .help = "Iteration that ends densification",
-          .unit = "iterations",
-          .default_text = "half of the iterations, at most 15000"},
-         {.names = "--densification-interval",
-          .commands = {train},
-          .value = whole(plan.densification_interval, 1, most_iterations),
-          .help = "Iterations between two densification steps",
-          .unit = "iterations"},
-         {.names = "--densify-grad-threshold",
-          .commands = {train},
-          .value = positive(plan.densify_grad_threshold),
-          .help = "Mean gradient of a Gaussian's projected center above which the Gaussian grows, in units "
-                  "of half the image size",
-          .default_text = "8e-5 if densification ends at iteration 15000, and higher if it ends earlier"},
-         {.names = "--opacity-reset-interval",
-          .commands = {train},
-          .value = whole(plan.opacity_reset_interval, 1, most_iterations),
-          .help = "Iterations between two opacity resets; the last interval of densification has none; on a "
-                  "white background densification begins with one",
-          .unit = "iterations"}});
+    return grouped("Densification",
+                   {{.names = "--strategy",
+                     .commands = {train},
+                     .value = word(s.densification.name, train::strategy_settings::names()),
+                     .help = "Densification strategy: decides which Gaussians training adds and removes"},
+                    {.names = "--max-cap",
+                     .commands = {train},
+                     .value = whole(s.max_cap, 1, 100000000),
+                     .help = "Largest number of Gaussians",
+                     .unit = "Gaussians",
+                     .default_text = "one for every 32 pixels of the training photos, at least 10000"}});
 }
 
-rows growth_options(settings& s) {
-    return grouped(
-        "Number and opacity of Gaussians",
-        {{.names = "--budget",
-          .commands = {train},
-          .value = whole(s.budget, 1, 100000000),
-          .help = "Number of Gaussians that densification grows to in even steps, whatever the gradients "
-                  "(Mallick et al. 2024)",
-          .unit = "Gaussians",
-          .default_text = "none; gradients decide",
-          .excludes = {"--densify-grad-threshold"}},
-         {.names = "--max-cap",
-          .commands = {train},
-          .value = whole(s.max_cap, 1, 100000000),
-          .help = "Largest number of Gaussians",
-          .unit = "Gaussians",
-          .default_text = "one for every 32 pixels of the training photos, at least 10000"},
-         {.names = "--revised-opacity,!--no-revised-opacity",
-          .commands = {train},
-          .value = flag(s.densification.adaptive.revised_opacity),
-          .help = "Lowers the opacities of a Gaussian and its new copy, so that together they are as "
-                  "opaque as the Gaussian was (Rota Bulò et al. 2024)"},
-         {.names = "--prune-share",
-          .commands = {train},
-          .value = share(s.densification.adaptive.prune_share),
-          .help = "Share of the Gaussians that is removed after densification, those with the smallest "
-                  "accumulated positional gradient first",
-          .default_text = "0.2 if densification added Gaussians, 0 with --budget"}});
+/// The options that strategies have of their own.
+rows strategy_options(settings& s) {
+    rows all;
+    s.densification.for_each([&](auto& config) {
+        for (option& row : config.options()) {
+            row.commands = {train};
+            row.strategy = config.name;
+            row.group = "Densification strategy " + row.strategy;
+            all.push_back(std::move(row));
+        }
+    });
+    return all;
 }
 
 rows evaluation_options(settings& s) {
@@ -298,7 +277,7 @@ std::vector<option> option_table(settings& s) {
     rows table;
     for (auto& group :
          {scene_options(s), output_options(s), length_options(s), effect_options(s), learning_rate_options(s),
-          densification_options(s), growth_options(s), evaluation_options(s), run_options(s)})
+          densification_options(s), strategy_options(s), evaluation_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }

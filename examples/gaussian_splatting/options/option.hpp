@@ -5,15 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "command.hpp"
 #include "option_value.hpp"
 
-namespace gs::cli {
+namespace gs::options {
 
-/// A row of the option table.
+/// A row of the option table: an option of the program, and the value that it sets.
 struct option {
     std::string names;    ///< separated by commas; `!` marks a name that turns a flag off
     std::string group{};  ///< heading in help texts
-    std::vector<command> commands;
+    std::vector<command> commands{};
     option_value value;
     std::string help;  ///< a sentence without its period; begins with a noun or a verb
     std::string unit{};
@@ -21,6 +22,7 @@ struct option {
     std::vector<command> required{};   ///< the commands that do not run without it
     std::vector<std::string> needs{};  ///< names of options that have to be given with it
     std::vector<std::string> excludes{};
+    std::string strategy{};   ///< the densification strategy that has the option; empty: none in particular
     bool is_recorded = true;  ///< in settings.json; false if another option records the same member
 
     bool belongs_to(command c) const;
@@ -34,10 +36,4 @@ struct option {
     std::string key() const;
 };
 
-/// The table of all options. Their values are the members of `s`, which has to outlive the table.
-std::vector<option> option_table(settings& s);
-
-/// What a command is for, as a phrase that begins with a verb.
-std::string purpose_of(command c);
-
-}  // namespace gs::cli
+}  // namespace gs::options

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace gs::options {
+
+/// The commands of the program.
+enum class command { train, evaluate, render, inspect };
+
+constexpr std::array<std::string_view, 4> names_of(command) {
+    return {"train", "evaluate", "render", "inspect"};
+}
+
+}  // namespace gs::options
