@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "../losses/loss_names.hpp"
+#include "../writers/writer.hpp"
 
 // The table of all options, group by group. An option is one row here and one member of `settings`. From the
 // table come the command line, its checks and its help, settings.json, and docs/reference/cli.md.
@@ -35,7 +36,7 @@ rows scene_options(settings& s) {
         {{.names = "ply",
           .commands = {evaluate, render},
           .value = text(s.ply, "FILE"),
-          .help = "Model to read: a .ply file",
+          .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
           .required = {evaluate, render}},
          {.names = "-d,--data,-s,--source-path",
           .commands = {train, evaluate, render, inspect},
@@ -134,7 +135,7 @@ rows run_options(settings& s) {
          {.names = "--deterministic",
           .commands = {train},
           .value = flag(s.deterministic),
-          .help = "Makes runs with the same seed on the same machine write the same .ply bit for bit, with "
+          .help = "Makes runs with the same seed on the same machine write the same model bit for bit, with "
                   "any number of threads; training takes longer"}});
 }
 

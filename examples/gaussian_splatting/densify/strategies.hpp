@@ -7,6 +7,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "../core/enumerated.hpp"
 #include "../core/error.hpp"
 #include "adaptive/adaptive.hpp"
 #include "strategy.hpp"
@@ -32,9 +33,8 @@ struct strategy_list {
         };
         (make_if_named(std::type_identity<Strategy>{}), ...);
         if (made) return made;
-        std::string known;
-        for (const std::string& one : strategy_settings::names()) known += (known.empty() ? "" : ", ") + one;
-        throw error("no densification strategy is called \"" + settings.name + "\"; choose one of: " + known);
+        throw error("no densification strategy is called \"" + settings.name + "\": choose " +
+                    enumerated(strategy_settings::names(), " or "));
     }
 };
 

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "../core/enumerated.hpp"
 #include "../core/error.hpp"
 #include "../device/device.hpp"
 #include "l1_ssim/l1_ssim.hpp"
@@ -29,9 +30,7 @@ struct loss_list {
         };
         (make_if_named(std::type_identity<Loss>{}), ...);
         if (made) return made;
-        std::string known;
-        for (const std::string& one : names()) known += (known.empty() ? "" : ", ") + one;
-        throw error("no loss is called \"" + std::string(name) + "\"; choose one of: " + known);
+        throw error("no loss is called \"" + std::string(name) + "\": choose " + enumerated(names(), " or "));
     }
 };
 

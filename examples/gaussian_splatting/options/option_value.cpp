@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "../core/enumerated.hpp"
+
 namespace gs::options {
 
 namespace {
@@ -50,12 +52,7 @@ std::size_t read_choice(const std::string& word, const std::vector<std::string>&
     return static_cast<std::size_t>(found - names.begin());
 }
 
-std::string alternatives(const std::vector<std::string>& names) {
-    std::string all;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        all += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
-    return all;
-}
+std::string alternatives(const std::vector<std::string>& names) { return enumerated(names, " or "); }
 
 option_value text(std::string& member, const std::string& type) {
     return {.type = type,

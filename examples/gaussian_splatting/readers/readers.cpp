@@ -3,22 +3,13 @@
 #include <algorithm>
 #include <vector>
 
+#include "../core/enumerated.hpp"
 #include "colmap/colmap.hpp"
 #include "reader.hpp"
 #include "synthetic/synthetic.hpp"
 #include "transforms/blender.hpp"
 
 namespace gs {
-namespace {
-
-std::string enumerated(const std::vector<std::string_view>& parts, const char* last_separator) {
-    std::string text;
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        text += (i == 0 ? "" : i + 1 < parts.size() ? ", " : last_separator) + std::string(parts[i]);
-    return text;
-}
-
-}  // namespace
 
 std::span<const reader* const> all_readers() {
     static constexpr const reader* table[] = {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "../core/enumerated.hpp"
 #include "../core/error.hpp"
 #include "writer.hpp"
 
@@ -31,23 +32,27 @@ const writer* writer_of(const std::filesystem::path& file, writer_table writers)
     return found;
 }
 
-std::string endings_of(writer_table writers, bool readable) {
-    std::string all;
+std::vector<std::string_view> endings_of(writer_table writers, bool readable) {
+    std::vector<std::string_view> all;
     for (const writer* one : writers)
-        if (one->read || !readable)
-            for (const std::string_view ending : one->endings)
-                all += (all.empty() ? "" : ", ") + std::string(ending);
+        if (one->read || !readable) all.insert(all.end(), one->endings.begin(), one->endings.end());
     return all;
 }
 
+std::string writable_endings(writer_table writers) { return enumerated(endings_of(writers, false), " and "); }
+
 }  // namespace
+
+std::string readable_endings(writer_table writers, const char* last_separator) {
+    return enumerated(endings_of(writers, true), last_separator);
+}
 
 void write_model(const std::filesystem::path& file, const gaussians& model, const write_options& options,
                  writer_table writers) {
     const writer* found = writer_of(file, writers);
     if (!found)
         throw error("cannot write " + file.string() +
-                    ": its ending names no known format; known endings are " + endings_of(writers, false));
+                    ": its ending names no known format; known endings are " + writable_endings(writers));
     found->write(file, model, options);
 }
 
@@ -55,11 +60,12 @@ gaussians read_model(const std::filesystem::path& file, writer_table writers) {
     const writer* found = writer_of(file, writers);
     if (!found)
         throw error("cannot read " + file.string() +
-                    ": its ending names no known format; known endings are " + endings_of(writers, true));
+                    ": its ending names no known format; known endings are " +
+                    readable_endings(writers, " and "));
     if (!found->read)
         throw error("cannot read " + file.string() + ": " + std::string(found->name) +
                     " files can only be written; the endings of formats that can be read are " +
-                    endings_of(writers, true));
+                    readable_endings(writers, " and "));
     return found->read(file);
 }
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "../model/gaussians.hpp"
@@ -39,6 +40,9 @@ struct writer {
 
 /// All writers.
 std::span<const writer* const> all_writers();
+
+/// Endings of the formats that can be read, for messages: ".a, .b or .c" if `last_separator` is " or ".
+std::string readable_endings(std::span<const writer* const> writers, const char* last_separator);
 
 /// Writes a model in the format of the file's ending, in upper or lower case. Throws `error`
 /// listing the known endings for any other, and what `writer::write` throws.

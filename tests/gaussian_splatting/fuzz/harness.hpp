@@ -5,19 +5,32 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace gs_fuzz {
 
 /// Whether the loader took the file. An error that is no `gs::error`, or memory beyond the bound, leaves as
 /// another exception, which libFuzzer takes for a crash.
-using harness = bool(std::string_view input);
+using run_function = bool(std::string_view input);
 
-harness colmap_binary;  ///< its first byte chooses the part
-harness colmap_text;    ///< its first byte chooses the part
-harness transforms;
-harness ply;
-harness image;  ///< PNG and JPEG; a PNG's checksums are put right first
+run_function colmap_binary;  ///< its first byte chooses the part
+run_function colmap_text;    ///< its first byte chooses the part
+run_function transforms;
+run_function image;  ///< PNG and JPEG; a PNG's checksums are put right first
+
+/// A loader, and the name of its corpus.
+struct harness {
+    std::string name;
+    std::function<run_function> run;
+};
+
+/// All loaders: the functions above, and each format of models that can be read, by its name in lower case.
+const std::vector<harness>& harnesses();
+
+/// The harness of this name. Throws `std::out_of_range` if there is none.
+const harness& harness_of(std::string_view name);
 
 /// Beside the file's multiple: buffers of streams, and messages.
 inline constexpr std::size_t small_change = 64 << 10;

@@ -13,14 +13,14 @@ cd "$(dirname "$0")/../../.."
 seconds=${1:?usage: tests/gaussian_splatting/fuzz/run.sh SECONDS [harness...]}
 shift
 harnesses=("$@")
-((${#harnesses[@]})) || harnesses=(colmap_binary colmap_text transforms ply image)
+((${#harnesses[@]})) || mapfile -t harnesses < <(ls tests/gaussian_splatting/fuzz/corpus)
 out=$(realpath -m "${OUT:-build/fuzz}")
 mkdir -p "$out"
 
 trainer=examples/gaussian_splatting
 sources=("$trainer"/readers/colmap/colmap_{binary,records,text}.cpp "$trainer"/image/*.cpp
     "$trainer"/readers/transforms/{json_text,transforms,transforms_pose}.cpp "$trainer"/readers/{camera_models,validation}.cpp
-    "$trainer"/scene/camera.cpp "$trainer"/writers/ply/ply.cpp tests/gaussian_splatting/fuzz/{budget,colmap,harness,image,ply,transforms}.cpp)
+    "$trainer"/scene/camera.cpp "$trainer"/writers/{,*/}*.cpp tests/gaussian_splatting/fuzz/{budget,colmap,harness,harnesses,image,transforms}.cpp)
 flags=(-std=c++20 -O1 -g -fno-omit-frame-pointer -I"$trainer" -Itests/gaussian_splatting/fuzz
     -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
 
@@ -30,7 +30,7 @@ for source in "${sources[@]}"; do
     clang++ "${flags[@]}" -fsanitize=fuzzer-no-link -c "$source" -o "${objects[-1]}"
 done
 for harness in "${harnesses[@]}"; do
-    clang++ "${flags[@]}" -fsanitize=fuzzer -DWARPAGG_HARNESS="$harness" tests/gaussian_splatting/fuzz/entry.cpp "${objects[@]}" \
+    clang++ "${flags[@]}" -fsanitize=fuzzer -DWARPAGG_HARNESS="\"$harness\"" tests/gaussian_splatting/fuzz/entry.cpp "${objects[@]}" \
         -lpng -ljpeg -lz -o "$out/$harness"
 done
 

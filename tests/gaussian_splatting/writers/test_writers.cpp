@@ -70,10 +70,10 @@ TEST_CASE("writers: an unknown ending is refused with the known ones") {
         const std::string file = (folder / name).string();
         CHECK(error_of([&] { gs::write_model(file, sample_model(0, 1), {}, made_up); }) ==
               "cannot write " + file +
-                  ": its ending names no known format; known endings are .ply, .compressed.ply, .cply");
+                  ": its ending names no known format; known endings are .ply, .compressed.ply and .cply");
         CHECK(error_of([&] { gs::read_model(file, made_up); }) ==
               "cannot read " + file +
-                  ": its ending names no known format; known endings are .compressed.ply, .cply");
+                  ": its ending names no known format; known endings are .compressed.ply and .cply");
         CHECK_FALSE(std::filesystem::exists(file));
     }
 }
@@ -81,7 +81,7 @@ TEST_CASE("writers: an unknown ending is refused with the known ones") {
 TEST_CASE("writers: a format that can only be written is not read") {
     CHECK(error_of([] { gs::read_model("a.ply", made_up); }) ==
           "cannot read a.ply: write-only files can only be written; the endings of formats that can be read "
-          "are .compressed.ply, .cply");
+          "are .compressed.ply and .cply");
 }
 
 TEST_CASE(
