@@ -6,7 +6,7 @@ sources. bench/lab/tradeoff.py measures what comes of it beside its own knobs:
 
     bench/lab/kernel_knobs.py build --output build/knobs -- -DWARPAGG_CUDA=ON -DCMAKE_CUDA_ARCHITECTURES=90
     bench/lab/tradeoff.py run --kernels build/knobs --program build/bench/bench/lab/lab ...
-    bench/lab/kernel_knobs.py check        # that everything to be changed stands where it is said to stand
+    bench/lab/kernel_knobs.py check        # that every place of an edit is marked in the sources, and no other
 
 The options after -- are CMake's. A build a knob, all at once.
 """
@@ -21,6 +21,8 @@ import sys
 import tomllib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))  # bench
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+import source_marks  # noqa: E402
 from environment import own_and_passed_on  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -29,9 +31,9 @@ PARTS = ["CMakeLists.txt", "cmake", "include", "examples"]
 
 
 def knobs():
-    """By name, what each changes: (what it means, [(file, old, new)])."""
+    """By name, what each changes: (what it means, its edits)."""
     listed = tomllib.loads((ROOT / "bench" / "lab" / "kernel_knobs.toml").read_text())["knob"]
-    return {k["name"]: (k["what"], [(TRAINER / e["file"], e["old"], e["new"]) for e in k["edit"]]) for k in listed}
+    return {k["name"]: (k["what"], k["edit"]) for k in listed}
 
 
 def program_of(folder, name):
@@ -44,13 +46,16 @@ def programs_in(folder):
 
 
 def apply(edits, sources):
-    texts = {}
-    for file, old, new in edits:
-        text = texts.get(file) or (sources / file).read_text()
-        if (found := text.count(old)) != 1:
-            raise SystemExit(f"{file} has this {found} times, not once:\n{old}")
-        texts[file] = text.replace(old, new)
-    return texts
+    """Edits the trainer in a copy of the project."""
+    places = source_marks.find_marks(sources / TRAINER, "knob")
+    for file in {places[e["at"]] for e in edits}:
+        here = [e for e in edits if places[e["at"]] == file]
+        file.write_text(source_marks.edited(file.read_text(), "knob", here))
+
+
+def check():
+    places = source_marks.find_marks(ROOT / TRAINER, "knob")
+    source_marks.check(places, [e["at"] for _, edits in knobs().values() for e in edits], "knob")
 
 
 def build(output, name, edits, options, jobs):
@@ -61,8 +66,7 @@ def build(output, name, edits, options, jobs):
     for part in PARTS:
         copy = shutil.copytree if (ROOT / part).is_dir() else shutil.copy
         copy(ROOT / part, sources / part)
-    for file, text in apply(edits, sources).items():
-        (sources / file).write_text(text)
+    apply(edits, sources)
     for command in (["cmake", "-S", sources, "-B", folder / "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                      "-DWARPAGG_TESTS=OFF", "-DWARPAGG_CPU_LEVELS=OFF", *options],
                     ["ninja", "-C", folder / "build", f"-j{jobs}", "gaussian_splatting"]):
@@ -89,9 +93,12 @@ def main():
     builder.add_argument("--output", required=True, help="a folder for the programs")
     builder.add_argument("--only", nargs="+", default=[], choices=knobs(), help="these alone")
     builder.set_defaults(action=lambda a: build_all(a.output, passed_on[0] if passed_on else [], a.only))
-    commands.add_parser("check").set_defaults(action=lambda _: [apply(edits, ROOT) for _, edits in knobs().values()])
+    commands.add_parser("check").set_defaults(action=lambda _: check())
     arguments = parser.parse_args(own)
-    arguments.action(arguments)
+    try:
+        arguments.action(arguments)
+    except source_marks.MarkError as error:
+        sys.exit(str(error))
 
 
 if __name__ == "__main__":

@@ -85,6 +85,7 @@ struct resolved_policy {
                                               warpagg::commit::packed<4>, typename Policy::commit>;
     using idle = or_default<typename Policy::idle, warpagg::idle::skip>;
     static constexpr bool measured_gate =
+        // mutate: named_reduction_is_gated
         std::is_same_v<typename Policy::reduce, unset> && !std::is_same_v<idle, warpagg::idle::add_zeros>;
     using gate =
         or_default<typename Policy::gate,

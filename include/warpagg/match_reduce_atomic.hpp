@@ -20,7 +20,7 @@ struct component_by_key {
         if constexpr (requires { base(key, i); }) {
             return base(key, i);
         } else {
-            return base + (std::size_t{key} * N + i);
+            return base + (std::size_t{key} * N + i);  // mutate: match_key_stride_lost
         }
     }
 };
@@ -46,12 +46,15 @@ WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint3
     using bits = value_t<W, std::uint32_t>;
     const bits beyond_me = bits(0xfffffffeu) << w.lane();
     bits next = peers & beyond_me;  // the lanes that still hold a part of the result
+    // mutate: match_place_from_one
     bits place = popcount(peers & (beyond_me ^ bits(0xffffffffu))) - bits(1u);
     while (w.any(next != 0u)) {
         const auto has_next = next != 0u;
         const auto from = countr_zero(next);
         WARPAGG_UNROLL
+        // mutate: match_combines_without_next
         for (int i = 0; i < N; ++i) v[i] = select(has_next, Op::combine(v[i], w.shfl(v[i], from)), v[i]);
+        // mutate: match_keeps_those_who_gave
         next &= bits(w.ballot((place & 1u) == 0u));  // those at odd places have passed theirs on
         place = place >> 1u;
     }
@@ -66,14 +69,16 @@ WARPAGG_HD bool keys_rise(const W& w, const value_t<W, unsigned>& key, const mas
                           std::uint32_t everyone) {
     using math::countr_zero;
     using bits = value_t<W, std::uint32_t>;
+    // mutate: match_rises_to_inactive_lanes
     const bits after_me = (bits(0xfffffffeu) << w.lane()) & everyone;
     const auto next = w.shfl(key, countr_zero(after_me));
-    return !w.any(active && after_me != 0u && key >= next);
+    return !w.any(active && after_me != 0u && key >= next);  // mutate: match_equal_keys_rise
 }
 
 /// The commit of the records of keys: that of the policy, or else the largest groups that keep all
 /// records aligned.
 template <class Resolved, class Policy, int N>
+// mutate: match_packs_where_plain_is_asked
 using commit_of_keys = std::conditional_t<std::is_same_v<typename Resolved::reduce, reduce::per_lane> ||
                                               !std::is_same_v<typename Policy::commit, unset>,
                                           typename Resolved::commit, commit::packed<N % 4 == 0 ? 4 : 2>>;
@@ -87,6 +92,7 @@ WARPAGG_HD void commit_by_key(const W& w, Base base, const value_t<W, unsigned>&
     if constexpr (std::is_same_v<Base, V*> && commit::detail::packs<Op, Commit, W, record, V>) {
         if constexpr (N % Commit::neighbors == 0) {
             if (commit::is_packed<Op, Commit, V>(w, record{base})) {
+                // mutate: match_packed_key_stride_lost
                 commit::detail::by_groups<Commit::neighbors, 0>(w, base + std::size_t{key} * N, v, active);
                 return;
             }
@@ -168,17 +174,20 @@ WARPAGG_HD void match_and_commit(const W& w, Base base, const value_t<W, unsigne
         const std::uint32_t everyone = w.ballot(adds);
         if (everyone == 0) return;
         bool dense = true;
+        // mutate: match_gate_more_than
         if constexpr (is_gated<typename chosen::gate>) dense = popcount(everyone) >= chosen::gate::lanes;
         if (dense) {
             if (!keys_rise(w, key, adds, everyone)) {
+                // mutate: match_without_active_mask
                 const bits peers = select(adds, w.match(key) & everyone, bits(0u));
                 if (!w.any(adds && peers != everyone)) {
+                    // mutate: match_key_of_lane_0
                     const unsigned only = uniform(w.shfl(key, countr_zero(everyone)));
                     reduce_and_commit<chosen>(w, record_of_key<N>(base, only), values, adds);
                     return;
                 }
                 combine_peers<operation>(w, results, peers);
-                commits = adds && countr_zero(peers) == w.lane();
+                commits = adds && countr_zero(peers) == w.lane();  // mutate: match_idle_lane_commits
             }
         }
     }

@@ -129,6 +129,7 @@ struct policy : detail::optional_member<detail::named_t<axis::accumulate, Tags..
     static_assert(count<axis::commit> <= 1,
                   "a policy takes one commit tag: scalar, contiguous, packed<K> or staged");
     static_assert(count<axis::idle> <= 1, "a policy takes one idle tag: skip, assume_busy or add_zeros");
+    // mutate: two_gates_accepted
     static_assert(count<axis::gate> <= 1, "a policy takes one gate tag: always or at_least<K>");
 
     /// The tag on this axis; a placeholder if there is none.
@@ -146,7 +147,7 @@ struct policy : detail::optional_member<detail::named_t<axis::accumulate, Tags..
     static_assert(!detail::spreads_first_lane<reduce, commit>,
                   "shfl_down and cub leave the sums in lane 0: contiguous needs butterfly or scatter");
     static_assert(
-        !detail::gathers_spread<reduce, commit>,
+        !detail::gathers_spread<reduce, commit>,  // mutate: spread_results_to_lane_0
         "scatter leaves the sums spread over the lanes: scalar and packed need shfl_down or butterfly");
     static_assert(!(std::is_same_v<idle, warpagg::idle::add_zeros> &&
                     std::is_same_v<reduce, warpagg::reduce::per_lane>),

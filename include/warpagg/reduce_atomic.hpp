@@ -28,7 +28,7 @@ template <warp W>
 WARPAGG_HD bool skip_if_warp_idle(const W& w, const mask_t<W>& active,
                                   call_site at = call_site::here("skip_if_warp_idle")) {
     const detail::library_call<W> call(w, at);
-    return !w.any(active);
+    return !w.any(active);  // mutate: idle_rule_inverted
 }
 
 namespace detail {
@@ -38,7 +38,7 @@ WARPAGG_EXEC_CHECK_DISABLE
 template <class W>
 WARPAGG_HD mask_t<W> opaque(const W& w, const mask_t<W>& flag) {
     if constexpr (requires { w.opaque(flag); }) {
-        return w.opaque(flag);
+        return w.opaque(flag);  // mutate: flag_not_opaque
     } else {
         return flag;
     }
@@ -53,6 +53,7 @@ struct active_values {
 
     WARPAGG_HD V operator()(int i) const {
         using math::select;  // and by its arguments, that of SIMD lanes
+        // mutate: active_mask_dropped
         return select(active, values[i], V(Op::template identity<scalar_t<V>>()));
     }
 };
@@ -73,7 +74,8 @@ template <class Resolved, warp W, class Record, class V, int N>
 WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
     using op = typename Resolved::operation;
     using commit_rule = typename Resolved::commit;
-    if constexpr (requires { w.observe(active); }) w.observe(active);
+    if constexpr (requires { w.observe(active); }) w.observe(active);  // mutate: calls_not_observed
+    // mutate: destination_not_checked
     if constexpr (requires { w.require_uniform(record(0u)); }) w.require_uniform(record(0u));
     if constexpr (std::is_same_v<typename Resolved::reduce, reduce::per_lane>) {
         commit::each_lane<op, commit_rule>(w, record, values, active);
@@ -81,8 +83,9 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
         using gate = typename Resolved::gate;
         using ungated = typename Resolved::ungated_commit;
         const unsigned least =
+            // mutate: gate_thresholds_swapped
             commit::is_packed<op, ungated, V>(w, record) ? gate::lanes_if_packed : gate::lanes;
-        if (math::popcount(w.ballot(active)) < least) [[unlikely]] {
+        if (math::popcount(w.ballot(active)) < least) [[unlikely]] {  // mutate: gate_at_most
             V own[N];  // a copy, since indexing by lanes would force the values themselves into memory
             WARPAGG_UNROLL
             for (int i = 0; i < N; ++i) own[i] = values[i];
@@ -92,7 +95,7 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
         reduce_and_commit<Resolved>(w, record, values, active);
     } else {
         if constexpr (std::is_same_v<typename Resolved::idle, idle::skip>) {
-            if (!w.any(active)) return;
+            if (!w.any(active)) return;  // mutate: idle_warp_not_skipped
         }
         reduce_and_commit<Resolved>(w, record, values, active);
     }
@@ -163,6 +166,7 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
     } else {
         const detail::library_call<W> call(w, at);
         if constexpr (std::is_same_v<typename resolved_policy::idle, idle::assume_busy>) {
+            // mutate: busy_not_checked
             if constexpr (requires { w.require_busy(active); }) w.require_busy(active);
         }
         const auto record = [&] {

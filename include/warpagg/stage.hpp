@@ -37,6 +37,7 @@ class stage {
     template <warp W>
     WARPAGG_HD void clear(const W& w, unsigned warp, unsigned warps) const {
         for (unsigned row = warp * W::size; row < size_; row += warps * W::size)
+            // mutate: stage_last_value_not_cleared
             w.store_row(copy_, static_cast<std::ptrdiff_t>(row), value_t<W, T>(T{}), w.lane() + row < size_);
     }
 
@@ -47,11 +48,12 @@ class stage {
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void flush(const W& w, unsigned warp, unsigned warps) const {
+        // mutate: stage_last_row_not_flushed
         for (unsigned row = warp * W::size; row < size_; row += warps * W::size) {
             const auto index = w.lane() + row;
             const auto sum = w.load_row(copy_, static_cast<std::ptrdiff_t>(row), index < size_);
             w.atomic(operation::sum{}, commit::contiguous_record<T>{memory_}, index, sum,
-                     index < size_ && !(sum == T{}));
+                     index < size_ && !(sum == T{}));  // mutate: stage_adds_zeros
         }
     }
 

@@ -18,20 +18,16 @@ import tomllib
 
 here = pathlib.Path(__file__).resolve().parent
 repository = here.parent.parent
+sys.path.insert(0, str(repository / "scripts"))
+import source_marks  # noqa: E402
+
+trainer = "examples/gaussian_splatting"
 parts = ["CMakeLists.txt", "cmake", "include", "examples", "tests"]
 run_limit = 300  # seconds
 
 
 def edits(mutation):
-    return mutation.get("edit", [mutation])
-
-
-def mutated(text, mutation):
-    for edit in edits(mutation):
-        if (found := text.count(edit["old"])) != 1:
-            sys.exit(f"{mutation['name']}: {mutation['file']} has this {found} times, not once:\n{edit['old']}")
-        text = text.replace(edit["old"], edit["new"])
-    return text
+    return mutation.get("edit", [{"at": mutation["name"], **mutation}])
 
 
 class Copy:
@@ -68,9 +64,9 @@ class Copy:
         return summary[-1].strip() if summary else f"ends with {done.returncode}"
 
     def with_fault(self, mutation):
-        file = self.source / mutation["file"]
+        file = source_marks.find_marks(self.source / trainer, "mutate")[edits(mutation)[0]["at"]]
         sound = file.read_text()
-        file.write_text(mutated(sound, mutation))
+        file.write_text(source_marks.edited(sound, "mutate", edits(mutation)))
         try:
             self.build()
             return self.fails(mutation["case"])
@@ -81,15 +77,21 @@ class Copy:
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--only", metavar="NAME", action="append", help="this one alone; may be repeated")
-    only = parser.parse_args().only
+    parser.add_argument("--check", action="store_true", help="check the marks in the sources and stop")
+    arguments = parser.parse_args()
+    only = arguments.only
     mutations = tomllib.loads((here / "hard_cases.toml").read_text())["mutation"]
+    try:
+        source_marks.check(source_marks.find_marks(repository / trainer, "mutate"),
+                           [e["at"] for m in mutations for e in edits(m)], "mutate")
+    except source_marks.MarkError as error:
+        sys.exit(str(error))
+    if arguments.check:
+        return
     if only:
         if unknown := set(only) - {m["name"] for m in mutations}:
             sys.exit(f"no mutation is named {', '.join(unknown)}")
         mutations = [m for m in mutations if m["name"] in only]
-    for m in mutations:
-        mutated((repository / m["file"]).read_text(), m)  # stop at once where a text has changed
-
     with tempfile.TemporaryDirectory(prefix="warpagg-mutation-") as folder:
         copy = Copy(pathlib.Path(folder))
         copy.build()

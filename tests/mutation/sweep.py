@@ -24,6 +24,8 @@ import tomllib
 
 here = pathlib.Path(__file__).resolve().parent
 repository = here.parent.parent
+sys.path.insert(0, str(repository / "scripts"))
+import source_marks  # noqa: E402
 
 compiler = os.environ.get("CXX", "g++")
 nvcc = shutil.which(os.environ.get("CUDACXX", "nvcc")) or shutil.which("/usr/local/cuda/bin/nvcc")
@@ -63,13 +65,10 @@ def failure(command, cwd):
     return "fails" if done.returncode != 0 else None
 
 
-def mutated(mutation, include):
-    """The file's text with the fault in it."""
-    text = (include / "warpagg" / mutation["file"]).read_text()
-    found = text.count(mutation["old"])
-    if found != 1:
-        raise ValueError(f"{mutation['name']}: {mutation['file']} has the old text {found} times, not once")
-    return text.replace(mutation["old"], mutation["new"])
+def put_fault_in(mutation, include):
+    """Puts the fault into a copy of the headers."""
+    file = source_marks.find_marks(include, "mutate")[mutation["name"]]
+    file.write_text(source_marks.edited(file.read_text(), "mutate", [{"at": mutation["name"], **mutation}]))
 
 
 class Sweep:
@@ -129,7 +128,7 @@ class Sweep:
         folder = self.scratch / "with" / mutation["name"]
         headers = folder / "include"
         shutil.copytree(self.include, headers)
-        (headers / "warpagg" / mutation["file"]).write_text(mutated(mutation, self.include))
+        put_fault_in(mutation, headers)
         try:
             how = self.failure_of(mutation["caught_by"], headers, folder)
             caught, what = how is not None, how or "SURVIVES"
@@ -170,18 +169,18 @@ def main():
     names = [m["name"] for m in mutations]
     if len(set(names)) < len(names):
         sys.exit("two mutations have one name")
+    try:
+        files = source_marks.find_marks(repository / "include", "mutate")
+        source_marks.check(files, names, "mutate")
+    except source_marks.MarkError as error:
+        sys.exit(str(error))
     if arguments.only:
         if unknown := set(arguments.only) - set(names):
             sys.exit(f"no mutation is named {', '.join(unknown)}")
         mutations = [m for m in mutations if m["name"] in arguments.only]
-    try:
-        for m in mutations:
-            mutated(m, repository / "include")
-    except ValueError as error:
-        sys.exit(str(error))
     if arguments.list:
         for m in mutations:
-            print(f"{m['name']:34} {m['file']:34} {m['caught_by']}")
+            print(f"{m['name']:34} {files[m['name']].name:34} {m['caught_by']}")
         return
     if nvcc is None:
         for m in mutations:

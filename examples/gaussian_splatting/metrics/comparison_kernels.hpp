@@ -104,9 +104,9 @@ struct ssim_compare {
     const std::uint32_t* target;
     comparison_maps<Real> maps;
     ssim_window<Real> window;
-    int rows;        ///< per strip
-    double* totals;  ///< by `comparison_total`
-    raster::list_capacity capacity;
+    int rows;                        ///< per strip
+    double* totals;                  ///< by `comparison_total`
+    raster::list_capacity capacity;  // knob: ssim_capacity
 
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
@@ -115,6 +115,7 @@ struct ssim_compare {
         constexpr int radius = ssim_window<Real>::radius, size = ssim_window<Real>::size;
         const framed_planes& planes = maps.planes;
         const ssim_strip<W> strip(w, index, planes.width, planes.height, rows);
+        // knob: ssim_moments
         moments<real> sums[size], differences[size];  // of the windows that contain the current row
         WARPAGG_UNROLL
         for (int k = 0; k < size; ++k) sums[k] = differences[k] = {real(0), real(0)};

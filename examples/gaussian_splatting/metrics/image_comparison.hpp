@@ -38,7 +38,8 @@ class image_comparison {
 
     /// Compares a render, three planes on the device, with the target, and adds the result to the
     /// totals unless the lists of the view did not fit. Pixels that a mask excludes do not count.
-    void compare(const Real* render, const raster::list_capacity& capacity = {}) {
+    void compare(const Real* render, const raster::list_capacity& capacity = {}) {  // knob: compare_image
+        // knob: compare_masked
         target_.masked ? compare_with<true>(render, capacity) : compare_with<false>(render, capacity);
     }
 
@@ -69,12 +70,13 @@ class image_comparison {
 
   private:
     template <bool Masked>
-    void compare_with(const Real* render, const raster::list_capacity& capacity) {
+    void compare_with(const Real* render, const raster::list_capacity& capacity) {  // knob: compare_with
         using first_pass = sum_and_difference<Real, Masked>;
         const auto& [red, green, blue] = target_.background;
         device_.for_each_warp(first_pass::template count<typename Device::warp>(maps_.planes),
                               first_pass{target(), render, {red, green, blue}, maps_});
         device_.for_each_warp(
+            // knob: ssim_compare
             strips(), ssim_compare<Real, Masked>{target(), maps_, window_, rows(), totals_.data(), capacity});
     }
 

@@ -62,6 +62,7 @@ struct ssim_window {
     static WARPAGG_HD moments<V> merge(const step& by, const moments<V>& before, const moments<V>& group) {
         const V delta = group.mean - before.mean;
         return {fma(V(by.share), delta, before.mean),
+                // mutate: variance_by_difference_1
                 fma(V(by.between) * delta, delta, fma(V(by.weight), group.square, before.square))};
     }
 
@@ -76,7 +77,7 @@ struct ssim_window {
         WARPAGG_UNROLL
         for (int m = 0; m < N; ++m) {
             const real center = w.load_row(from[m], 0);
-            all[m] = {center + center, real(0)};
+            all[m] = {center + center, real(0)};  // mutate: variance_by_difference_2
         }
         WARPAGG_UNROLL
         for (int t = 1; t <= radius; ++t) {
@@ -84,6 +85,7 @@ struct ssim_window {
             for (int m = 0; m < N; ++m) {
                 const real left = w.load_row(from[m], -t), right = w.load_row(from[m], t);
                 const real apart = right - left;
+                // mutate: variance_by_difference_3
                 all[m] = merge(pair[t], all[m], {left + right, apart * apart});
             }
         }
@@ -109,7 +111,7 @@ struct ssim_window {
     WARPAGG_HD void add_row(moments<V> (&windows)[size], const moments<V>& values) const {
         WARPAGG_UNROLL
         for (int k = size - 1; k > 0; --k) windows[k] = merge(row[k], windows[k - 1], values);
-        windows[0] = {values.mean, V(row[0].weight) * values.square};
+        windows[0] = {values.mean, V(row[0].weight) * values.square};  // mutate: variance_by_difference_4
     }
     template <class V>
     WARPAGG_HD void add_row(V (&windows)[size], const V& value) const {

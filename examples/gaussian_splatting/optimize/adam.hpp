@@ -68,7 +68,7 @@ struct adam {
                     constant<real>(beta2) * second_left * v[n] + constant<real>(1 - beta2) * g * g;
                 const real next =
                     value[n] - rate * (of.relative(drift * m[n], v[n]) + of.relative(next_m, next_v));
-                bounded[n] = g < most && -g < most;
+                bounded[n] = g < most && -g < most;  // mutate: squared_without_bound
                 valid[n] = bounded[n] && raster::is_finite(next);
                 all_valid = all_valid && valid[n];
                 row.store(w, of.first[p], k, n, width, next_m, m[n], valid[n]);

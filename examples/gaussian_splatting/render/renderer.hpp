@@ -19,6 +19,7 @@
 
 namespace gs::raster {
 
+// knob: renderer
 /// Gaussians to an image and, from dL/dimage, to the gradients of their parameters. Holds what lies in
 /// between. `Accumulators`: an `accumulator_set`, from which `backward` chooses at run time.
 template <device::device Device, class Real, class Cut = cut_for<typename Device::warp>,
@@ -207,6 +208,7 @@ class renderer {
         else
             kernel.view = view(background_);
         kernel.tile_of_segment = tile_of_segment_.data();
+        // knob: backward_warps
         device_.for_each_warp(kernel.template warps<warp>(tiles(), segments()), kernel);
     }
     /// Lower patches are shorter work: they are taken where higher ones would leave the device idle.
@@ -288,7 +290,7 @@ class renderer {
     buffer<std::uint64_t> required_;
     buffer<tile_range> ranges_;
     buffer<Real> render_, transmittance_, checkpoints_;
-    gradient_sums<Device, Real> sums_;
+    gradient_sums<Device, Real> sums_;  // knob: renderer_members
     buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
     buffer<unsigned long long> pairs_;  ///< of colors, and of depths, which nobody asks for
     std::uint64_t capacity_ = 0;

@@ -13,12 +13,13 @@ template <class Op, class T>
 inline void atomic(Op, T* to, T v) {
     std::atomic_ref<T> memory(*to);
     T before = memory.load(std::memory_order_relaxed);
+    // mutate: operation_commits_a_sum, atomic_operation_tries_once
     while (!memory.compare_exchange_weak(before, Op::combine(before, v), std::memory_order_relaxed)) {
     }
 }
 template <class T>
 inline void atomic(operation::sum, T* to, T v) {
-    std::atomic_ref<T>(*to).fetch_add(v, std::memory_order_relaxed);
+    std::atomic_ref<T>(*to).fetch_add(v, std::memory_order_relaxed);  // mutate: atomic_sum_is_a_plain_one
 }
 
 }  // namespace warpagg::emulator::detail

@@ -50,7 +50,7 @@ struct minimum : for_integers {
     }
     template <class T>
     WARPAGG_HD static T identity() {
-        return static_cast<T>(~least<T>);
+        return static_cast<T>(~least<T>);  // mutate: minimum_from_zero
     }
 };
 
@@ -63,7 +63,7 @@ struct maximum : for_integers {
     }
     template <class T>
     WARPAGG_HD static T identity() {
-        return least<T>;
+        return least<T>;  // mutate: maximum_from_zero
     }
 };
 
@@ -75,7 +75,7 @@ struct bit_and : for_integers {
     }
     template <class T>
     WARPAGG_HD static T identity() {
-        return static_cast<T>(~T{});
+        return static_cast<T>(~T{});  // mutate: bit_and_from_zero
     }
 };
 

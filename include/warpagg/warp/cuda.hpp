@@ -88,6 +88,7 @@ struct cuda_warp {
         asm("and.b32 %0, %1, %2;" : "=r"(bit) : "r"(lane()), "n"(Distance));
         return bit != 0;
     }
+    // mutate: cuda_mask_from_activemask
     __device__ __forceinline__ std::uint32_t ballot(bool p) const { return __ballot_sync(all, p); }
     __device__ __forceinline__ bool any(bool p) const { return __any_sync(all, p) != 0; }
 
@@ -97,7 +98,7 @@ struct cuda_warp {
     }
     template <class T>
     __device__ __forceinline__ T shfl_down(T v, unsigned distance) const {
-        return __shfl_down_sync(all, v, distance);
+        return __shfl_down_sync(all, v, distance);  // mutate: cuda_shuffles_up
     }
     template <class T>
     __device__ __forceinline__ T shfl_xor(T v, unsigned distance) const {
@@ -134,7 +135,7 @@ struct cuda_warp {
     __device__ __forceinline__ void sync() const { __syncwarp(); }
     template <class T>
     __device__ __forceinline__ void store(T* to, unsigned index, T v, bool active) const {
-        if (active) to[index] = v;
+        if (active) to[index] = v;  // mutate: cuda_inactive_lanes_store
     }
     template <class T>
     __device__ __forceinline__ T load_row(const T* from, std::ptrdiff_t first, bool active) const {
@@ -154,7 +155,7 @@ struct cuda_warp {
     /// `__half2`, `__nv_bfloat162`; the other operations of integers.
     template <class Op, class Dst, class T>
     __device__ __forceinline__ void atomic(Op op, Dst dst, unsigned index, T v, bool active) const {
-        if (active) detail::cuda_memory::atomic(op, dst(index), v);
+        if (active) detail::cuda_memory::atomic(op, dst(index), v);  // mutate: cuda_inactive_lanes_commit
     }
     /// Whether `atomic_add_packed<K>` may add to to[0..K): in global memory, aligned, and on a
     /// compute capability of 9.0 or more.

@@ -188,7 +188,7 @@ struct basic_lanes : Counting {
         value<T> r;
         WARPAGG_UNROLL
         for (int i = 0; i < r.chunks; ++i) {
-            const T* p = from + first + i * r.width;
+            const T* p = from + first + i * r.width;  // mutate: row_loaded_from_its_start
 #if defined(__AVX2__)
             if constexpr (sizeof(T) == 4) {
                 r.part[i] = reinterpret_cast<typename value<T>::chunk>(_mm256_maskload_epi32(
@@ -228,6 +228,7 @@ struct basic_lanes : Counting {
 #endif
             WARPAGG_UNROLL
             for (int k = 0; k < v.width; ++k)
+                // mutate: row_stored_by_inactive_lanes
                 if (active[i * v.width + k]) p[k] = v[i * v.width + k];
         }
     }
@@ -253,7 +254,7 @@ struct basic_lanes : Counting {
     }
     template <class T>
     WARPAGG_HD void count_shuffle() const {
-        count([](counters& c) { c.shuffles += (sizeof(T) + 3) / 4; });
+        count([](counters& c) { c.shuffles += (sizeof(T) + 3) / 4; });  // mutate: shuffles_counted_by_value
     }
     template <class Dst>
     static void count_commit(counters& c, Dst dst, const value<unsigned>& index, std::uint32_t who) {
@@ -263,6 +264,7 @@ struct basic_lanes : Counting {
         unsigned known = 0;
         for_each_lane(who, [&](int lane) {
             ++c.atomics;
+            // mutate: sectors_of_64_bytes
             const auto sector = reinterpret_cast<std::uintptr_t>(dst(index[lane])) / 32;
             unsigned i = 0;
             while (i < known && sectors[i] != sector) ++i;
@@ -346,6 +348,7 @@ struct basic_lanes : Counting {
         if constexpr (d >= width) {
             constexpr int step = d / width;
             WARPAGG_UNROLL
+            // mutate: shuffle_down_past_the_end
             for (int i = 0; i < chunks; ++i) r.part[i] = v.part[i + step < chunks ? i + step : i];
         } else {
             [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -371,6 +374,7 @@ struct basic_lanes : Counting {
                 r.part[i] = v.part[(i ^ (d / width)) % r.chunks];
             } else {
                 [&]<std::size_t... I>(std::index_sequence<I...>) {
+                    // mutate: shuffle_xor_one_lane_off
                     r.part[i] = __builtin_shufflevector(v.part[i], v.part[i], (static_cast<int>(I) ^ d)...);
                 }
                 (std::make_index_sequence<static_cast<std::size_t>(width)>{});

@@ -193,7 +193,7 @@ WARPAGG_HD simd_value<T, L> select(const simd_value<bool, L>& mask, const simd_v
         } else {
             typename simd_value<std::int64_t, L>::chunk wide;
             simd_value<std::int64_t, L>::widen(mask, i, wide);
-            r.part[i] = wide ? yes.part[i] : no.part[i];
+            r.part[i] = wide ? yes.part[i] : no.part[i];  // mutate: select_of_64_bits_swapped
         }
     }
     return r;

@@ -126,7 +126,7 @@ class basic_cpu {
     }
 
     void prefix_sum(const buffer<std::uint32_t>& in, buffer<std::uint64_t>& out, std::size_t n) {
-        std::uint64_t sum = 0;
+        std::uint64_t sum = 0;  // mutate: instances_counted_in_32_bits
         for (std::size_t i = 0; i < n; ++i) {
             out.data()[i] = sum;
             sum += in.data()[i];
@@ -258,7 +258,7 @@ class basic_cpu {
         for (std::size_t d = 0, sum = 0; d < digits; ++d) sum += std::exchange(starts_[d], sum);
         for_each_slice([&](std::size_t from, std::size_t to, std::size_t* places) {
             for (std::size_t d = 0; d < digits; ++d) places[d] += starts_[d];
-            for (std::size_t i = from; i < to; ++i) {
+            for (std::size_t i = from; i < to; ++i) {  // mutate: equal_depths_in_any_order
                 const std::size_t at = places[digit(keys[i])]++;
                 to_keys[at] = keys[i];
                 to_values[at] = values[i];

@@ -173,7 +173,7 @@ class cuda {
         std::uint32_t *from[] = {keys.data(), values.data()},
                       *to[] = {other_keys_.data(), other_values_.data()};
         static_assert(digits_a_key % 2 == 0);  // so that the result is in `keys` and `values`
-        for (unsigned digit = 0; digit < digits_a_key; ++digit, std::swap(from, to))
+        for (unsigned digit = 0; digit < digits_a_key; ++digit, std::swap(from, to))  // knob: radix_passes
             launch(sort_by_digit<std::uint32_t, std::uint32_t>, tiles, sorting_threads, 0, from[0], from[1],
                    count, digit * digit_bits, sort_memory(sort_memory_.data(), tiles, digit), to[0], to[1]);
     }

@@ -33,7 +33,7 @@ class l1_ssim final : public loss<Real> {
     }
 
     const Real* gradient(const Real* render, const raster::list_capacity& capacity) override {
-        comparison_.compare(render, capacity);
+        comparison_.compare(render, capacity);  // knob: compare
         comparison_.is_masked() ? differentiate<true>() : differentiate<false>();
         return gradient_.data();
     }
@@ -56,12 +56,13 @@ class l1_ssim final : public loss<Real> {
         device_.for_each_warp(comparison_.strips(),
                               l1_ssim_gradient<Real, Masked>{
                                   comparison_.target(), comparison_.maps(), comparison_.window(),
+                                  // knob: loss_weight
                                   comparison_.rows(), static_cast<Real>(l1_ssim_weight), gradient_.data()});
     }
 
     Device& device_;
     image_comparison<Device, Real> comparison_;
-    float pixels_ = 0;
+    float pixels_ = 0;  // knob: loss_members
     typename Device::template buffer<Real> gradient_;
 };
 

@@ -30,7 +30,7 @@ struct l1_ssim_gradient {
         const ssim_strip<W> strip(w, index, planes.width, planes.height, rows);
         const Real each = Real(1) / (Real(3) * Real(planes.width) * Real(planes.height));
         const Real step = each * (Real(1) - ssim_weight), slope = each * ssim_weight;
-        real spread[3][size];
+        real spread[3][size];  // knob: ssim_spread
         WARPAGG_UNROLL
         for (int m = 0; m < 3; ++m) {
             WARPAGG_UNROLL

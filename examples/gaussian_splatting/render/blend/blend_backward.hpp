@@ -54,7 +54,7 @@ struct blend_backward {
     const std::uint32_t* tile_of_segment;  ///< see `number_segments`
 
     sum_in_memory<Real, Policy>* sums;  ///< `record_stride` a Gaussian, added to
-    Policy how;
+    Policy how;                         // knob: backward_policy
 
     static constexpr int warps_at_once = 32;  ///< on an SM; measured
 
@@ -122,6 +122,7 @@ struct blend_backward {
             if constexpr (!std::is_same_v<mask_t<W>, bool>)  // one thread, which would wait for each
                 for (unsigned i = 0; i < staged; ++i)
                     __builtin_prefetch(sums + stage.splats[i].gaussian() * record_stride, 1);
+            // knob: add_splats
             for (unsigned i = staged; i-- > 0;) add_splat(w, p, stage.splats[i], end, pixels);
             if (base <= from) break;
         }
@@ -156,7 +157,7 @@ struct blend_backward {
 
     template <class W, class Patch, class real, class ends>
     WARPAGG_HD void add_splat(const W& w, const Patch& p, const staged_splat<Real>& s, const ends& end,
-                              pixel_state<real> (&pixels)[Cut::rows]) const {
+                              pixel_state<real> (&pixels)[Cut::rows]) const {  // knob: add_splat
         constexpr unsigned rows = Cut::rows;
         const unsigned rank = s.rank();
         const unsigned record = s.gaussian() * record_stride;
@@ -165,8 +166,8 @@ struct blend_backward {
         mask_t<W> counts[rows];
         const std::uint32_t reached = rows_with<Cut>(w, [&](unsigned k) {
             v[k] = seen.v(p.y + Real(k * Patch::block));
-            log2_alpha[k] = seen.log2_alpha(v[k]);
-            return counts[k] = is_hit(log2_alpha[k]) && end[k] >= rank;
+            log2_alpha[k] = seen.log2_alpha(v[k]);  // mutate: alpha_rounded_otherwise_backward
+            return counts[k] = is_hit(log2_alpha[k]) && end[k] >= rank;  // mutate: skipped_splats_divided_out
         });
         if constexpr (Cut::sparse) {
             if (reached == 0) return;
@@ -180,10 +181,12 @@ struct blend_backward {
         for_each_row<Cut>(reached, [&](unsigned k) {
             auto& [g, T, behind] = pixels[k];
             const capped_alpha<W, Real> capped(log2_alpha[k]);
+            // mutate: alpha_cap_differs_backward
             const real alpha = select(counts[k], capped.alpha, real(0));
             T = warpagg::math::divide(T, Real(1) - alpha);
             const real weight = alpha * T;
             const real own = fma(g[0], real(s.red), fma(g[1], real(s.green), g[2] * s.blue));
+            // mutate: gradient_through_the_cap
             const real ds = select(capped.free, weight * (own - behind), real(0));
             behind = fma(alpha, own - behind, behind);
             const real dsv = ds * v[k];
@@ -201,10 +204,11 @@ struct blend_backward {
         values[sum_suu] = seen.u * values[sum_su];
         values[sum_suv] = seen.u * part[4];
         values[sum_svv] = part[5];
+        // knob: pad_gradients
         // Lanes that see nothing of it add zeros: several pixels a lane are masked already, by their alpha.
         const mask_t<W> who = rows > 1 ? mask_t<W>(true) : counts[0];
         const auto to = [this, record](unsigned i) { return sums + (record + i); };
-        warpagg::warp_reduce_atomic(w, to, values, who, how);
+        warpagg::warp_reduce_atomic(w, to, values, who, how);  // knob: add_to_sums
     }
 };
 

@@ -82,8 +82,9 @@ struct blend_forward {
                     state[k][1] = fma(weight, real(s.red), state[k][1]);
                     state[k][2] = fma(weight, real(s.green), state[k][2]);
                     state[k][3] = fma(weight, real(s.blue), state[k][3]);
+                    // mutate: transmittance_from_total_alpha
                     T = select(counts, behind, select(hit, -warpagg::math::abs(T), T));
-                    end[k] = select(counts, rank, end[k]);
+                    end[k] = select(counts, rank, end[k]);  // mutate: stop_not_remembered
                 });
             }
         }

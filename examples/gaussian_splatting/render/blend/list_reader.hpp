@@ -85,6 +85,7 @@ class list_reader {
                 return bits_of<real>(warpagg::math::convert<bits_as<Real>>(i));
             };
             const index rank = w.lane() + (base + 1 - begin_);
+            // knob: stage_splat
             const real staged[12] = {
                 p,          p * dx,     r,          fma(q, dy, r * dx), q,      field_[8], field_[9],
                 field_[10], field_[11], bits(rank), bits(gaussian_),    real(0)};

@@ -52,7 +52,7 @@ struct patch {
 /// Alpha is at least `least_alpha`.
 template <class V>
 WARPAGG_HD auto is_hit(const V& log2_alpha) {
-    constexpr double log2_least_alpha = -7.994353436858858;
+    constexpr double log2_least_alpha = -7.994353436858858;  // knob: log2_least_alpha
     return log2_alpha >= V(warpagg::scalar_t<V>(log2_least_alpha));
 }
 
@@ -86,6 +86,7 @@ WARPAGG_HD void for_each_row(std::uint32_t rows, const F& f) {
     }
 }
 
+// knob: alpha_of_patch
 /// `free`: alpha is not capped, so that geometry and opacity move it.
 template <class W, class Real>
 struct capped_alpha {
@@ -93,7 +94,7 @@ struct capped_alpha {
     mask_t<W> free;
 
     WARPAGG_HD explicit capped_alpha(const value_t<W, Real>& log2_alpha) {
-        const value_t<W, Real> most{Real(most_alpha)}, full = warpagg::math::exp2(log2_alpha);
+        const value_t<W, Real> most{Real(most_alpha)}, full = warpagg::math::exp2(log2_alpha);  // knob: exp2
         free = full < most;
         alpha = warpagg::math::min(full, most);
     }

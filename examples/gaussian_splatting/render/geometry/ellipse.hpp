@@ -35,6 +35,7 @@ struct ellipse {
         const Real ratio = size_y / size_x, across = max(max(Real(1), ratio), largest(area));
         const vec3<Real> part = area / across, long_y = by * (ratio / across);
         const Real determinant =
+            // mutate: determinant_by_difference
             glm::dot(part, part) + added * (xx / across / across + glm::dot(long_y, long_y));
         const Real k = sqrt(two_ln2);
         width = k * size_x * sqrt(xx);

@@ -42,6 +42,7 @@ struct pinhole_projection {
                                             const vec3<Real>& dpy, const device_camera<Real>& camera) const {
         const Real rz = 1 / at.z;
         // px = fx / z (row 0 - u row 2), and u = x / z unless it is clamped.
+        // mutate: clamped_jacobian_as_if_free
         const Real du = select(u_free, -camera.fx * rz * glm::dot(dpx, camera.axis(2)), Real(0));
         const Real dv = select(v_free, -camera.fy * rz * glm::dot(dpy, camera.axis(2)), Real(0));
         vec3<Real> by_at(camera.fx * rz * center.x, camera.fy * rz * center.y, Real(0));

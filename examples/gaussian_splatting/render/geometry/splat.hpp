@@ -6,6 +6,7 @@
 
 namespace gs::raster {
 
+// knob: tile_size
 inline constexpr int tile_size = 16;  ///< pixels along a side of a tile, the unit of binning
 
 /// A Gaussian as the image sees it. Its alpha at offset d from its center is 2^(log2_opacity - u^2 - v^2)
@@ -23,9 +24,9 @@ struct alignas(16) alignas(Real) splat {
     Real red, green, blue;
 };
 
-inline constexpr double least_alpha = 1.0 / 255;
+inline constexpr double least_alpha = 1.0 / 255;  // knob: least_alpha
 inline constexpr double most_alpha = 0.99;
-inline constexpr double least_transmittance = 1e-4;
+inline constexpr double least_transmittance = 1e-4;  // knob: least_transmittance
 
 /// The values of a splat, in the order above.
 inline constexpr unsigned splat_width = 12;

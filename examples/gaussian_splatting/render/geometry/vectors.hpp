@@ -48,7 +48,7 @@ struct unit {
     Real inverse_length;
 
     WARPAGG_HD explicit unit(const glm::vec<N, Real>& v) {
-        const Real most = largest(v);
+        const Real most = largest(v);  // mutate: quaternion_squared_first
         const glm::vec<N, Real> scaled = v / most;
         const Real inverse = 1 / warpagg::math::sqrt(glm::dot(scaled, scaled));
         direction = scaled * inverse;

@@ -51,6 +51,7 @@ struct project {
         const auto depth = warpagg::math::convert<float>(projection_of<real, Effects>::depth(at));
         w.store_row(identities, first, i, inside);
         w.store_row(depths, first, select(row.active, bits_of<number>(depth), number(0xffffffffu)), inside);
+        // mutate: keys_of_the_culled_left_as_they_are
         w.store_row(tiles, first, drawn((d.x1 - d.x0) * (d.y1 - d.y0)), inside);
         // As they lie in memory.
         auto* corners = reinterpret_cast<std::uint32_t*>(boxes);

@@ -135,6 +135,7 @@ struct project_backward {
             by_position += f.seen.inverse_depth_gradient(s[sum_inverse_depth], camera);
         put(parameter::log_scale, 0, 3, log_scale, nx * axes.x + ny * axes.y);
         put(parameter::quaternion, 0, 4, quaternion, turn(f, dax * f.scale, day * f.scale));
+        // mutate: one_minus_opacity_rounded
         put(parameter::opacity, 0, 1, opacity, glm::vec<1, real>(s[sum_s] * sigmoid(-opacity.x)));
         put(parameter::mean, 0, 3, mean, by_position + color(w, row, put, i, mean, s));
         return center;

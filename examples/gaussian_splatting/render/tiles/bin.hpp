@@ -29,6 +29,7 @@ struct splats_by_depth {
             // k / across, exact as long as k is below 2^21: an image has no more tiles.
             const auto down = static_cast<unsigned>((static_cast<float>(k) + 0.5f) * rows_a_tile);
             const unsigned column = box.x0 + (k - down * (box.x1 - box.x0)), row = box.y0 + down;
+            // mutate: five_bits_for_the_tile
             return reaches_tile(shape, column, row) ? row * tiles_across + column : device::no_bucket;
         }
     };

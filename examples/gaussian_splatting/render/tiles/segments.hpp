@@ -24,6 +24,7 @@ struct cut {
 /// How a device's warps cut it, as measured (`lab backward`).
 template <class W>
 using cut_for = std::conditional_t<W::size == 1, cut<1, 1, 128>,
+                                   // knob: segment_cut
                                    std::conditional_t<W::size == 8, cut<8, 16, 1024, true>, cut<8, 2, 128>>>;
 /// The same with a pixel a lane.
 template <class Cut>

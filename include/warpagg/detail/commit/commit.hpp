@@ -28,9 +28,9 @@ template <unsigned K, int I, warp W, class T, int N>
 WARPAGG_HD void by_groups(const W& w, T* to, const T (&v)[N], bool active) {
     constexpr int group = static_cast<int>(K);
     if constexpr (I + group <= N) {
-        w.template atomic_add_packed<K>(to + I, v + I, active);
+        w.template atomic_add_packed<K>(to + I, v + I, active);  // mutate: packed_first_values_again
         by_groups<K, I + group>(w, to, v, active);
-    } else if constexpr (I < N) {
+    } else if constexpr (I < N) {  // mutate: packed_remainder_lost
         by_groups<K / 2, I>(w, to, v, active);
     }
 }
@@ -42,7 +42,7 @@ WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, class Commit, class V, warp W, class Dst>
 WARPAGG_HD bool is_packed(const W& w, Dst dst) {
     if constexpr (detail::packs<Op, Commit, W, Dst, V>) {
-        return w.template packs<Commit::neighbors>(dst(0));
+        return w.template packs<Commit::neighbors>(dst(0));  // mutate: packed_where_not_aligned
     } else {
         return false;
     }
@@ -75,7 +75,9 @@ WARPAGG_HD void own_value(const W& w, Dst dst, const V (&v)[N]) {
         const auto index = w.lane() + static_cast<unsigned>(base);
         V own = v[base];
         for (int i = base + 1; i < N && i < base + static_cast<int>(W::size); ++i)
+            // mutate: contiguous_value_of_neighbor
             own = select(index == static_cast<unsigned>(i), v[i], own);
+        // mutate: contiguous_one_lane_too_few
         warpagg::detail::commit_value<Op>(w, dst, index, own, index < static_cast<unsigned>(N));
     }
 }
@@ -88,6 +90,7 @@ WARPAGG_HD void scattered(const W& w, Dst dst, const V (&v)[N]) {
     WARPAGG_UNROLL
     for (int k = 0; k < held; ++k) {
         const auto index = reduce::scattered_index(w, k);
+        // mutate: scattered_one_lane_too_many
         warpagg::detail::commit_value<Op>(w, dst, index, v[k], index < static_cast<unsigned>(N));
     }
 }
@@ -101,7 +104,7 @@ WARPAGG_HD void results(const W& w, Dst dst, const V (&v)[N]) {
     } else if constexpr (std::is_same_v<Commit, contiguous>) {
         own_value<Op>(w, dst, v);
     } else {
-        each_lane<Op, Commit>(w, dst, v, w.lane() == 0u);
+        each_lane<Op, Commit>(w, dst, v, w.lane() == 0u);  // mutate: scalar_by_lane_1
     }
 }
 

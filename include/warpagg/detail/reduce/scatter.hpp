@@ -24,7 +24,7 @@ WARPAGG_HD value_t<W, unsigned> scattered_index(const W& w, int k) {
         return value_t<W, unsigned>(first);
     } else {
         constexpr unsigned unused = 32 - math::popcount(W::size - 1);  // bits of a lane's number
-        return (bit_reverse(w.lane()) >> unused) + first;
+        return (bit_reverse(w.lane()) >> unused) + first;              // mutate: scatter_second_row_lost
     }
 }
 
@@ -37,7 +37,7 @@ WARPAGG_HD mask_t<W> is_upper(const W& w) {
     if constexpr (requires { w.template is_upper<Distance>(); }) {
         return w.template is_upper<Distance>();
     } else {
-        return (w.lane() & Distance) != 0u;
+        return (w.lane() & Distance) != 0u;  // mutate: scatter_halves_swapped
     }
 }
 
@@ -64,9 +64,10 @@ WARPAGG_HD V scattered(const W& w, const mask_t<W>* upper, const Values& value) 
         const V even = scattered<V, Op, 2 * Distance, N, 2 * K>(w, upper + 1, value);
         if constexpr (2 * K + 1 < held_after_step<W>(N, 2 * Distance)) {
             const V odd = scattered<V, Op, 2 * Distance, N, 2 * K + 1>(w, upper + 1, value);
+            // mutate: scatter_sends_what_it_keeps
             return Op::combine(select(*upper, odd, even), w.shfl_xor(select(*upper, even, odd), Distance));
         } else {
-            return Op::combine(even, w.shfl_xor(even, Distance));
+            return Op::combine(even, w.shfl_xor(even, Distance));  // mutate: scatter_loses_last_value
         }
     }
 }

@@ -38,7 +38,7 @@ template <class Op, warp W, class Values, class V, int N>
 WARPAGG_HD void reduce_over_warp(shfl_down, const W& w, const Values& value, V (&results)[N]) {
     WARPAGG_UNROLL
     for (int i = 0; i < N; ++i) results[i] = value(i);
-    detail::down_from<Op, W::size / 2>(w, results);
+    detail::down_from<Op, W::size / 2>(w, results);  // mutate: shfl_down_half_a_warp
 }
 
 /// The same tree, to every lane. Cost: N log2(W) shuffles.

@@ -48,6 +48,7 @@ struct lane_state {
 
     bool meets(const lane_state& b) const {
         return waiting && b.waiting && at.mask == b.at.mask && at.value_size == b.at.value_size &&
+               // mutate: call_sites_not_compared
                same(at.at.function, b.at.at.function) && same(at.at, b.at.at) && same(site(), b.site());
     }
     /// Whether the two are in different iterations of one loop.
@@ -85,7 +86,7 @@ struct warp_state {
         });
         for_each_lane(lanes, [&](unsigned a) {
             known[a] = all;
-            ++known[a][a];
+            ++known[a][a];  // mutate: sync_orders_what_comes_after
         });
     }
 };

@@ -255,7 +255,7 @@ class checked {
     WARPAGG_OUT_OF_LINE std::uint32_t vote(who w, bool p, const call_site& at) const {
         ballot_part mine{p};
         meet<bool>(w, at, mine, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
-            if (counters* c = m.count()) ++c->votes;
+            if (counters* c = m.count()) ++c->votes;  // mutate: votes_not_counted
             const group<ballot_part> g{m, warp, lanes};
             std::uint32_t bits = 0;
             g.each([&](unsigned lane, ballot_part& part) { bits |= part.p ? 1u << lane : 0u; });
@@ -298,6 +298,7 @@ class checked {
             if (counters* c = m.count()) c->shuffles += (sizeof(T) + 3) / 4;
             const group<shuffle_part<T>> g{m, warp, lanes};
             g.each([&](unsigned lane, shuffle_part<T>& part) {
+                // mutate: inactive_lanes_not_poisoned
                 part.result = g.has(part.from) ? g[part.from].value : m.undefined<T>(warp, lane, part.from);
             });
         });

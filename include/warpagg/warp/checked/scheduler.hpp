@@ -75,6 +75,7 @@ class scheduler {
 
   private:
     void take_next() {
+        // mutate: schedule_not_drawn
         const unsigned i = random_.below(static_cast<std::uint32_t>(runnable_.size()));
         current_ = runnable_[i];
         runnable_[i] = runnable_.back();

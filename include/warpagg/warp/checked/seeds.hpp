@@ -62,7 +62,7 @@ bool for_each_seed(std::uint64_t n, F f) {
     };
     if (const auto only = seed_in_environment()) return run(*only);
     for (std::uint64_t seed = 1; seed <= n; ++seed)
-        if (!run(seed)) return false;
+        if (!run(seed)) return false;  // mutate: seeds_go_on_after_a_failure
     return true;
 }
 

@@ -36,7 +36,7 @@ class shadow_memory {
         for (std::uintptr_t word = first / 4; word * 4 < end; ++word) {
             a.bytes = 0;
             for (unsigned i = 0; i < 4; ++i)
-                if (word * 4 + i >= first && word * 4 + i < end)
+                if (word * 4 + i >= first && word * 4 + i < end)  // mutate: bytes_of_a_word_not_told_apart
                     a.bytes |= static_cast<std::uint8_t>(1u << i);
             if (const access* conflict = note_word(word, a, ordered)) return conflict;
         }
@@ -86,6 +86,7 @@ class shadow_memory {
             node& earlier = nodes_[index];
             const bool before = ordered(earlier.a);
             const bool conflict = (earlier.a.bytes & a.bytes) != 0 &&
+                                  // mutate: atomic_and_plain_do_not_conflict
                                   (earlier.a.kind == access_kind::write || earlier.a.kind != a.kind);
             if (!before && (conflict || (a.kind == access_kind::write && (earlier.a.bytes & a.bytes) != 0)))
                 return &earlier.a;

@@ -21,8 +21,8 @@ class shared_memory {
     template <class F>
     void begin_block(F forget) {
         for (array& a : arrays_) {
-            forget(a.first.get(), a.size);
-            spoil(a);
+            forget(a.first.get(), a.size);  // mutate: blocks_inherit_shared_accesses
+            spoil(a);                       // mutate: blocks_inherit_shared_values
         }
     }
 
@@ -42,6 +42,7 @@ class shared_memory {
         std::unique_ptr<std::byte[]> first;
     };
     /// Fills the array with bits that are not zero; floats are NaN.
+    // mutate: shared_memory_starts_at_zero
     static void spoil(array& a) { std::memset(a.first.get(), 0xff, a.size); }
 
     std::vector<array> arrays_;

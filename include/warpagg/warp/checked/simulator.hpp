@@ -29,6 +29,7 @@ namespace warpagg::emulator::detail {
 class simulator {
   public:
     simulator(unsigned blocks, unsigned threads, std::uint64_t seed, counters* count)
+        // mutate: seed_ignored
         : blocks_(blocks), threads_(threads), count_(count), random_(seed), scheduler_(random_) {
         report_.seed = seed;
     }
@@ -83,6 +84,7 @@ class simulator {
     /// Waits for the other lanes of the mask; the last lane calls `complete` for all of them.
     WARPAGG_OUT_OF_LINE void meet(const arrival& a) {
         const std::uint32_t bit = 1u << lane();
+        // mutate: own_bit_not_asked_for
         if ((a.mask & bit) == 0) diagnose([&] { return not_in_mask(self(), a, bit); });
         self().at = a;
         self().waiting = true;
@@ -107,6 +109,7 @@ class simulator {
             shadow_process_ = start_shadow_process();
         const unsigned thread = number * warp_state::size + lane;
         const undefined_read read{warps_[number].lane[lane].site(), block_, thread, from};
+        // mutate: shadow_process_reads_the_same_values
         return undefined_.make<T>(read, random_, is_shadow());
     }
 
@@ -202,6 +205,7 @@ class simulator {
         std::uint32_t apart = 0;
         for_each_lane(lanes, [&](unsigned lane) {
             all_meet = all_meet && first.meets(w.lane[lane]);
+            // mutate: iterations_not_compared
             if (w.lane[lane].out_of_step(w.lane[first_of(lanes)])) apart |= 1u << lane;
         });
         if (!all_meet) return false;
@@ -243,7 +247,7 @@ class simulator {
     /// Answers `activemask` for these lanes with random groups of them, as a compiler may split a
     /// divergent warp.
     void partition(warp_state& w, std::uint32_t lanes) {
-        const std::uint32_t parts = 1 + random_.below(3);
+        const std::uint32_t parts = 1 + random_.below(3);  // mutate: activemask_names_all
         std::uint32_t part[3] = {}, of[warp_state::size] = {};
         for_each_lane(lanes, [&](unsigned lane) { part[of[lane] = random_.below(parts)] |= 1u << lane; });
         for_each_lane(lanes, [&](unsigned lane) {
@@ -264,6 +268,7 @@ class simulator {
                 diagnose(number, [&] { return barrier_not_reached(*at, w.returned, in_barrier_, threads_); });
             std::uint32_t elsewhere = 0;
             for_each_lane(w.in_barrier, [&](unsigned lane) {
+                // mutate: barriers_not_compared
                 if (!same(w.lane[lane].site(), *at)) elsewhere |= 1u << lane;
             });
             if (elsewhere != 0)
