@@ -6,9 +6,8 @@
 #   instantiate(HEADER BACKEND SET [TYPE...])
 # SET is
 #   quick  for every build of the tests: each header once on SIMD lanes and once on checked;
-#   full   for WARPAGG_FULL_TESTS only: the other backends and value types;
-#   plain  like full, but not under a sanitizer, for which types of one size, a warp of one lane, and
-#          warps of 8 and 32 lanes are all alike.
+#   full   for WARPAGG_FULL_TESTS only: the other backends and value types.
+# Sanitizers test the quick set: they leave out checked, and find no more in other types and widths.
 
 instantiate(accumulators/accumulators.hpp checked quick)
 # On 32 lanes they take four times as long.
@@ -19,13 +18,13 @@ instantiate(accumulators/accumulators.hpp cuda quick)
 
 instantiate(match_reduce_atomic/match_reduce_atomic.hpp checked quick float std::uint32_t)
 instantiate(match_reduce_atomic/match_reduce_atomic.hpp lanes quick float std::int32_t)
-instantiate(match_reduce_atomic/match_reduce_atomic.hpp narrow_lanes plain float)
+instantiate(match_reduce_atomic/match_reduce_atomic.hpp narrow_lanes full float)
 instantiate(match_reduce_atomic/match_reduce_atomic.hpp serial full float std::int32_t)
 instantiate(match_reduce_atomic/match_reduce_atomic.hpp cuda quick float double std::int32_t std::uint64_t)
 
-# lanes holds numbers only, so it has no aggregates.
+# lanes holds numbers only, so it has no aggregates, and sanitizers leave out checked.
 instantiate(reduce_atomic/aggregates.hpp checked quick)
-instantiate(reduce_atomic/aggregates.hpp serial full)
+instantiate(reduce_atomic/aggregates.hpp serial quick)
 instantiate(reduce_atomic/aggregates.hpp cuda quick)
 
 instantiate(reduce_atomic/commits.hpp checked quick float std::uint32_t)
@@ -41,17 +40,17 @@ instantiate(reduce_atomic/operations.hpp cuda quick std::int32_t std::uint32_t)
 instantiate(reduce_atomic/operations.hpp cuda full std::int64_t std::uint64_t)
 
 instantiate(reduce_atomic/sums.hpp checked quick float)
-instantiate(reduce_atomic/sums.hpp checked plain double)
-instantiate(reduce_atomic/sums.hpp checked plain std::int32_t)
-instantiate(reduce_atomic/sums.hpp checked plain std::uint32_t)
+instantiate(reduce_atomic/sums.hpp checked full double)
+instantiate(reduce_atomic/sums.hpp checked full std::int32_t)
+instantiate(reduce_atomic/sums.hpp checked full std::uint32_t)
 instantiate(reduce_atomic/sums.hpp lanes quick float)
-instantiate(reduce_atomic/sums.hpp lanes plain double)
-instantiate(reduce_atomic/sums.hpp lanes plain std::int32_t)
-instantiate(reduce_atomic/sums.hpp lanes plain std::uint32_t)
+instantiate(reduce_atomic/sums.hpp lanes full double)
+instantiate(reduce_atomic/sums.hpp lanes full std::int32_t)
+instantiate(reduce_atomic/sums.hpp lanes full std::uint32_t)
 instantiate(reduce_atomic/sums.hpp lanes full std::int64_t)
-instantiate(reduce_atomic/sums.hpp narrow_lanes plain float)
+instantiate(reduce_atomic/sums.hpp narrow_lanes full float)
 instantiate(reduce_atomic/sums.hpp serial full float double)
-instantiate(reduce_atomic/sums.hpp serial plain std::int32_t std::uint32_t)
+instantiate(reduce_atomic/sums.hpp serial full std::int32_t std::uint32_t)
 instantiate(reduce_atomic/sums.hpp cuda quick float)
 instantiate(reduce_atomic/sums.hpp cuda full double)
 instantiate(reduce_atomic/sums.hpp cuda full std::int32_t)
@@ -61,7 +60,7 @@ instantiate(reduce_atomic/sums.hpp cuda full __half2 __nv_bfloat162)
 
 instantiate(segmented_sum/segmented_sum.hpp checked quick)
 instantiate(segmented_sum/segmented_sum.hpp lanes quick)
-instantiate(segmented_sum/segmented_sum.hpp narrow_lanes plain)
+instantiate(segmented_sum/segmented_sum.hpp narrow_lanes full)
 instantiate(segmented_sum/segmented_sum.hpp serial full)
 instantiate(segmented_sum/segmented_sum.hpp cuda quick)
 

@@ -48,7 +48,7 @@ direction_statistics direction_of(const gs::scene& scene) {
 
 }  // namespace
 
-TEST_CASE("a scene calls for what it was made with, and for nothing else") {
+TEST_CASE("long: detection recommends the effects that a scene was made with, and no other") {
     const struct {
         const char* scene;
         std::set<std::string> effects;

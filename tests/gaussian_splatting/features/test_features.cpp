@@ -94,7 +94,7 @@ std::vector<float> flattened_fits(const std::vector<gs::depth_fit>& fits) {
 
 }  // namespace
 
-TEST_CASE("what is simulated is what the scene calls for, or what was said") {
+TEST_CASE("long: training simulates the recommended effects, or those that --effects names") {
     const gs::scene spheres = made("spheres"), glossy = made("spheres,gloss=0.6,exposure=0.3");
     const auto simulated = [](const gs::scene& scene, const char* selection, std::optional<int> degree = {}) {
         return resolve(scene, parse_selection(selection),
@@ -309,7 +309,7 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
     }
 }
 
-TEST_CASE("behind a scene a sky is learnt, where no surface is") {
+TEST_CASE("long: sky: a background is learned where no surface is") {
     const gs::scene scene = small_scene("synthetic:spheres,sky=0.9", 48);
     gs::gaussians points = gs::from_points(scene.points, 0, 3000, 1);
     for (const auto make : engines()) {
@@ -385,7 +385,7 @@ TEST_CASE("quality: with depth maps, few photos with few points make a better sc
     }
 }
 
-TEST_CASE("photos of different exposures are fitted, and their mean stays") {
+TEST_CASE("long: exposure: photos of different exposures are fitted, and their mean stays") {
     const gs::scene scene = small_scene("synthetic:spheres,exposure=0.4", 32);
     std::array<double, 2> psnr{};
     for (const auto make : engines())
@@ -421,7 +421,7 @@ TEST_CASE("photos of different exposures are fitted, and their mean stays") {
         }
 }
 
-TEST_CASE("what passed before photos leaves nothing behind if masks leave it out") {
+TEST_CASE("long: masks: an object that passes in front of the cameras leaves no trace") {
     const gs::scene truth = small_scene("synthetic:spheres", 48);
     for (const auto make : engines()) {
         const auto psnr_of = [&](const char* data, bool masks) {
@@ -492,7 +492,7 @@ TEST_CASE("bands go, with their memory, where training is told so, and come as z
         }
 }
 
-TEST_CASE("a review adds bands that what is left of photos calls for, and drops those that do not show") {
+TEST_CASE("long: sh_degree: the revision adds degrees that images need, and drops invisible ones") {
     for (const auto make : engines())
         for (const char* name : {"synthetic:spheres,gloss=0.8", "synthetic:spheres,noise=0.1"}) {
             CAPTURE(name);

@@ -207,7 +207,7 @@ TEST_CASE("a model without a scene has a normalization") {
     }
 }
 
-TEST_CASE("a distant scene, or one in another unit, trains alike, and its file has world coordinates") {
+TEST_CASE("long: a distant scene, or one in another unit, trains alike and is written in world coordinates") {
     const gs::scene scene = spheres(32);
     const auto engine = gs::train::make_cpu_engine();
     gs::scene near = scene;
