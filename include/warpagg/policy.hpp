@@ -73,6 +73,9 @@ template <>
 inline constexpr auto placement_of<unset> =
     reduce::result_placement::every_lane;  // whatever suits the commit
 
+template <class Reduce>
+inline constexpr bool leaves_own_values =
+    placement_of<Reduce> == reduce::result_placement::own_lane && !std::is_same_v<Reduce, reduce::per_lane>;
 template <class Reduce, class Commit>
 inline constexpr bool spreads_own_values =
     placement_of<Reduce> == reduce::result_placement::own_lane&& std::is_same_v<Commit, commit::contiguous>;
@@ -142,6 +145,9 @@ struct policy : detail::optional_member<detail::named_t<axis::accumulate, Tags..
     using gate = detail::named_t<axis::gate, Tags...>;
     /// @}
 
+    static_assert(
+        !detail::leaves_own_values<reduce>,
+        "own_lane is for per_lane: a reduction leaves its sums in first_lane, every_lane or spread");
     static_assert(!detail::spreads_own_values<reduce, commit>,
                   "per_lane commits each lane's own values: contiguous has no sums to spread over the lanes");
     static_assert(!detail::spreads_first_lane<reduce, commit>,

@@ -136,9 +136,9 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
 /// @note Accumulators other than `native` decompose values even in idle warps; call
 /// `skip_if_warp_idle` first if many warps are idle. `fixed` with a `fault` takes one more vote.
 ///
-/// The order in which warps add is unspecified. Within a warp the tree of additions is fixed, and
-/// the same for every reduction but `per_lane`; lanes that the gate keeps from reducing add in any
-/// order. Error of a float sum with all lanes active: (n/32 + 5) u k for n updates of condition k,
+/// The order in which warps add is unspecified. Within a warp `shfl_down`, `butterfly` and `scatter`
+/// add in the same tree: lanes W/2 apart first, then half as far, down to neighbors. With `per_lane`,
+/// and where the gate keeps lanes from reducing, lanes add in any order. Error of a float sum with all lanes active: (n/32 + 5) u k for n updates of condition k,
 /// u = 2^-24; with few active lanes, up to n u k. Cost by default, on 32 lanes: one vote, N - 1 +
 /// log2(32/N) shuffles (N `redux` instructions for 32-bit integers), and one atomic instruction per
 /// 32 components.

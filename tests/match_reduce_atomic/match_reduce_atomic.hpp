@@ -202,7 +202,7 @@ void check_match(const match_problem<T, Op>& p, const char* what, unsigned alone
     backend::memory<T> memory(p.before);
     backend::launch(match_all<T, N, Base, Policy>{values.data(), active.data(), key.data(), memory.data(),
                                                   p.where, p.cases});
-    INFO(what, ", N = ", N);
+    INFO(std::string(what), ", N = ", N);
     CHECK(p.first_difference(memory.download(), alone_below) == "");
 }
 

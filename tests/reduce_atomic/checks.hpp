@@ -210,7 +210,7 @@ std::vector<T> memory_after(const problem<T, Op>& p) {
 
 template <class Call, int N, class Destination = as_pointer, class T, class Op>
 void check(const problem<T, Op>& p, const char* what, rule r) {
-    INFO(what, ", N = ", N);
+    INFO(std::string(what), ", N = ", N);
     const bool may_pack =
         Destination::contiguous && backend::packs<T>() && std::is_same_v<Op, operation::sum>;
     CHECK(p.first_difference(memory_after<Call, N, Destination>(p), r, may_pack) == "");

@@ -82,7 +82,7 @@ void check_staged(const char* what) {
             T& result = expected.value[p.where.at(c, i)];
             if (copy != T{}) result = combined(operation::sum{}, result, copy);  // a zero is not added
         }
-    INFO(what, ", N = ", N);
+    INFO(std::string(what), ", N = ", N);
     CHECK(expected.first_difference(memory.download()) == "");
 }
 

@@ -59,7 +59,7 @@ void check_poison_of_active_lanes(const char* what) {
             const std::size_t cell = p.where.at(c, i);
             as_expected = as_expected && std::isnan(after[cell]) == nan[cell];
         }
-    INFO(what);
+    INFO(std::string(what));
     CHECK(as_expected);
 }
 

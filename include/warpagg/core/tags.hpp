@@ -12,11 +12,13 @@
 namespace warpagg {
 
 /// How the values of the lanes are reduced. W is the width of the warp, N the number of values.
+/// `shfl_down`, `butterfly` and `scatter` combine lanes in the same tree: lanes W/2 apart first, then
+/// half as far, down to neighbors. So their results have the same bits.
 namespace reduce {
 
 /// Which lanes hold the results of a reduction.
 enum class result_placement {
-    own_lane,    ///< each lane holds its own values; nothing was combined
+    own_lane,    ///< each lane holds its own values: for `per_lane` only, which combines nothing
     first_lane,  ///< lane 0 holds all of them
     every_lane,  ///< every lane holds all of them
     spread,      ///< each lane holds some of them: see `scattered_index`

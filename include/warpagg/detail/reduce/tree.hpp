@@ -41,7 +41,7 @@ WARPAGG_HD void reduce_over_warp(shfl_down, const W& w, const Values& value, V (
     detail::down_from<Op, W::size / 2>(w, results);  // mutate: shfl_down_half_a_warp
 }
 
-/// The same tree, to every lane. Cost: N log2(W) shuffles.
+/// Combines in the tree of `shfl_down`; every lane holds the results afterwards. Cost: N log2(W) shuffles.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
 WARPAGG_HD void reduce_over_warp(butterfly, const W& w, const Values& value, V (&results)[N]) {
