@@ -138,10 +138,10 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
 ///
 /// The order in which warps add is unspecified. Within a warp `shfl_down`, `butterfly` and `scatter`
 /// add in the same tree: lanes W/2 apart first, then half as far, down to neighbors. With `per_lane`,
-/// and where the gate keeps lanes from reducing, lanes add in any order. Error of a float sum with all lanes active: (n/32 + 5) u k for n updates of condition k,
-/// u = 2^-24; with few active lanes, up to n u k. Cost by default, on 32 lanes: one vote, N - 1 +
-/// log2(32/N) shuffles (N `redux` instructions for 32-bit integers), and one atomic instruction per
-/// 32 components.
+/// and where the gate keeps lanes from reducing, lanes add in any order. Error of a float sum with all lanes
+/// active: (n/32 + 5) u k for n updates of condition k, u = 2^-24; with few active lanes, up to n u k. Cost
+/// by default, on 32 lanes: one vote, N - 1 + log2(32/N) shuffles (N `redux` instructions for 32-bit
+/// integers), and one atomic instruction per 32 components.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class T, int N, warp W, class Dst, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&values)[N],
