@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,9 @@ struct selected_feature {
     std::vector<float> values{};  ///< what it begins from if it is on; each feature defines its own
 };
 
+/// Changes the render of a training view: see `feature::show_on_host`.
+using show_function = std::function<void(std::size_t view, std::vector<float>& render)>;
+
 /// An effect that training simulates if the scene calls for it. This is the host's side: how the effect is
 /// detected, what it begins from, when it acts, and what it writes. `device_feature.hpp` is the side that
 /// takes part in a step. One object serves all runs, so a feature keeps no state here.
@@ -63,6 +67,10 @@ class feature {
     virtual void prepare(const selected_feature&, scene&, gaussians&) const {}
     /// Adds its actions to the training loop. Called whether the effect is on or off.
     virtual void schedule(const selected_feature&, train::training&) const {}
+    /// How the effect changes the render of a training view: a function of the view's index and of three
+    /// planes of its size, which several threads may call. Empty if it does not change renders. Called
+    /// during training, if the effect is on.
+    virtual show_function show_on_host(train::engine&, const scene&) const { return {}; }
     /// Sets what held-out views are shown with. Called before they are measured, if the effect is on.
     virtual void before_evaluation(train::engine&, const scene&) const {}
     /// Writes files of its own into the output folder, or removes those of an earlier run if it is off.

@@ -120,6 +120,16 @@ void feature_set::schedule(train::training& training) const {
         if (const selected_feature* selected = find(all_, f->name())) f->schedule(*selected, training);
 }
 
+show_function feature_set::show_on_host(train::engine& engine, const scene& scene) const {
+    std::vector<show_function> steps;
+    for (const auto& f : all_features())
+        if (is_on(f->name()))
+            if (show_function step = f->show_on_host(engine, scene)) steps.push_back(std::move(step));
+    return [steps = std::move(steps)](std::size_t view, std::vector<float>& render) {
+        for (const show_function& step : steps) step(view, render);
+    };
+}
+
 void feature_set::before_evaluation(train::engine& engine, const scene& scene) const {
     for (const auto& f : all_features())
         if (is_on(f->name())) f->before_evaluation(engine, scene);

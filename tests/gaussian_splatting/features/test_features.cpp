@@ -507,18 +507,19 @@ TEST_CASE("long: sh_degree: the revision adds degrees that images need, and drop
             e->set_model(gs::from_points(scene.points, 0, 2000, 1));
             const gs::train::train_events quiet{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
             gs::train::train(*e, scene, o, quiet);
-            const sh_review left = revise_sh_degree(*e, scene, {}, 0);
+            const show_function as_rendered = o.features.show_on_host(*e, scene);
+            const sh_review left = revise_sh_degree(*e, scene, as_rendered, {}, 0);
             CHECK((glossy ? left.sh_degree >= 2 : left.sh_degree == 0));
             CHECK_FALSE(left.change);
             CHECK(left.unexplained[0] > 0);
             if (glossy) continue;
             dynamic_cast<gs::train::sh_degree_state&>(e->feature("direction")).set_degree(2);
-            CHECK(revise_sh_degree(*e, scene, {}, 2).sh_degree == 0);
+            CHECK(revise_sh_degree(*e, scene, as_rendered, {}, 2).sh_degree == 0);
             gs::gaussians model = e->get_model();
             for (std::size_t i = 0; i < model.sh_rest.size(); ++i)
                 if (i % 24 < 9) model.sh_rest[i] = 0.02f;  // the band of degree 1
             e->set_model(model);
-            const sh_review kept = revise_sh_degree(*e, scene, {}, 2);
+            const sh_review kept = revise_sh_degree(*e, scene, as_rendered, {}, 2);
             CHECK(kept.sh_degree == 1);
             REQUIRE(kept.change);
             CHECK(*kept.change > band_change_limit);

@@ -44,7 +44,8 @@ gs::gaussians trained(gs::train::engine& e, const gs::scene& scene) {
     gs::train::training training(e, scene, o, quiet);
     o.features.schedule(training);
     const auto revise = [&](int degree) {
-        return gs::features::revise_sh_degree(e, scene, {}, degree).sh_degree;
+        const auto show = o.features.show_on_host(e, scene);
+        return gs::features::revise_sh_degree(e, scene, show, {}, degree).sh_degree;
     };
     gs::features::schedule_revision(training, revise, 0.005);
     training.run();

@@ -74,6 +74,22 @@ void exposure_feature::schedule(const selected_feature& selected, train::trainin
                   [&training](int) { training.engine().feature("exposure").normalize(); }});
 }
 
+show_function exposure_feature::show_on_host(train::engine& engine, const scene&) const {
+    return [exposures = exposures_from(engine.feature(name()).values())](std::size_t view,
+                                                                         std::vector<float>& render) {
+        const exposure& e = exposures[view];
+        const std::size_t pixels = render.size() / 3;
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const std::array color{render[i], render[pixels + i], render[2 * pixels + i]};
+            for (unsigned c = 0; c < 3; ++c) {
+                float exposed = e[exposure_at(c, 3)];
+                for (unsigned k = 0; k < 3; ++k) exposed += e[exposure_at(c, k)] * color[k];
+                render[c * pixels + i] = exposed;
+            }
+        }
+    };
+}
+
 void exposure_feature::before_evaluation(train::engine& engine, const scene& scene) const {
     auto& state = engine.feature(name());
     state.set_held_out_values(flattened(held_out_exposures(scene, exposures_from(state.values()))));

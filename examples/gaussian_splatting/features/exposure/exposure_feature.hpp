@@ -23,6 +23,7 @@ class exposure_feature final : public feature {
     bool begins_from_photos() const override { return true; }
     std::vector<float> neutral_values(const scene& scene) const override;
     void schedule(const selected_feature& selected, train::training& training) const override;
+    show_function show_on_host(train::engine& engine, const scene& scene) const override;
     void before_evaluation(train::engine& engine, const scene& scene) const override;
     /// exposures.json: three rows of four numbers per photo, as the reference implementation writes them.
     void write_results(const selected_feature& selected, train::engine& engine, const scene& scene,

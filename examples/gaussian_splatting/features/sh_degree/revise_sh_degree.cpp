@@ -10,7 +10,6 @@
 #include "../../core/parallel.hpp"
 #include "../../engine/engine.hpp"
 #include "../../image/image.hpp"
-#include "../exposure/exposure_kernels.hpp"
 #include "direction.hpp"
 
 namespace gs::features {
@@ -20,33 +19,31 @@ float shown(float x) { return std::clamp(x, 0.0f, 1.0f); }
 
 /// A photo minus its image, as a photo: four times as large, since bytes are coarse, around a gray of a
 /// half.
-void leave_residual(image& photo, const std::vector<float>& render, const exposure& e,
-                    const std::array<float, 3>& background) {
+void leave_residual(image& photo, const std::vector<float>& render, const std::array<float, 3>& background) {
     const std::vector<float> expected = over_background(photo, background.data());
     const std::size_t n = render.size() / 3;
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t c = 0; c < 3; ++c) {
-            float exposed = e[4 * c + 3];
-            for (std::size_t k = 0; k < 3; ++k) exposed += e[4 * c + k] * render[k * n + i];
-            const float gray = 127.5f + 4 * 255 * (expected[c * n + i] - shown(exposed));
+            const float gray = 127.5f + 4 * 255 * (expected[c * n + i] - shown(render[c * n + i]));
             photo.rgba[4 * i + c] = static_cast<std::uint8_t>(std::lround(std::clamp(gray, 8.0f, 247.0f)));
         }
 }
 
 /// The scene's points, and what the model leaves of its training photos.
-scene residual_of(const scene& of, train::engine& engine, const std::array<float, 3>& background) {
+scene residual_of(const scene& of, train::engine& engine, const show_function& show,
+                  const std::array<float, 3>& background) {
     scene residual;
     residual.points = of.points;
     residual.train = of.train;
     for (view& v : residual.train) v.depths = {};
-    const std::vector<exposure> exposures = exposures_from(engine.feature("exposure").values());
     std::vector<std::vector<float>> renders(static_cast<std::size_t>(omp_get_max_threads()));
     for (std::size_t first = 0; first < of.train.size(); first += renders.size()) {
         const std::size_t count = std::min(renders.size(), of.train.size() - first);
         for (std::size_t i = 0; i < count; ++i)
             renders[i] = engine.render(of.train[first + i].camera, background);
         for_each_in_parallel(count, [&](std::size_t i) {
-            leave_residual(residual.train[first + i].pixels, renders[i], exposures[first + i], background);
+            show(first + i, renders[i]);
+            leave_residual(residual.train[first + i].pixels, renders[i], background);
         });
     }
     return residual;
@@ -71,12 +68,12 @@ double change_above(int degree, train::engine& engine, const scene& of,
 
 }  // namespace
 
-sh_review revise_sh_degree(train::engine& engine, const scene& scene, const std::array<float, 3>& background,
-                           int sh_degree) {
+sh_review revise_sh_degree(train::engine& engine, const scene& scene, const show_function& show,
+                           const std::array<float, 3>& background, int sh_degree) {
     sh_review review;
     direction_statistics left;
     if (!scene.points.empty()) {
-        const auto residual = residual_of(scene, engine, background);
+        const auto residual = residual_of(scene, engine, show, background);
         left = measure_direction(scene_statistics(residual));
     }
     review.unexplained = left.unexplained;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "../../scene/scene.hpp"
+#include "../feature.hpp"
 
 namespace gs::train {
 class engine;
@@ -32,8 +33,9 @@ inline constexpr double prune_change_limit = 0.00025;
 
 /// Bands are needed if the difference between photos and renders depends on direction, or if they change the
 /// renders of eight training views. Renders the training views once, and these eight again for each band.
-/// Precondition: `engine` has the scene's views, and a model of this degree.
-sh_review revise_sh_degree(train::engine& engine, const scene& scene, const std::array<float, 3>& background,
-                           int sh_degree);
+/// `show` is that of the features in training. Precondition: `engine` has the scene's views, and a model of
+/// this degree.
+sh_review revise_sh_degree(train::engine& engine, const scene& scene, const show_function& show,
+                           const std::array<float, 3>& background, int sh_degree);
 
 }  // namespace gs::features

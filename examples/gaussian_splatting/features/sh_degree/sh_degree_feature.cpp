@@ -22,8 +22,11 @@ train::sh_degree_state& state_of(train::engine& engine) {
 
 /// Revises the degree by what the model leaves of the photos, and reports the review.
 int revise(train::training& training, int sh_degree) {
+    const train::train_options& options = training.options();
     const sh_review review =
-        revise_sh_degree(training.engine(), training.scene(), training.options().background.color, sh_degree);
+        revise_sh_degree(training.engine(), training.scene(),
+                         options.features.show_on_host(training.engine(), training.scene()),
+                         options.background.color, sh_degree);
     auto& report = training.result().feature_reports["direction"];
     report["sh_degree_at_first"] = sh_degree;
     report["unexplained_half_way"] = review.unexplained;
