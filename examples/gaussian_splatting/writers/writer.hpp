@@ -36,6 +36,8 @@ struct writer {
     /// and the field that is malformed. Must not trust sizes in the file before it has compared
     /// them with the size of the file itself.
     gaussians (*read)(const std::filesystem::path& file) = nullptr;
+
+    int max_sh_degree = 3;  ///< the highest SH degree that its files hold
 };
 
 /// All writers.

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include "ply/ply.hpp"
+#include "splat/splat.hpp"
 #include "writer.hpp"
 
 namespace gs {
@@ -8,6 +9,7 @@ namespace gs {
 std::span<const writer* const> all_writers() {
     static constexpr const writer* table[] = {
         &ply_writer,
+        &splat_writer,
     };
     return table;
 }
