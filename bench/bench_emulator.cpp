@@ -125,15 +125,16 @@ bool compare() {
         emulator = std::min(emulator, nanoseconds_a_warp([&] { by_emulator(p, emulated.data()); }));
         hand = std::min(hand, nanoseconds_a_warp([&] { by_hand(p, written.data()); }));
     }
-    std::printf("%5zu %13.1f %12.1f %7.3f  %s\n", size, emulator, hand, emulator / hand,
-                same ? "the same bits" : "OTHER SUMS");
+    std::printf("| %zu | %.1f | %.1f | %.2f | %s |\n", size, emulator, hand, emulator / hand,
+                same ? "yes" : "no");
     return same;
 }
 
 }  // namespace
 
 int main() {
-    std::printf("lanes  emulator, ns  by hand, ns  ratio\n");
+    std::printf("| lanes | emulator, ns per warp | by hand, ns per warp | ratio | same bits |\n");
+    std::printf("| --- | --- | --- | --- | --- |\n");
     const bool same[] = {compare<32>(), compare<8>()};
     return same[0] && same[1] ? 0 : 1;
 }

@@ -17,7 +17,8 @@ import subprocess
 import tempfile
 import time
 
-from environment import environment, markdown
+from environment import environment
+from markdown_tables import markdown
 from scenes import by
 
 WORLDS = ["spheres", "alpha"]

@@ -18,7 +18,8 @@ import statistics
 import subprocess
 import tempfile
 
-from environment import environment, markdown, own_and_passed_on
+from environment import environment, own_and_passed_on
+from markdown_tables import markdown
 from scenes import by, where
 
 # By effect, a scene that calls for it and one that does not.

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
-"""What the benches share: what a figure belongs to (commit, GPU, compilers, processor), Markdown, and the command line."""
+"""The machine and the sources that figures belong to, and the command line of the scripts."""
+import os
 import subprocess
 import sys
 
@@ -14,17 +15,12 @@ def first_line(*command):
 
 def environment(commit):
     nvcc = first_line("sh", "-c", "nvcc --version | grep release")
+    processor = first_line("sh", "-c", "grep -m1 'model name' /proc/cpuinfo | cut -d: -f2")
     return {"commit": commit or first_line("git", "describe", "--always", "--dirty", "--abbrev=12"),
             "gpu_and_driver": first_line("nvidia-smi", "--query-gpu=name,driver_version", "--format=csv,noheader"),
-            "nvcc": nvcc,
+            "nvcc": nvcc and nvcc.split(" V")[-1],
             "compiler": first_line("c++", "--version"),
-            "processor": first_line("sh", "-c", "grep -m1 'model name' /proc/cpuinfo | cut -d: -f2")}
-
-
-def markdown(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
-    lines += ["| " + " | ".join(row) + " |" for row in rows]
-    return "\n".join(lines) + "\n"
+            "processor": processor and f"{processor}, {os.cpu_count()} processors"}
 
 
 def own_and_passed_on():

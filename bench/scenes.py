@@ -24,7 +24,8 @@ KEPT = ["psnr", "ssim", "training_psnr", "gaussians", "iterations", "iterations_
 
 def train_into(folder, program, data, scene, seed, options):
     """One run, whose results stay in the folder: what metrics.json says of it, and the seconds of the whole process."""
-    command = [program, "train", "-d", str(pathlib.Path(data) / scene), "-o", folder, "--eval", "-q",
+    source = scene if scene.startswith("synthetic:") else str(pathlib.Path(data) / scene)
+    command = [program, "train", "-d", source, "-o", folder, "--eval", "-q",
                "--seed", str(seed), *options]
     start = time.monotonic()
     subprocess.run(command, check=True)
@@ -78,7 +79,7 @@ def by(key, runs):
 def print_tables(key, runs):
     """One line for the runs of the same `key`: what they reached, and then their time by stage."""
     cpu = on_cpu(runs)
-    print(f"| {key} | held-out PSNR, dB | SSIM | Gaussians | it/s | loop, s | peak {'host' if cpu else 'device'} MiB |")
+    print(f"| {key} | held-out PSNR, dB | SSIM | Gaussians | iterations per second | seconds | peak {'host' if cpu else 'device'} MiB |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for name, same in by(key, runs).items():
         column = lambda pick, form: spread([pick(r) for r in same], form)
@@ -87,17 +88,18 @@ def print_tables(key, runs):
                                column(lambda r: r["iterations_per_second"], "{:.0f}"),
                                column(lambda r: r["seconds"]["train"], "{:.1f}"),
                                column(lambda r: r["peak_host_bytes" if cpu else "peak_device_bytes"] / 2**20, "{:.0f}")]), "|")
-    print(f"\n| {key} | " + " | ".join(runs[0]["stages"]) + " | (ms an iteration) |")
+    print("\nMilliseconds of an iteration by stage\n")
+    print(f"| {key} | " + " | ".join(runs[0]["stages"]) + " | all |")
     print("| --- |" + " --- |" * (len(runs[0]["stages"]) + 1))
     for name, same in by(key, runs).items():
         cells = [f"{statistics.median(r['stages'][s]['milliseconds'] for r in same):.3f}" for s in same[0]["stages"]]
         whole = statistics.median(1000 / r["iterations_per_second"] for r in same)
-        print("|", " | ".join([name, *cells, f"{whole:.3f} of wall"]), "|")
+        print("|", " | ".join([name, *cells, f"{whole:.3f}"]), "|")
 
 
 def table(arguments):
     result = json.loads(pathlib.Path(arguments.file).read_text())
-    print(f"`{' '.join(result['options'])}`, {where(result)}\n")
+    print(f"{arguments.title or '`' + ' '.join(result['options']) + '`, ' + where(result)}\n")
     print_tables("scene", result["runs"])
 
 
@@ -106,7 +108,7 @@ def main():
     commands = parser.add_subparsers(required=True)
     runner = commands.add_parser("run")
     runner.add_argument("--program", required=True)
-    runner.add_argument("--data", required=True)
+    runner.add_argument("--data", default=".", help="folder of the scenes")
     runner.add_argument("--scenes", nargs="+", required=True)
     runner.add_argument("--seeds", nargs="+", type=int, default=[0])
     runner.add_argument("--commit", help="where the sources are no git checkout")
@@ -114,6 +116,7 @@ def main():
     runner.set_defaults(action=run)
     shower = commands.add_parser("table")
     shower.add_argument("file")
+    shower.add_argument("--title", help="line above the table (default: options, machine, commit and seeds)")
     shower.set_defaults(action=table)
     own, passed_on = own_and_passed_on()
     arguments = parser.parse_args(own)

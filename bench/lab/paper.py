@@ -24,7 +24,8 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))  # bench
-from environment import environment, markdown, own_and_passed_on  # noqa: E402
+from environment import environment, own_and_passed_on  # noqa: E402
+from markdown_tables import markdown  # noqa: E402
 import ncu  # noqa: E402
 from scenes import by, train, train_into  # noqa: E402
 

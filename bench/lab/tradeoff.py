@@ -25,7 +25,8 @@ import statistics
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))  # bench
-from environment import environment, markdown, own_and_passed_on  # noqa: E402
+from environment import environment, own_and_passed_on  # noqa: E402
+from markdown_tables import markdown  # noqa: E402
 from lab import kernel_knobs  # noqa: E402
 from scenes import by, spread, where  # noqa: E402
 from train import add_run, measure  # noqa: E402
