@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// The defaults of a policy, from measurements: docs/policies.md has the table.
+/// The defaults of a policy, which come from measurements. docs/policies.md lists them.
 
 #include "policy.hpp"
 
@@ -11,11 +11,12 @@ namespace warpagg {
 
 namespace detail {
 
-/// The fastest reduction for N values of T, and the number of active lanes from which it was faster
-/// than plain atomics. Measured on compute capability 9.0; 8.0 uses the same, without `packed`.
+/// The fastest reduction for N values of T, and a gate at the number of active lanes from which it
+/// beats plain atomics. Source: measurements on compute capability 9.0. Other devices use the same
+/// values; those below 9.0 never pack.
 template <class T, int N>
 struct measured {
-    // Pairs of halves, and other types of 32 bits.
+    // The general case, for pairs of 16-bit floats and other types of 32 bits.
     using reduce = std::conditional_t<N == 1, warpagg::reduce::shfl_down, warpagg::reduce::scatter>;
     using gate = std::conditional_t<(N > 1 && N <= 4), gate::at_least<2>, gate::always>;
 };
@@ -38,7 +39,7 @@ requires(sizeof(T) == 8 && std::is_arithmetic_v<T>) struct measured<T, N> : meas
     using gate = std::conditional_t<N <= 16, gate::at_least<N == 1 ? 4 : N <= 4 ? 3 : 2>, gate::always>;
 };
 
-/// The measured reduction, or a similar one if the commit cannot take its results.
+/// The measured reduction, or a similar one if the commit cannot use its result placement.
 template <class Commit, class Measured>
 struct reduce_for {
     using type = Measured;
@@ -60,14 +61,14 @@ struct reduce_for<commit::contiguous, Measured> {
                                     reduce::scatter, Measured>;
 };
 
-/// The commit with the fewest instructions for the placement of the results.
+/// The commit with the fewest instructions for the result placement.
 template <class Reduce>
 using commit_after = std::conditional_t<Reduce::placement == reduce::result_placement::spread ||
                                             Reduce::placement == reduce::result_placement::every_lane,
                                         commit::contiguous, commit::scalar>;
 
-/// A policy with a tag on every axis: the caller's tags, and the measured defaults for the other
-/// axes. A reduction that the caller names is gated only if the caller names a gate, too.
+/// A policy with the caller's tags, in which defaults fill the other axes, for N values of T. If the
+/// caller names a reduction but no gate, the gate is `always`.
 template <class T, int N, class Policy>
 struct resolved_policy {
     static_assert(
@@ -79,7 +80,7 @@ struct resolved_policy {
         or_default<typename Policy::reduce,
                    typename reduce_for<typename Policy::commit, typename measured<T, N>::reduce>::type>;
     using commit = or_default<typename Policy::commit, commit_after<reduce>>;
-    /// The commit of lanes that the gate keeps from reducing.
+    /// The commit of each lane's own values if too few lanes are active to reduce.
     using ungated_commit = std::conditional_t<std::is_same_v<typename Policy::commit, unset> ||
                                                   !by_one_lane<typename Policy::commit>,
                                               warpagg::commit::packed<4>, typename Policy::commit>;
@@ -94,7 +95,7 @@ struct resolved_policy {
 
 }  // namespace detail
 
-/// The policy that `warp_reduce_atomic` uses for N values of T by default.
+/// The policy that `warp_reduce_atomic` uses by default for N values of T.
 template <class T, int N, class Resolved = detail::resolved_policy<T, N, policy<>>>
 using default_policy = policy<typename Resolved::reduce, typename Resolved::commit, typename Resolved::idle,
                               typename Resolved::gate>;

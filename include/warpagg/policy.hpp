@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// Selects how `warp_reduce_atomic` works by at most one tag per axis, in any order, as in
-/// `policy{shfl_down, skip}`. The defaults of the other axes depend on type and number of the
-/// values: see default_policy.hpp.
+/// Policies, which select how `warp_reduce_atomic` and `warp_match_reduce_atomic` work. A policy is
+/// a set of tags, as in `policy{shfl_down, skip}`. The defaults of the other axes depend on the type
+/// and the number of the values: see default_policy.hpp.
 
 #include "accumulator.hpp"
 #include "core/axis.hpp"
@@ -16,10 +16,10 @@ namespace warpagg {
 
 namespace detail {
 
-/// Stands for the tag of an axis on which a policy has none.
+/// The placeholder of an axis without a tag.
 struct unset {};
 
-/// The tag on axis A, or `unset`.
+/// The type of the tag on axis A, or `unset`.
 template <axis A, class... Tags>
 struct named {
     using type = unset;
@@ -31,7 +31,7 @@ struct named<A, Tag, Tags...> {
 template <axis A, class... Tags>
 using named_t = typename named<A, Tags...>::type;
 
-/// The object of the tag on axis A.
+/// Returns the object of the tag on axis A, or `unset`.
 template <axis A>
 WARPAGG_HD constexpr unset object_of() {
     return {};
@@ -45,7 +45,7 @@ WARPAGG_HD constexpr auto object_of(Tag tag, Tags... tags) {
     }
 }
 
-/// Holds a tag's object; empty if the tag is.
+/// Holds the object of a tag. It is empty if the tag is empty.
 template <class Tag, bool = __is_empty(Tag)>
 class optional_member {
   public:
@@ -71,7 +71,7 @@ template <class Reduce>
 inline constexpr auto placement_of = Reduce::placement;
 template <>
 inline constexpr auto placement_of<unset> =
-    reduce::result_placement::every_lane;  // whatever suits the commit
+    reduce::result_placement::every_lane;  // the default reduction suits any commit
 
 template <class Reduce>
 inline constexpr bool leaves_own_values =
@@ -94,13 +94,13 @@ inline constexpr bool is_gated = Gate::lanes > 0;
 template <>
 inline constexpr bool is_gated<unset> = false;
 
-/// Whether the accumulator is not `native`.
+/// Is true for every accumulator but `native`.
 template <class Accumulate>
 inline constexpr bool is_accumulated = requires {
     typename Accumulate::limb;
 };
 
-/// Whether the warp reduces in the type of the values, and only its result goes to the accumulator.
+/// Is true for `between_warps`, which accumulates only the warp's result.
 template <class Accumulate>
 inline constexpr bool is_between_warps = requires {
     typename Accumulate::storage;
@@ -113,8 +113,8 @@ concept is_policy = requires {
 };
 }  // namespace detail
 
-/// A set of tags, at most one per axis, in any order. Two tags of one axis, or a pair that cannot
-/// work, do not compile.
+/// A set of tags, at most one per axis, in any order. Two tags of one axis do not compile, nor do
+/// tags that cannot work together; the error message names the reason.
 ///
 /// @snippet warp_reduce_atomic.cpp policy
 template <class... Tags>
@@ -135,7 +135,7 @@ struct policy : detail::optional_member<detail::named_t<axis::accumulate, Tags..
     // mutate: two_gates_accepted
     static_assert(count<axis::gate> <= 1, "a policy takes one gate tag: always or at_least<K>");
 
-    /// The tag on this axis; a placeholder if there is none.
+    /// The type of the tag on this axis, or the placeholder `unset`.
     /// @{
     using operation = detail::named_t<axis::operation, Tags...>;
     using reduce = detail::named_t<axis::reduce, Tags...>;
@@ -172,19 +172,20 @@ struct policy : detail::optional_member<detail::named_t<axis::accumulate, Tags..
     static_assert(!detail::is_accumulated<accumulate> || !std::is_same_v<commit, warpagg::commit::staged>,
                   "a stage is added to memory as it is: staged goes with native");
 
-    /// From types: `policy<reduce::scatter>`.
+    /// Creates a policy from types, as in `policy<reduce::scatter>`.
     policy() = default;
-    /// From objects: `policy{scatter}`.
+    /// Creates a policy from objects, as in `policy{scatter}`.
     constexpr WARPAGG_HD explicit policy(Tags... tags) requires(sizeof...(Tags) > 0)
         : detail::optional_member<accumulate>(detail::object_of<axis::accumulate>(tags...)) {}
 };
-/// `policy{scatter, skip}` is a `policy<reduce::scatter, idle::skip>`.
+/// Deduces the tags: `policy{scatter, skip}` is a `policy<reduce::scatter, idle::skip>`.
 template <class... Tags>
 policy(Tags...) -> policy<Tags...>;
 
 namespace detail {
 
-/// The policy by which the limbs of decomposed values are added.
+/// The policy that adds the limbs of decomposed values: the accumulator's operation in place of its
+/// tag, and the other tags of the caller's policy.
 template <class Chosen, class... Tags>
 struct of_limbs {
     using type = policy<Tags...>;

@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// The version of the library, by Semantic Versioning; this is the one place where it is written.
+/// The version of the library (Semantic Versioning). The build system reads it from here.
 
-/// One of the three numbers of the version.
+/// A component of the version number: major, minor or patch.
 /// @{
 #define WARPAGG_VERSION_MAJOR 0
 #define WARPAGG_VERSION_MINOR 1

@@ -8,7 +8,8 @@
 
 namespace warpagg::emulator::detail {
 
-/// An atomic of the emulators: relaxed, because warps may run on several threads.
+/// Atomically sets `*to = Op::combine(*to, v)` on the CPU, with relaxed order. Atomic, because an
+/// emulator may run warps on several threads. Cost: a compare-and-swap loop; one `fetch_add` for sums.
 template <class Op, class T>
 inline void atomic(Op, T* to, T v) {
     std::atomic_ref<T> memory(*to);

@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// The axes of a policy. Each tag has a member `axis`, the axis on which it selects.
+/// The axes of a policy. Each tag has a static member `axis` that names its axis.
 
-/// Declares the object of a tag: a constant for host and device code.
+/// Declares the object of a tag as a constant for host and device code.
 #if defined(__CUDA_ARCH__)
 #define WARPAGG_TAG static __device__ constexpr
 #else
@@ -14,13 +14,13 @@
 
 namespace warpagg {
 
-/// What a policy selects, with at most one tag per axis.
+/// The settings of a policy. A policy has at most one tag per axis.
 enum class axis {
     operation,   ///< how two values combine
-    reduce,      ///< how the lanes' values become one
-    accumulate,  ///< how a sum is kept
+    reduce,      ///< how the values of the lanes are reduced to one
+    accumulate,  ///< how a sum is kept, in the warp and in memory
     commit,      ///< how the results reach memory
-    idle,        ///< what an idle warp does
+    idle,        ///< behavior of an idle warp
     gate,        ///< how many active lanes a reduction needs
 };
 

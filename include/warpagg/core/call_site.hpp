@@ -6,14 +6,14 @@
 
 namespace warpagg {
 
-/// The called function of the library and the line of the call, for the diagnoses of
-/// `emulator::checked`. Other models do not read it, and it costs nothing there.
+/// The name of a called function and the file and line of the call. The diagnoses of
+/// `emulator::checked` report it. Other models ignore it, at no cost.
 struct call_site {
-    const char* function;  ///< the called function
-    const char* file;      ///< of the call
-    unsigned line;         ///< of the call
+    const char* function;  ///< name of the called function
+    const char* file;      ///< file of the call
+    unsigned line;         ///< line of the call
 
-    /// In a default argument: the place of the call.
+    /// Returns the call site of the function that has this call in a default argument.
     static constexpr WARPAGG_HD call_site here(const char* function, const char* file = __builtin_FILE(),
                                                unsigned line = __builtin_LINE()) {
         return {function, file, line};
@@ -22,8 +22,8 @@ struct call_site {
 
 namespace detail {
 
-/// While it lives, a model that has `enter` and `leave` attributes operations to the library call
-/// at `at`.
+/// Marks a library call for models that have `enter` and `leave`. During its lifetime, such a model
+/// attributes the warp's operations to the call at `at`.
 template <class W>
 class library_call {
   public:

@@ -7,14 +7,14 @@
 
 namespace warpagg::emulator {
 
-/// The steps of a counting warp.
+/// The operations that an emulator counts.
 struct counters {
-    std::uint64_t shuffles = 0;  ///< values moved between lanes: one instruction each for 32 bits
-    std::uint64_t votes = 0;     ///< ballot, any
-    std::uint64_t atomics = 0;   ///< atomic additions to memory, one per lane
-    std::uint64_t commits = 0;   ///< warp-wide atomic instructions that had an active lane
-    std::uint64_t sectors = 0;   ///< 32-byte sectors that each of those instructions touched
-    /// Calls of warp_reduce_atomic and warp_match_reduce_atomic, by number of active lanes.
+    std::uint64_t shuffles = 0;  ///< shuffle instructions, one per 32 bits of a value
+    std::uint64_t votes = 0;     ///< calls of `ballot`, `any` and `match`
+    std::uint64_t atomics = 0;   ///< atomic updates of memory, one per active lane
+    std::uint64_t commits = 0;   ///< warp-wide atomic instructions with at least one active lane
+    std::uint64_t sectors = 0;   ///< 32-byte sectors touched by these instructions, summed over them
+    /// Calls of warp_reduce_atomic and warp_match_reduce_atomic, indexed by the number of active lanes.
     std::array<std::uint64_t, 33> active{};
 };
 

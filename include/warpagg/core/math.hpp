@@ -7,28 +7,28 @@
 
 namespace warpagg {
 
-/// Lane-wise operations, so that masked code reads the same on every model: here for models whose lane values
-/// are scalars. A namespace of its own, since nvcc's own headers stumble over other overloads of sqrt and the
-/// like.
+/// Functions that work lane by lane, so that one source of masked code runs on every model of `warp`. These
+/// overloads take scalars; warp/simd_value.hpp adds those for SIMD values. The separate namespace avoids
+/// conflicts with nvcc's headers, which fail to compile beside further overloads of functions such as sqrt.
 namespace math {
 
-/// `yes` where the flag is set, `no` elsewhere.
+/// Returns `yes` if the flag is set, and `no` otherwise.
 template <class T>
 WARPAGG_HD T select(bool mask, T yes, T no) {
     return mask ? yes : no;
 }
-/// a b + c, rounded once.
+/// Returns a b + c, rounded once.
 /// @{
 WARPAGG_HD float fma(float a, float b, float c) { return ::fmaf(a, b, c); }
 WARPAGG_HD double fma(double a, double b, double c) { return ::fma(a, b, c); }
 /// @}
-/// The square root, rounded to nearest (on CUDA as the compiler's -prec-sqrt says).
+/// Returns the square root, rounded to nearest. On CUDA nvcc's option -prec-sqrt decides the rounding.
 /// @{
 WARPAGG_HD float sqrt(float a) { return ::sqrtf(a); }
 WARPAGG_HD double sqrt(double a) { return ::sqrt(a); }
 /// @}
-/// 1 / sqrt(a). On CUDA the float version is the hardware's approximation: 2 ulp. Precondition there: a is a
-/// positive normal number.
+/// Returns 1 / sqrt(a). On CUDA the float version is the hardware's approximation (rsqrt.approx), within
+/// 2 ulp. Precondition on CUDA: a is a positive normal number.
 /// @{
 WARPAGG_HD float inverse_sqrt(float a) {
 #if defined(__CUDA_ARCH__)
@@ -41,20 +41,20 @@ WARPAGG_HD float inverse_sqrt(float a) {
 }
 WARPAGG_HD double inverse_sqrt(double a) { return 1 / ::sqrt(a); }
 /// @}
-/// Without the sign.
+/// Returns the absolute value.
 /// @{
 WARPAGG_HD float abs(float a) { return ::fabsf(a); }
 WARPAGG_HD double abs(double a) { return ::fabs(a); }
 /// @}
-/// The lesser or the greater of two; the first if either is NaN.
+/// Returns the smaller or the larger of two values, and the first one if either is NaN.
 /// @{
 template <class T>
 requires std::is_arithmetic_v<T> WARPAGG_HD T min(T a, T b) { return b < a ? b : a; }
 template <class T>
 requires std::is_arithmetic_v<T> WARPAGG_HD T max(T a, T b) { return a < b ? b : a; }
 /// @}
-/// The lesser of a and an upper bound, the greater of a and a lower bound; the bound if a is NaN. On CUDA one
-/// instruction of floats, where `min` and `max` are two. Precondition: the bound is not NaN.
+/// Limits a to an upper or a lower bound; returns the bound if a is NaN. Cost for a float on CUDA: one
+/// instruction, where `min` and `max` take two. Precondition: the bound is not NaN.
 /// @{
 template <class V>
 WARPAGG_HD V not_above(const V& a, const V& bound) {
@@ -76,8 +76,8 @@ WARPAGG_HD V not_below(const V& a, const V& bound) {
 }
 /// @}
 
-/// 2^a. On CUDA the float version is the hardware's approximation: relative error at most 2^-22.5 (PTX ISA,
-/// ex2.approx), denormal results flushed to zero.
+/// Returns 2^a. On CUDA the float version is the hardware's approximation: its relative error is at most
+/// 2^-22.5 (PTX ISA, ex2.approx), and it flushes denormal results to zero.
 WARPAGG_HD float exp2(float a) {
 #if defined(__CUDA_ARCH__)
     float r;
@@ -87,16 +87,16 @@ WARPAGG_HD float exp2(float a) {
     return ::exp2f(a);
 #endif
 }
-/// 2^a.
+/// Returns 2^a.
 WARPAGG_HD double exp2(double a) { return ::exp2(a); }
-/// The logarithm to base 2.
+/// Returns the logarithm to base 2.
 /// @{
 WARPAGG_HD float log2(float a) { return ::log2f(a); }
 WARPAGG_HD double log2(double a) { return ::log2(a); }
 /// @}
 
-/// a / b. On CUDA the float version is the hardware's approximate reciprocal and one step of Newton's: within
-/// 1 ulp, a / a is 1. Precondition there: b, 1 / b and the quotient are normal numbers.
+/// Returns a / b. On CUDA the float version takes the hardware's approximate reciprocal and one Newton step;
+/// its error is within 1 ulp, and a / a is 1. Precondition on CUDA: b, 1 / b and the quotient are normal.
 /// @{
 WARPAGG_HD float divide(float a, float b) {
 #if defined(__CUDA_ARCH__)
@@ -111,11 +111,11 @@ WARPAGG_HD float divide(float a, float b) {
 WARPAGG_HD double divide(double a, double b) { return a / b; }
 /// @}
 
-/// Lane-wise conversion.
+/// Converts a value to `To`, lane by lane, as static_cast does.
 template <class To, class From>
 requires std::is_arithmetic_v<From> WARPAGG_HD To convert(From a) { return static_cast<To>(a); }
 
-/// a + b; of integers modulo 2^bits, signed ones too.
+/// Returns a + b. Integers wrap modulo 2^bits, signed ones too.
 template <class T>
 WARPAGG_HD T wrapping_add(const T& a, const T& b) {
     if constexpr (std::is_integral_v<T> && sizeof(T) == 4) {
@@ -127,11 +127,11 @@ WARPAGG_HD T wrapping_add(const T& a, const T& b) {
     }
 }
 
-/// How many bits are set.
+/// Returns the number of bits that are set.
 constexpr WARPAGG_HD std::uint32_t popcount(std::uint32_t bits) {
 #if defined(__CUDA_ARCH__)
     if (!__builtin_is_constant_evaluated()) return static_cast<std::uint32_t>(__popc(bits));
-    std::uint32_t n = 0;  // NVRTC lacks the builtin
+    std::uint32_t n = 0;  // NVRTC lacks __builtin_popcount
     for (; bits != 0; bits &= bits - 1) ++n;
     return n;
 #else
@@ -139,7 +139,7 @@ constexpr WARPAGG_HD std::uint32_t popcount(std::uint32_t bits) {
 #endif
 }
 
-/// The number of the lowest bit that is set; some number below 32 if none is.
+/// Returns the index of the lowest bit that is set, or some index below 32 if no bit is set.
 WARPAGG_HD std::uint32_t countr_zero(std::uint32_t bits) {
 #if defined(__CUDA_ARCH__)
     return static_cast<std::uint32_t>(__clz(__brev(bits))) & 31u;
@@ -148,7 +148,7 @@ WARPAGG_HD std::uint32_t countr_zero(std::uint32_t bits) {
 #endif
 }
 
-/// The bits of an unsigned of 32 bits in reverse order.
+/// Returns the bits of a 32-bit unsigned integer in reverse order.
 template <class V>
 WARPAGG_HD V bit_reverse(const V& value) {
     V bits = value;
@@ -166,7 +166,7 @@ WARPAGG_HD V bit_reverse(const V& value) {
 WARPAGG_HD std::uint32_t bit_reverse(std::uint32_t bits) { return __brev(bits); }
 #endif
 
-/// A lane value that is the same in every lane, as a scalar.
+/// Returns a lane value as a scalar. Precondition: the value is uniform.
 template <class T>
 requires std::is_arithmetic_v<T> WARPAGG_HD T uniform(T a) { return a; }
 

@@ -3,19 +3,20 @@
 #pragma once
 
 /// @file
-/// The operations that combine values: associative, with an atomic in memory. The default is
-/// `operation::sum`; the others are tags of a policy, as in `policy{maximum}`.
+/// The operations that combine two values. Each is associative and has an atomic in memory. The
+/// default is `operation::sum`; a policy selects another one, as in `policy{maximum}`.
 
 #include "axis.hpp"
 #include "math.hpp"
 
 namespace warpagg {
 
-/// Each has `combine(a, b)`, for scalars and lane by lane; `identity<T>()`, the contribution of an
-/// inactive lane; and `suits<T>`, whether memory supports the operation for T.
+/// Each operation has three members. `combine(a, b)` combines scalars or SIMD values, lane by lane.
+/// `identity<T>()` is the contribution of an inactive lane. `suits<T>` tells whether an atomic
+/// exists for T.
 namespace operation {
 
-/// Addition of floats, of integers (modulo 2^bits) and of pairs of halves.
+/// Adds floats, integers (modulo 2^bits) and pairs of 16-bit floats.
 struct sum {
     static constexpr auto axis = warpagg::axis::operation;
     template <class T>
@@ -31,17 +32,17 @@ struct sum {
     }
 };
 
-/// Base of operations on 32-bit and 64-bit integers.
+/// The base class of operations on 32-bit and 64-bit integers.
 struct for_integers {
     static constexpr auto axis = warpagg::axis::operation;
     template <class T>
     static constexpr bool suits = std::is_integral_v<T> && sizeof(T) >= 4;
-    /// The smallest T.
+    /// The smallest value of T.
     template <class T>
     static constexpr T least = std::is_signed_v<T> ? static_cast<T>(T{1} << (8 * sizeof(T) - 1)) : T{};
 };
 
-/// The smallest value.
+/// Takes the smaller value.
 struct minimum : for_integers {
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {
@@ -54,7 +55,7 @@ struct minimum : for_integers {
     }
 };
 
-/// The largest value.
+/// Takes the larger value.
 struct maximum : for_integers {
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {
@@ -91,20 +92,20 @@ struct bit_or : for_integers {
     }
 };
 
-/// A base for operations of your own on 64-bit words. `Op` derives from it and has
-/// `combine_words(a, b)`, associative and commutative, with zero as its identity. Memory combines
-/// by compare-and-swap.
+/// The base class for user-defined operations on 64-bit unsigned integers. `Op` derives from it and
+/// has a static `combine_words(a, b)` that is associative and commutative, with zero as its identity.
+/// Cost: memory combines by a compare-and-swap loop, which is slow under contention.
 template <class Op>
 struct on_words {
     static constexpr auto axis = warpagg::axis::operation;
-    static constexpr bool by_exchange = true;  ///< by compare-and-swap, as no atomic instruction exists
+    static constexpr bool by_exchange = true;  ///< commits use compare-and-swap
     template <class T>
     static constexpr bool suits = std::is_integral_v<T> && !std::is_signed_v<T> && sizeof(T) == 8;
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {
         if constexpr (requires { typename V::scalar; }) {
             constexpr int size = V::chunks * V::width;
-            // Not set lane by lane in a vector, which GCC takes for uninitialized.
+            // An array, because GCC reports a vector that is set lane by lane as uninitialized.
             typename V::scalar words[size];
             for (int lane = 0; lane < size; ++lane) words[lane] = Op::combine_words(a[lane], b[lane]);
             V r;
@@ -134,7 +135,7 @@ struct bit_xor : for_integers {
 
 }  // namespace operation
 
-/// The tag as an object, for `policy{...}`.
+/// An operation as an object, for `policy{...}`.
 /// @{
 WARPAGG_TAG operation::minimum minimum{};
 WARPAGG_TAG operation::maximum maximum{};

@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// What the library needs of the standard library. NVRTC has none, so there a namespace `std` of its own,
-/// which inside `warpagg` goes before the global one, holds the few names in use: nothing but warpagg's
-/// include path is needed, and what others put into the global one is left alone.
+/// The parts of the standard library that warpagg uses. NVRTC has no standard library, so under NVRTC this
+/// header defines them in `warpagg::std`. Code in `warpagg` finds that namespace before the global `std`,
+/// so NVRTC needs no include path besides warpagg's, and the global `std` stays as it is.
 
 #if !defined(__CUDACC_RTC__)
 
