@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// How a sum of floats is kept, in the warp and in memory. The kinds differ in their error bounds
-/// and in whether the order of additions changes the result. n is the number of additions to a sum
-/// S, k its condition number sum|x| / |S|, u = 2^-24. docs/policies.md lists their costs.
+/// Accumulators: how a sum of floats is kept, in the warp and in memory. The tags differ in their
+/// error bounds, in determinism and in cost; docs/policies.md lists the costs. In the bounds, n is
+/// the number of additions to a sum S, k = sum|x| / |S| is its condition number, and u = 2^-24.
 
 #include "core/axis.hpp"
 #include "core/operation.hpp"
@@ -13,20 +13,23 @@
 
 namespace warpagg {
 
-/// Each kind but `native` decomposes a float into `limbs` values of type `limb` by `decompose`.
-/// `operation` combines limbs, and `value` converts summed limbs to a float.
+/// Accumulate tags. Each tag but `native` has these members: `decompose` decomposes a float into
+/// `limbs` limbs of type `limb`, `operation` combines limbs, and `value` converts summed limbs to a
+/// float.
 namespace accumulate {
 
-/// The type of the values. Error: (n/32 + 5) u k if all lanes are active, at most n u k otherwise.
-/// The result depends on the order of additions.
+/// Keeps the sum in the type of the values. Error of a float sum: at most (n/32 + 5) u k if all lanes
+/// are active, and n u k otherwise. The result depends on the order of additions (`not_guaranteed`).
+/// Memory per sum: one value. Cost per commit: one atomic.
 struct native {
     static constexpr auto axis = warpagg::axis::accumulate;
 };
 
-/// Double. Error: n 2^-53 k + u. The result depends on the order of additions.
+/// Keeps the sum in a double. Error: at most n 2^-53 k + u. The result depends on the order of
+/// additions (`not_guaranteed`). Memory per sum: 8 bytes. Cost per commit: one atomic.
 struct f64 {
     static constexpr auto axis = warpagg::axis::accumulate;
-    /// See the namespace.
+    /// A member of every accumulate tag: see the namespace.
     /// @{
     using limb = double;
     static constexpr int limbs = 1;
@@ -44,25 +47,26 @@ struct f64 {
     /// @endcond
 };
 
-/// Two floats; the second holds the rounding error of the first (Joldes et al. 2017, algorithm 5).
-/// Error: u + 5 n u^2 k. The result depends on the order of additions. Memory adds by
-/// compare-and-swap. Precondition: not compiled with -ffast-math, which optimizes the second float
-/// away. nvcc's -ftz=true flushes denormals to zero here, too.
+/// Keeps the sum in two floats; the second one holds the rounding error of the first. Error: at most
+/// u + 5 n u^2 k. The result depends on the order of additions (`not_guaranteed`). Memory per sum:
+/// 8 bytes. Cost per commit: one compare-and-swap loop. Precondition: not compiled with
+/// -ffast-math, which removes the second float. With nvcc's -ftz=true denormals become zero.
+/// Source: Joldes et al. 2017, algorithm 5.
 struct compensated {
     static constexpr auto axis = warpagg::axis::accumulate;
-    using limb = std::uint64_t;  ///< the bits of both, the first in the lower half
-    /// See the namespace.
+    using limb = std::uint64_t;  ///< the bits of both floats, the first float in the lower half
+    /// A member of every accumulate tag: see the namespace.
     /// @{
     static constexpr int limbs = 1;
-    /// Adds pairs.
+    /// Adds two pairs of floats.
     struct operation : warpagg::operation::on_words<operation> {
-        /// See `on_words`.
+        /// Combines two limbs: see `on_words`.
         WARPAGG_HD static std::uint64_t combine_words(std::uint64_t a, std::uint64_t b) {
             const float x = half(a), y = half(b), sum = x + y;
             const float of_y = sum - x, error = (x - (sum - of_y)) + (y - of_y);
             const float rest = half(a >> 32) + half(b >> 32) + error;
             const float first = sum + rest, second = rest - (first - sum);
-            // Beyond the largest float the rest would be NaN.
+            // If the sum is not finite, the rest would be NaN.
             return first - first == 0 ? word(first, second) : word(sum, 0);
         }
     };
@@ -94,12 +98,13 @@ struct compensated {
     }
 };
 
-/// A 64-bit integer in units of 2^-Q / scale. Error: n 2^-(Q+1) / scale + u |S|. The result has the
-/// same bits for any order of additions.
+/// Keeps the sum in fixed point: a 64-bit integer in units of 2^-Q / scale. Error: at most
+/// n 2^-(Q+1) / scale + u |S|. The result has the same bits for any order of additions
+/// (`gpu_to_gpu`). Memory per sum: 8 bytes. Cost per commit: one atomic; a `fault` takes one vote.
 ///
-/// A value that is not finite, or whose magnitude is 2^(63-LogValues-Q) / scale or more, is not
-/// added; it sets `*fault` to 1. As long as `*fault` is 0, no sum of fewer than 2^LogValues values
-/// has overflowed.
+/// A value is out of range if it is not finite, or if its magnitude is 2^(63-LogValues-Q) / scale or
+/// more. Such a value is not added, and sets bit 0 of `*fault`. As long as `*fault` is 0, no sum of
+/// fewer than 2^LogValues values has overflowed.
 ///
 /// @snippet accumulate.cpp fixed
 template <int Q, int LogValues = 25>
@@ -107,17 +112,17 @@ struct fixed {
     static_assert(Q >= -100 && Q <= 149, "fixed<Q> takes -100 <= Q <= 149");
     static_assert(LogValues >= 1 && LogValues <= 39, "fixed<Q, LogValues> takes 1 <= LogValues <= 39");
     static constexpr auto axis = warpagg::axis::accumulate;
-    /// See the namespace.
+    /// A member of every accumulate tag: see the namespace.
     /// @{
     using limb = std::int64_t;
     static constexpr int limbs = 1;
     using operation = warpagg::operation::sum;
     /// @}
 
-    std::uint32_t* fault = nullptr;  ///< in the memory of the sums; null to report no faults
-    float scale = 1;                 ///< a power of two; divide sums by it: see `scale_to_fit`
+    std::uint32_t* fault = nullptr;  ///< a flag in the device's memory; null to report no faults
+    float scale = 1;                 ///< a power of two by which values are multiplied: see `scale_to_fit`
 
-    /// Returns whether x is in range.
+    /// Decomposes x into its limb, which is zero if x is out of range. Returns whether x is in range.
     WARPAGG_HD bool decompose(float x, limb (&to)[limbs]) const {
         const double units = static_cast<double>(x) * static_cast<double>(scale) * power_of_two(Q);
         const double room = power_of_two(63 - LogValues);
@@ -125,13 +130,14 @@ struct fixed {
         to[0] = fits ? static_cast<std::int64_t>(::llrint(units)) : 0;
         return fits;
     }
-    /// The sum of the scaled values; not divided by `scale`.
+    /// Returns the sum of the scaled values. Divide it by `scale` to get the sum of the values.
     WARPAGG_HD static float value(const limb (&sum)[limbs]) {
         return static_cast<float>(static_cast<double>(sum[0]) * power_of_two(-Q));
     }
 
-    /// The largest scale, a power of two that float can hold, for which values up to this magnitude
-    /// are in range. Precondition: the magnitude is finite.
+    /// Returns the largest scale from 2^-126 to 2^126 for which values with magnitudes up to
+    /// |largest| are in range; 2^-126 if there is none, and 1 if `largest` is zero. Precondition:
+    /// `largest` is finite.
     static WARPAGG_HD float scale_to_fit(float largest) {
         const double room = power_of_two(63 - LogValues - Q);
         const double magnitude = static_cast<double>(largest < 0 ? -largest : largest);
@@ -159,22 +165,23 @@ struct fixed {
     }
 };
 
-/// K words, each the integer sum of one window of 24 bits of the values: word i holds the highest
-/// window in use of those whose index is i modulo K (indexed summation: Demmel and Nguyen 2015).
-/// Error: n 2^(24 (1-K)) max|x| + u |S|. The result has the same bits for any order of up to 2^31
-/// additions. Infinities and NaN add up as in IEEE 754. Memory adds by compare-and-swap.
+/// Keeps the sum in K limbs, each the integer sum of one window of 24 bits of the values. Limb i holds
+/// the highest window in use among those whose index is i modulo K. Error: at most
+/// n 2^(24 (1-K)) max|x| + u |S|. The result has the same bits for any order of up to 2^31 additions
+/// (`gpu_to_gpu`). Infinities and NaN add up as in IEEE 754. Memory per sum: 8 K bytes. Cost per
+/// commit: K compare-and-swap loops. Source: indexed summation, Demmel and Nguyen 2015.
 template <unsigned K>
 struct binned {
     static_assert(K >= 2 && K <= 8, "binned<K> takes 2 <= K <= 8 windows");
     static constexpr auto axis = warpagg::axis::accumulate;
-    using limb = std::uint64_t;  ///< upper 8 bits: a window's index, from 1; other bits: a signed sum
-    /// See the namespace.
+    using limb = std::uint64_t;  ///< upper 8 bits: index of a window, from 1; other bits: its signed sum
+    /// A member of every accumulate tag: see the namespace.
     /// @{
     static constexpr int limbs = K;
 
-    /// The sum of the higher window; the sum of both if the window is the same.
+    /// Keeps the limb of the higher window, or adds two limbs of the same window.
     struct operation : warpagg::operation::on_words<operation> {
-        /// See `on_words`.
+        /// Combines two limbs: see `on_words`.
         WARPAGG_HD static std::uint64_t combine_words(std::uint64_t a, std::uint64_t b) {
             const std::uint64_t of_a = a >> 56, of_b = b >> 56;
             if (of_a != of_b) return of_a > of_b ? a : b;
@@ -191,7 +198,7 @@ struct binned {
                                         high == 0 ? 0 : word(index + 1, p.negative ? 0 - high : high)};
         const std::uint64_t signs = (p.nan || !p.negative ? 1u : 0u) | (p.nan || p.negative ? 2u : 0u);
         WARPAGG_UNROLL
-        for (unsigned k = 0; k < K; ++k) {  // a run-time index would put the array into memory
+        for (unsigned k = 0; k < K; ++k) {  // constant indices keep the array in registers
             to[k] = index % K == k ? words[0] : (index + 1) % K == k ? words[1] : 0;
             if (!p.finite) to[k] = k == 0 ? word(infinite, signs) : 0;
         }
@@ -219,20 +226,21 @@ struct binned {
     /// @endcond
 
   private:
-    static constexpr unsigned window = 24;           // bits
-    static constexpr std::uint64_t infinite = 0xff;  // above all windows
+    static constexpr unsigned window = 24;           // bits per window
+    static constexpr std::uint64_t infinite = 0xff;  // index of infinities and NaN, above all windows
     WARPAGG_HD static std::uint64_t word(std::uint64_t index, std::uint64_t sum) {
         return index << 56 | (sum & 0xffffffffffffffu);
     }
 };
 
-/// A superaccumulator (Kulisch; Collange et al. 2015): nine words of 32 bits and their carries for
-/// all bits that a float can have, and a tenth word for infinities. Error: half an ulp; the sum is
-/// rounded once. The result has the same bits for any order of up to 2^31 additions. Infinities and
-/// NaN add up as in IEEE 754.
+/// Keeps the sum in a superaccumulator: nine limbs of 32 bits and their carries hold all bits that a
+/// float can have, and a tenth limb counts infinities. The sum is rounded once. Error: at most half
+/// an ulp. The result has the same bits for any order of up to 2^31 additions (`gpu_to_gpu`).
+/// Infinities and NaN add up as in IEEE 754. Memory per sum: 80 bytes. Cost per commit: 10 atomics.
+/// Source: Kulisch; Collange et al. 2015.
 struct exact {
     static constexpr auto axis = warpagg::axis::accumulate;
-    /// See the namespace.
+    /// A member of every accumulate tag: see the namespace.
     /// @{
     using limb = std::int64_t;
     static constexpr int limbs = 10;
@@ -244,7 +252,7 @@ struct exact {
         const std::int64_t low = static_cast<std::int64_t>(wide & 0xffffffffu),
                            high = static_cast<std::int64_t>(wide >> 32);
         const int first = static_cast<int>(p.bit / 32);
-        for (int i = 0; i + 1 < limbs; ++i) {  // a run-time index would put the array into memory
+        for (int i = 0; i + 1 < limbs; ++i) {  // constant indices keep the array in registers
             const std::int64_t part = !p.finite ? 0 : i == first ? low : i == first + 1 ? high : 0;
             to[i] = p.negative ? -part : part;
         }
@@ -271,10 +279,10 @@ struct exact {
 };
 
 /// Reduces within the warp in float, as `native`; only the warp's result is accumulated in `A`.
-/// Error: 5 u k plus the error of `A` for one value per warp with an active lane. The result
-/// depends on which values a warp holds, and on the order of warps if that of `A` does. Cost: the
-/// shuffles of `native` and one decomposition per warp and component, instead of one per lane and
-/// component. `warp_reduce_atomic` only.
+/// Error: at most 5 u k plus the error of `A` for one value per warp with an active lane. The result
+/// depends on which lanes share a warp, and on the order of warps if the result of `A` does. Cost:
+/// the shuffles of `native`, and one decomposition per warp and component, not per lane and
+/// component. `warp_reduce_atomic` accepts it, `warp_match_reduce_atomic` does not.
 ///
 /// @snippet accumulate.cpp between_warps
 template <class A>
@@ -282,7 +290,7 @@ struct between_warps : A {
     static_assert(
         requires { typename A::limb; } && !requires { typename A::storage; },
         "between_warps is of f64, compensated, fixed<Q>, binned<K> or exact");
-    using storage = A;  ///< kind of the accumulators in memory
+    using storage = A;  ///< accumulate tag of the accumulators in memory
     /// @cond deprecated
     using kept [[deprecated("use storage")]] = storage;
     /// @endcond
@@ -290,15 +298,16 @@ struct between_warps : A {
 
 }  // namespace accumulate
 
-/// A sum in memory, kept as `Accumulate` specifies. An accumulator of zero bytes is an empty sum.
+/// The storage of one sum in memory, for the accumulate tag `Accumulate`. All bytes zero is an empty
+/// sum, so `cudaMemset` can clear arrays of accumulators.
 template <class Accumulate>
 struct accumulator {
-    typename Accumulate::limb limb[Accumulate::limbs]{};  ///< see `Accumulate`
-    /// The sum, as a float.
+    typename Accumulate::limb limb[Accumulate::limbs]{};  ///< the limbs: see `Accumulate`
+    /// Returns the sum as a float.
     WARPAGG_HD float value() const { return Accumulate::value(limb); }
 };
 
-/// The tag as an object, for `policy{...}`.
+/// A tag as an object, for `policy{...}`.
 /// @{
 WARPAGG_TAG accumulate::native native{};
 WARPAGG_TAG accumulate::f64 f64{};

@@ -6,22 +6,24 @@
 
 namespace warpagg {
 
-/// Describes a type of yours that consists of N values of one type, so that warpagg adds it as a whole:
+/// Describes an aggregate, a user's type that consists of N numbers of one type. warpagg then adds objects of
+/// that type:
 ///
 /// @snippet warp_reduce_atomic.cpp a type of yours
 ///
-/// The type is trivially copyable and has the size and layout of `T[N]`.
+/// Specialize it for the type. Preconditions: the type is trivially copyable, and has the size and layout of
+/// `T[N]`. A wrong size does not compile.
 template <class R>
 struct aggregate_traits;
 
-/// N components of type T: a base class for `aggregate_traits<R>`.
+/// The base class of `aggregate_traits<R>` for N components of type T.
 template <class T, int N>
 struct aggregate_of {
     using type = T;                  ///< type of a component
     static constexpr int count = N;  ///< number of components
 };
 
-/// A type that `aggregate_traits` describes.
+/// Is satisfied by types that `aggregate_traits` describes.
 template <class R>
 concept aggregate = requires {
     typename aggregate_traits<R>::type;
@@ -40,7 +42,7 @@ struct components_of {
     WARPAGG_HD explicit components_of(const R& value) { std::memcpy(component, &value, sizeof component); }
 };
 
-/// The destination `R*` as a pointer to its components; any other destination as it is.
+/// Converts a destination `R*` to a pointer to its components. Returns any other destination unchanged.
 template <aggregate R>
 WARPAGG_HD auto destination_of_components(R* dst) {
     return reinterpret_cast<typename aggregate_traits<R>::type*>(dst);
@@ -58,7 +60,7 @@ struct components;
 template <class R>
 requires requires { typename components<R>::type; }
 struct aggregate_traits<R> : components<R> {};
-template <class R>  // declared again after its use above, so that only users are warned
+template <class R>  // deprecated only after its use above, so that the header itself gives no warning
 struct [[deprecated("specialize aggregate_traits")]] components;
 template <class T, int N>
 using consists_of [[deprecated("use aggregate_of")]] = aggregate_of<T, N>;

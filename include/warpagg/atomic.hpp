@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// The one header to include: warp-aggregated atomics. A warp sums the values that its lanes hold and
-/// touches memory once, instead of once per lane. Under nvcc this header also brings the warp of the GPU;
-/// warp/simd.hpp, warp/checked.hpp and warp/serial.hpp bring the emulators.
+/// The main header of the library. A warp-aggregated atomic first reduces the values of a warp's lanes
+/// and then updates memory once per warp, not once per lane. Under nvcc this header includes `cuda_warp`.
+/// The emulators are in warp/simd.hpp, warp/checked.hpp and warp/serial.hpp.
 
 #include "iterations.hpp"
 #include "match_reduce_atomic.hpp"

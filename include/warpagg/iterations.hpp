@@ -6,14 +6,14 @@
 
 namespace warpagg {
 
-/// The numbers from 0 to n - 1, for a loop in which the lanes of a warp meet: `for (unsigned i :
-/// iterations(w, n))`. `emulator::checked` then diagnoses lanes that meet in different iterations,
-/// as happens after a `continue` that only some lanes take. On other models it is an ordinary loop.
-/// `n` may differ from lane to lane.
+/// The numbers from 0 to n - 1, for a loop that contains collectives: `for (unsigned i :
+/// iterations(w, n))`. `emulator::checked` diagnoses lanes that meet in different iterations of the
+/// loop, for example after a `continue` that only some lanes take. On other models it is an ordinary
+/// loop, at no cost. `n` may differ between lanes.
 template <class W>
 class iterations {
   public:
-    /// Counts to `n`. Leave `at` to its default.
+    /// Counts from 0 to `n` - 1. Leave `at` at its default, the call site.
     WARPAGG_EXEC_CHECK_DISABLE
     WARPAGG_HD iterations(const W& w, unsigned n, call_site at = call_site::here("iterations"))
         : w_(w), n_(n) {
@@ -30,7 +30,7 @@ class iterations {
     class iterator {
       public:
         /// @{
-        /// As for any iterator.
+        /// Works as in any iterator over unsigned numbers.
         WARPAGG_HD iterator(const W& w, unsigned i) : w_(w), i_(i) {}
         WARPAGG_HD unsigned operator*() const { return i_; }
         WARPAGG_EXEC_CHECK_DISABLE
@@ -47,7 +47,7 @@ class iterations {
         unsigned i_;
     };
     /// @{
-    /// For a range-based `for`.
+    /// Returns an iterator for a range-based `for`.
     WARPAGG_HD iterator begin() const { return {w_, 0}; }
     WARPAGG_HD iterator end() const { return {w_, n_}; }
     /// @}

@@ -3,23 +3,23 @@
 #pragma once
 
 /// @file
-/// Segmented sums without atomics, added in a fixed order, so that the result has the same bits from run to
-/// run. The values come sorted by key. Values of equal keys are added in the order in which they come, so
-/// sort stably, as std::stable_sort and cub::DeviceRadixSort do. Two kernels, on any model of `warp`:
-/// `segmented_sum_tiles`, then `segmented_sum_fixup`.
+/// Segmented sums: the sum of each run of equal keys in a sorted array, without atomics. The order of
+/// additions is fixed by the order of the values, so results have the same bits from run to run
+/// (`run_to_run`). Sort stably, as std::stable_sort and cub::DeviceRadixSort do. Run two kernels, on any
+/// model of `warp`: first `segmented_sum_tiles`, then `segmented_sum_fixup`.
 
 #include "warp/concept.hpp"
 
 namespace warpagg {
 
-/// The first kernel: one warp for each tile of `tile_size` consecutive values.
+/// The first kernel. One warp sums each tile of `tile_size` consecutive values.
 ///
 /// @snippet segmented_sum.cpp segmented sum
 ///
-/// The sum of a key whose values continue in another tile waits at the edge between them for
-/// `segmented_sum_fixup`. Error of a sum of n values of condition k: (n/1024 + 42) u k with 32 lanes, where u
-/// is half an ulp of one. Cost: one read of values and keys; 2 log2(W) + 3 shuffles and two votes for each W
-/// values.
+/// If the values of a key may continue in another tile, their sum goes to an edge of the tile, for
+/// `segmented_sum_fixup`. Error of a sum of n values of condition k: at most (n/1024 + 42) u k with 32 lanes,
+/// where u is half an ulp of one. Cost: one read of values and keys; at most 2 log2(W) + 5 shuffles and one
+/// vote for each W values, and one more of each per tile.
 /// Precondition: keys are below 2^32 - 1.
 template <class T>
 struct segmented_sum_tiles {
@@ -28,16 +28,17 @@ struct segmented_sum_tiles {
     const unsigned* keys;                            ///< n keys, sorted
     const T* values;                                 ///< n values
     unsigned n;                                      ///< number of values
-    T* sums;              ///< one sum per key; keys without values keep what is there
-    unsigned* edge_keys;  ///< two per tile
-    T* edge_sums;         ///< two per tile
+    T* sums;                                         ///< one sum per key; not written for keys without values
+    unsigned* edge_keys;                             ///< key of each edge, two edges per tile
+    T* edge_sums;                                    ///< sum of each edge, two edges per tile
 
-    /// The number of tiles of n values.
+    /// Returns the number of tiles of n values.
     static constexpr WARPAGG_HD unsigned tiles(unsigned n) {
         return n / tile_size + (n % tile_size != 0 ? 1 : 0);
     }
 
-    /// Computes the sums of tile `index`. All lanes call this.
+    /// Computes the sums of tile `index`. All lanes of the warp call this with the same index, below
+    /// `tiles(n)`.
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
@@ -45,7 +46,7 @@ struct segmented_sum_tiles {
         using math::uniform;
         const unsigned begin = index * tile_size, end = begin + math::min(n - begin, tile_size);
         const unsigned first = key_at(w, begin);
-        unsigned open = first;  // the key whose values continue, and their sum so far
+        unsigned open = first;  // the key whose values continue; so_far is their sum
         T so_far{};
         write_edge(w, 2 * index + 1, no_key, T{});
         for (unsigned base = begin; base < end; base += W::size) {
@@ -57,7 +58,7 @@ struct segmented_sum_tiles {
                 open = key_at(w, base);
                 so_far = T{};
             }
-            for (unsigned distance = 1; distance < W::size; distance *= 2) {  // a scan of each key's lanes
+            for (unsigned distance = 1; distance < W::size; distance *= 2) {  // a segmented scan
                 const auto from = (w.lane() - distance) & (W::size - 1);
                 const auto before = w.shfl(sum, from);
                 const auto key_before = w.shfl(key, from);
@@ -102,7 +103,7 @@ struct segmented_sum_tiles {
         w.store(edge_keys, to, value_t<W, unsigned>(key), w.lane() == 0u);
         w.store(edge_sums, to, value_t<W, T>(sum), w.lane() == 0u);
     }
-    /// Writes the sum of a key whose values ended with the last row of lanes.
+    /// Writes the sum of a key whose values end with the previous row of lanes.
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
     WARPAGG_HD void close(const W& w, unsigned index, unsigned key, unsigned first, T sum) const {
@@ -113,16 +114,16 @@ struct segmented_sum_tiles {
     }
 };
 
-/// The second kernel: one index for each edge, two per tile. Adds up the parts of a key that lie at several
-/// edges.
+/// The second kernel. One thread per edge, two edges per tile, adds the sums of each key that has several
+/// edges. Cost: the thread of a key's first edge reads the edges up to the next key; no atomics.
 template <class T>
 struct segmented_sum_fixup {
-    const unsigned* edge_keys;  ///< as `segmented_sum_tiles` left them
-    const T* edge_sums;         ///< as `segmented_sum_tiles` left them
+    const unsigned* edge_keys;  ///< keys that `segmented_sum_tiles` wrote
+    const T* edge_sums;         ///< sums that `segmented_sum_tiles` wrote
     std::size_t edges;          ///< number of edges
     T* sums;                    ///< one sum per key
 
-    /// Adds up the key whose first edge this is; does nothing at other edges.
+    /// Writes the sum of a key if `edge` is its first edge, and does nothing otherwise.
     WARPAGG_HD void operator()(std::size_t edge) const {
         constexpr unsigned no_key = segmented_sum_tiles<T>::no_key;
         const unsigned key = edge_keys[edge];

@@ -8,21 +8,22 @@
 
 namespace warpagg {
 
-/// A record within a stage: the destination for `policy{staged}`.
+/// A record in a stage, the destination for `policy{staged}`.
 template <class T>
 struct staged_record {
     T* copy;  ///< component 0, in shared memory
-    /// The record as an accessor.
+    /// Returns the record as an accessor.
     WARPAGG_HD commit::contiguous_record<T> in_stage() const { return {copy}; }
 };
 
-/// A block's copy of a small destination in shared memory. Warps of the block add to the copy,
-/// where atomics are cheap; at the end `flush` adds each value that is not zero to memory once. Use
-/// it for up to a few thousand values to which each block adds many times.
+/// A block's copy of a small destination in shared memory. The warps of the block add to the copy,
+/// where atomics are cheap. At the end `flush` adds each value that is not zero to global memory
+/// once. Use a stage for up to a few thousand values to which each block adds many times.
 ///
 /// @snippet stage.cpp stage
 ///
-/// Sums only. Cost: size / W stores a block to clear, size loads and at most size atomics to flush.
+/// Sums only. Cost per block on W lanes: ceil(size / W) row stores for `clear`; as many row loads and
+/// at most `size` atomics for `flush`.
 template <class T>
 class stage {
   public:
@@ -31,8 +32,8 @@ class stage {
     /// @param size    number of values
     WARPAGG_HD stage(T* memory, T* copy, unsigned size) : memory_(memory), copy_(copy), size_(size) {}
 
-    /// Sets the copy to zero; a barrier of the block must follow. All `warps` warps of the block
-    /// call it, each with its index `warp`.
+    /// Sets the copy to zero. All lanes of the block's `warps` warps call this, each warp with its
+    /// index `warp` from 0. A barrier of the block must follow.
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void clear(const W& w, unsigned warp, unsigned warps) const {
@@ -41,10 +42,11 @@ class stage {
             w.store_row(copy_, static_cast<std::ptrdiff_t>(row), value_t<W, T>(T{}), w.lane() + row < size_);
     }
 
-    /// The record that begins at `memory[first]`. Precondition: it lies within the stage.
+    /// Returns the record that begins at `memory[first]`. Precondition: the record lies in the stage.
     WARPAGG_HD staged_record<T> record(unsigned first) const { return {copy_ + first}; }
 
-    /// Adds the copy to memory; a barrier of the block must precede it. Call it as `clear`.
+    /// Adds the copy to global memory. The warps call this as they call `clear`. A barrier of the
+    /// block must precede it.
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void flush(const W& w, unsigned warp, unsigned warps) const {
@@ -65,7 +67,8 @@ class stage {
 
 namespace commit {
 
-/// The destination of `Commit`, as an accessor.
+/// Returns the destination of a commit as an accessor. `Dst` must be a record of a stage if and only
+/// if `Commit` is `staged`; otherwise it does not compile.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Commit, class Dst>
 WARPAGG_HD auto record_of(Dst dst) {
