@@ -3,15 +3,15 @@
 #pragma once
 
 /// @file
-/// For lanes with different destinations: `warp_match_reduce_atomic`, for histograms, graph
-/// scatter, particle deposit.
+/// Aggregated atomics for lanes with different destinations: `warp_match_reduce_atomic`. Use it for
+/// histograms, sums over graph edges, or particle deposition.
 
 #include "reduce_atomic.hpp"
 
 namespace warpagg {
 namespace detail {
 
-/// Component i of the record of each key, as an accessor by key.
+/// An accessor that takes a key and returns the address of component i of the key's record.
 template <class Base, int N>
 struct component_by_key {
     Base base;
@@ -25,7 +25,7 @@ struct component_by_key {
     }
 };
 
-/// The components of one key's record, as an accessor by component.
+/// An accessor that takes i and returns the address of component i of one key's record.
 template <class Base>
 struct component_of_key {
     Base base;
@@ -33,10 +33,10 @@ struct component_of_key {
     WARPAGG_HD auto operator()(unsigned i) const { return base(key, i); }
 };
 
-/// Combines the values of lanes with equal keys, in a tree over the lanes of each key in their
-/// order; the first of them ends with the result. `peers` are the active lanes with this lane's
-/// key, none for an inactive lane. Cost: for the largest group of g lanes, ceil(log2 g) times N
-/// shuffles and two votes.
+/// Combines the values of lanes with equal keys, in a tree over the lanes of each key in the order of
+/// their numbers. The first lane of each key receives the result. `peers` has the bits of the active
+/// lanes with this lane's key, and is 0 for an inactive lane. Cost: ceil(log2 g) rounds of N shuffles
+/// and two votes, where g is the size of the largest group, and one vote more.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class V, int N>
 WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint32_t>& peers) {
@@ -45,7 +45,7 @@ WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint3
     using math::select;
     using bits = value_t<W, std::uint32_t>;
     const bits beyond_me = bits(0xfffffffeu) << w.lane();
-    bits next = peers & beyond_me;  // the lanes that still hold a part of the result
+    bits next = peers & beyond_me;  // the later lanes of the key that still hold a partial result
     // mutate: match_place_from_one
     bits place = popcount(peers & (beyond_me ^ bits(0xffffffffu))) - bits(1u);
     while (w.any(next != 0u)) {
@@ -55,14 +55,14 @@ WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint3
         // mutate: match_combines_without_next
         for (int i = 0; i < N; ++i) v[i] = select(has_next, Op::combine(v[i], w.shfl(v[i], from)), v[i]);
         // mutate: match_keeps_those_who_gave
-        next &= bits(w.ballot((place & 1u) == 0u));  // those at odd places have passed theirs on
+        next &= bits(w.ballot((place & 1u) == 0u));  // lanes at odd places have passed their values on
         place = place >> 1u;
     }
 }
 
-/// Whether the keys of the active lanes rise from lane to lane, and so all differ. This costs a
-/// fraction of a match. Rising keys are often neighboring addresses, for which a match costs more
-/// than plain atomics.
+/// Returns whether the keys of the active lanes rise from lane to lane, so that all keys differ.
+/// `everyone` has the bits of the active lanes. Cost: one shuffle and one vote, less than a match.
+/// Rising keys are often neighboring addresses, for which plain atomics are faster than a match.
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W>
 WARPAGG_HD bool keys_rise(const W& w, const value_t<W, unsigned>& key, const mask_t<W>& active,
@@ -75,15 +75,16 @@ WARPAGG_HD bool keys_rise(const W& w, const value_t<W, unsigned>& key, const mas
     return !w.any(active && after_me != 0u && key >= next);  // mutate: match_equal_keys_rise
 }
 
-/// The commit of the records of keys: that of the policy, or else the largest groups that keep all
-/// records aligned.
+/// The commit of the records of keys. It is the policy's commit, if the policy names one or does not
+/// reduce. Otherwise it is `packed` with the largest groups that keep all records aligned.
 template <class Resolved, class Policy, int N>
 // mutate: match_packs_where_plain_is_asked
 using commit_of_keys = std::conditional_t<std::is_same_v<typename Resolved::reduce, reduce::per_lane> ||
                                               !std::is_same_v<typename Policy::commit, unset>,
                                           typename Resolved::commit, commit::packed<N % 4 == 0 ? 4 : 2>>;
 
-/// Every active lane commits its own values to the record of its key.
+/// Commits the values of each active lane to the record of its key. Cost: N atomic instructions, or
+/// N / K where `packed<K>` applies.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, class Commit, warp W, class Base, class V, int N>
 WARPAGG_HD void commit_by_key(const W& w, Base base, const value_t<W, unsigned>& key, const V (&v)[N],
@@ -103,7 +104,7 @@ WARPAGG_HD void commit_by_key(const W& w, Base base, const value_t<W, unsigned>&
         w.atomic(Op{}, component_by_key<Base, N>{base, static_cast<unsigned>(i)}, key, v[i], active);
 }
 
-/// The record of a key, the same in all lanes, as a destination.
+/// Returns the record of a uniform key as a destination.
 template <int N, class T>
 WARPAGG_HD commit::contiguous_record<T> record_of_key(T* base, unsigned key) {
     return {base + std::size_t{key} * N};
@@ -113,7 +114,7 @@ WARPAGG_HD auto record_of_key(Base base, unsigned key) {
     return component_of_key<Base>{base, key};
 }
 
-/// The limbs of the accumulators of a base, as a base.
+/// Returns a base of accumulators as a base of their limbs.
 /// @{
 template <class Base, int Limbs>
 struct limbs_by_key {
@@ -137,7 +138,7 @@ WARPAGG_HD auto base_of_limbs(Base base) {
 }
 /// @}
 
-/// `warp_match_reduce_atomic` with the accumulator `native`.
+/// Implements `warp_match_reduce_atomic` for the accumulator `native`.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Policy, warp W, class Base, class V, int N>
 WARPAGG_HD void match_and_commit(const W& w, Base base, const value_t<W, unsigned>& key, const V (&values)[N],
@@ -197,31 +198,34 @@ WARPAGG_HD void match_and_commit(const W& w, Base base, const value_t<W, unsigne
 
 }  // namespace detail
 
-/// Adds the values of each active lane to the record that its key names, equal keys first among
-/// themselves: for each i in [0, N), `base[key * N + i] += values[i]`, atomically and relaxed,
-/// component by component.
+/// Adds the values of each active lane to the record of its key: for each i in [0, N),
+/// `base[key * N + i] += values[i]`, atomically and relaxed, component by component. Lanes with
+/// equal keys reduce first, unless the policy's gate or `per_lane` prevents it.
 ///
 /// @snippet warp_match_reduce_atomic.cpp warp_match_reduce_atomic
 ///
-/// @param w       a model of `warp`; all of its lanes call this together
-/// @param base    `T*` to the record of key 0, or an accessor `base(key, i) -> T*`
+/// @param w       a model of `warp`
+/// @param base    `T*` to the record of key 0, or an accessor `base(key, i) -> T*`. With an
+///                accumulator, `accumulator<...>` takes the place of T
 /// @param key     index of this lane's record, 32 bits; ignored for an inactive lane
-/// @param values  N values per lane; those of inactive lanes are ignored, NaN or not
-/// @param active  whether this lane has something to add
-/// @param how     a policy. `reduce` and `commit` apply where all active lanes have one key; `commit`
-///                also selects how the record of each key is committed. `per_lane` combines nothing.
-///                The gate sets the number of active lanes from which keys are compared
-/// @param at      the place of the call; leave it to its default
+/// @param values  N values per lane; values of inactive lanes are ignored, even if they are NaN
+/// @param active  whether this lane has values to add
+/// @param how     a policy. Its reduce tag applies if all active lanes have one key; `per_lane`
+///                combines nothing. Its commit tag also applies to the record of each key. Its gate
+///                sets the number of active lanes from which keys are compared
+/// @param at      the call site; leave it at its default
 ///
-/// @pre All lanes of the warp call this with the same `base`, which holds N values of T for each key
-/// in use.
+/// @pre All lanes of the warp call this together, with the same `base`, which holds N values of T for
+/// each key in use.
 ///
-/// Lanes of one key combine in a fixed tree in the order of their lane numbers. Cost if the keys of
-/// the active lanes rise from lane to lane: one shuffle, two votes, and one atomic per key and
-/// component. Otherwise: one `match` and two votes more, and ceil(log2 g) times N shuffles and two
-/// votes for the g lanes of the most frequent key. With one key for all lanes: as
-/// `warp_reduce_atomic`. If `base` is a pointer to float that is aligned to 16 bytes for N a
-/// multiple of 4, or to 8 bytes for N even, records are committed by `packed`.
+/// Order: lanes of one key combine in a fixed tree, in the order of their numbers.
+///
+/// Cost if the keys of the active lanes rise from lane to lane: one shuffle, two votes, and one
+/// atomic per key and component. Otherwise it also takes one `match`, two votes, and ceil(log2 g)
+/// rounds of N shuffles and two votes, where g lanes have the most frequent key. If all active lanes
+/// have one key, `warp_reduce_atomic`'s reduction and commit take the place of these rounds. Records
+/// are committed by `packed` if `base` is a pointer to float that is aligned to 16 bytes (N a multiple
+/// of 4) or to 8 bytes (other even N).
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Base, class V, int N, class Policy = policy<>>
 WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W, unsigned>& key,
@@ -247,8 +251,8 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
     }
 }
 
-/// The same for an aggregate, a type of yours, at `base[key]`: see aggregate.hpp. On models whose
-/// lane values are scalars, not on `emulator::lanes`.
+/// Works as above for an aggregate, a user's type, at `base[key]`: see aggregate.hpp. Requires a model
+/// whose value type is a scalar, so it does not compile on `emulator::lanes`.
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, aggregate R, class Policy = policy<>>
 WARPAGG_HD void warp_match_reduce_atomic(const W& w, R* base, const value_t<W, unsigned>& key, const R& value,
@@ -259,12 +263,12 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, R* base, const value_t<W, u
                              how, at);
 }
 
-/// Does not compile: a key has 32 bits, and a wider one would lose the others.
+/// Does not compile: a key has 32 bits, and a wider key would lose its upper bits.
 template <warp W, class Base, class Key, class V, int N, class... More>
 requires(std::is_integral_v<Key> && sizeof(Key) > sizeof(unsigned)) void warp_match_reduce_atomic(
     const W&, Base, const Key&, const V (&)[N], const mask_t<W>&, More...) = delete;
 
-/// Does not compile: several tags go into one policy.
+/// Does not compile: put several tags into one policy.
 template <warp W, class Base, class V, class Tag, class Next, class... More>
 requires(!std::is_same_v<Next, call_site>)
     WARPAGG_HD void warp_match_reduce_atomic(const W&, Base, const value_t<W, unsigned>&, const V&,

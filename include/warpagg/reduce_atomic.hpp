@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// For lanes that share one destination: `warp_reduce_atomic` and `skip_if_warp_idle`.
+/// Aggregated atomics for lanes with one destination: `warp_reduce_atomic` and `skip_if_warp_idle`.
 
 #include "aggregate.hpp"
 #include "core/call_site.hpp"
@@ -18,9 +18,9 @@
 
 namespace warpagg {
 
-/// Returns whether no lane of the warp is active, the same in every lane, so that the whole warp
-/// can `continue` together. All lanes call it. Cost: one vote, no memory. Source: the paper, Figure
-/// 8, lines 18 to 22.
+/// Returns whether the warp is idle: no lane is active. The result is uniform, so the whole warp can
+/// `continue` together. All lanes of the warp call this. Cost: one vote, no memory access. Source:
+/// the paper, Figure 8, lines 18 to 22.
 ///
 /// @snippet warp_reduce_atomic.cpp skip_if_warp_idle
 WARPAGG_EXEC_CHECK_DISABLE
@@ -33,7 +33,7 @@ WARPAGG_HD bool skip_if_warp_idle(const W& w, const mask_t<W>& active,
 
 namespace detail {
 
-/// The flag, hidden from the compiler, so that it does not split a loop on it.
+/// Returns the flag, but hides its value from the compiler, which otherwise may split a loop on it.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class W>
 WARPAGG_HD mask_t<W> opaque(const W& w, const mask_t<W>& flag) {
@@ -44,15 +44,15 @@ WARPAGG_HD mask_t<W> opaque(const W& w, const mask_t<W>& flag) {
     }
 }
 
-/// The values of active lanes, and the identity of the operation for other lanes, whatever they
-/// hold.
+/// Returns the values of active lanes. For inactive lanes it returns the identity of the operation,
+/// even if their values are NaN.
 template <class Op, class V, class Mask>
 struct active_values {
     const V* values;
     const Mask& active;
 
     WARPAGG_HD V operator()(int i) const {
-        using math::select;  // and by its arguments, that of SIMD lanes
+        using math::select;  // argument-dependent lookup finds the overload for SIMD values
         // mutate: active_mask_dropped
         return select(active, values[i], V(Op::template identity<scalar_t<V>>()));
     }
@@ -68,7 +68,7 @@ WARPAGG_HD void reduce_and_commit(const W& w, Record record, const V (&values)[N
     commit::results<op, reduction, typename Resolved::commit>(w, record, results);
 }
 
-/// `warp_reduce_atomic` for an accessor and a resolved policy.
+/// Implements `warp_reduce_atomic` for an accessor and a resolved policy.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Resolved, warp W, class Record, class V, int N>
 WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
@@ -86,7 +86,7 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
             // mutate: gate_thresholds_swapped
             commit::is_packed<op, ungated, V>(w, record) ? gate::lanes_if_packed : gate::lanes;
         if (math::popcount(w.ballot(active)) < least) [[unlikely]] {  // mutate: gate_at_most
-            V own[N];  // a copy, since indexing by lanes would force the values themselves into memory
+            V own[N];  // a copy, because indexing by lanes would move `values` from registers to memory
             WARPAGG_UNROLL
             for (int i = 0; i < N; ++i) own[i] = values[i];
             commit::each_lane<op, ungated>(w, record, own, active);
@@ -109,39 +109,42 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
 ///
 /// @snippet warp_reduce_atomic.cpp warp_reduce_atomic
 ///
-/// With a policy, with another operation than the sum, and into a structure of arrays:
+/// The following examples name a policy and another operation than the sum, and add to a structure
+/// of arrays:
 ///
 /// @snippet warp_reduce_atomic.cpp policy
 /// @snippet warp_reduce_atomic.cpp operation
 /// @snippet warp_reduce_atomic.cpp structure of arrays
 /// @snippet warp_reduce_atomic.cpp accessor
 ///
-/// With another accumulator; here the sum is rounded once and does not depend on the order of
+/// This example names an accumulator. The sum is rounded once and does not depend on the order of
 /// additions:
 ///
 /// @snippet accumulate.cpp exact
 ///
-/// @param w       a model of `warp`; all of its lanes call this together
+/// @param w       a model of `warp`
 /// @param dst     `T*`, a span, an accessor `dst(i) -> T*`, or a record of a `stage` with
-///                `policy{staged}`; the same record for every lane
-/// @param values  N values per lane; those of inactive lanes are ignored, NaN or not
-/// @param active  whether this lane has something to add
-/// @param how     a policy; it may also name another operation than the sum, or an accumulator: see
-///                accumulator.hpp
-/// @param at      the place of the call; leave it to its default
+///                `policy{staged}`. With an accumulator, `accumulator<...>` takes the place of T
+/// @param values  N values per lane; values of inactive lanes are ignored, even if they are NaN
+/// @param active  whether this lane has values to add
+/// @param how     a policy; defaults fill the axes without a tag: see default_policy.hpp
+/// @param at      the call site; leave it at its default
 ///
-/// @pre All lanes of the warp call this with the same `dst`, which holds N values of T, aligned as
-/// T.
+/// @pre All lanes of the warp call this together, with the same `dst`, which holds N values of T,
+/// aligned as T.
 ///
 /// @note Accumulators other than `native` decompose values even in idle warps; call
 /// `skip_if_warp_idle` first if many warps are idle. `fixed` with a `fault` takes one more vote.
 ///
-/// The order in which warps add is unspecified. Within a warp `shfl_down`, `butterfly` and `scatter`
-/// add in the same tree: lanes W/2 apart first, then half as far, down to neighbors. With `per_lane`,
-/// and where the gate keeps lanes from reducing, lanes add in any order. Error of a float sum with all lanes
-/// active: (n/32 + 5) u k for n updates of condition k, u = 2^-24; with few active lanes, up to n u k. Cost
-/// by default, on 32 lanes: one vote, N - 1 + log2(32/N) shuffles (N `redux` instructions for 32-bit
-/// integers), and one atomic instruction per 32 components.
+/// Order: warps commit in an unspecified order. Within a warp, `shfl_down`, `butterfly` and `scatter`
+/// add in the same tree: first lanes W/2 apart, then W/4 apart, and so on to neighbors. Lanes that do
+/// not reduce, because of `per_lane` or the gate, commit in an unspecified order.
+///
+/// Error of a float sum of n values with condition number k: at most (n/32 + 5) u k if all lanes are
+/// active, u = 2^-24, and n u k otherwise.
+///
+/// Cost by default on 32 lanes: one vote, about N - 1 + log2(32/N) shuffles (N `redux` instructions
+/// for 32-bit integers and N up to 32), and one atomic instruction per 32 components.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class T, int N, warp W, class Dst, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&values)[N],
@@ -181,7 +184,7 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
     }
 }
 
-/// The same with T and N deduced from `values`.
+/// Works as above, with T and N deduced from `values`.
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Dst, class V, int N, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const V (&values)[N], const mask_t<W>& active,
@@ -189,8 +192,8 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const V (&values)[N], co
     warp_reduce_atomic<scalar_t<V>, N>(w, dst, values, active, how, at);
 }
 
-/// The same for an aggregate, a type of yours: see aggregate.hpp. On models whose lane values are
-/// scalars, so not on `emulator::lanes`.
+/// Works as above for an aggregate, a user's type: see aggregate.hpp. Requires a model whose value
+/// type is a scalar, so it does not compile on `emulator::lanes`.
 ///
 /// @snippet warp_reduce_atomic.cpp a type of yours
 WARPAGG_EXEC_CHECK_DISABLE
@@ -201,7 +204,7 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const R& value, const ma
     warp_reduce_atomic(w, detail::destination_of_components(dst), components.component, active, how, at);
 }
 
-/// Does not compile: several tags go into one policy.
+/// Does not compile: put several tags into one policy.
 template <warp W, class Dst, class V, class Tag, class Next, class... More>
 requires(!std::is_same_v<Next, call_site>)
     WARPAGG_HD void warp_reduce_atomic(const W&, Dst, const V&, const mask_t<W>&, Tag, Next, More...) {

@@ -6,30 +6,30 @@
 
 namespace warpagg::commit {
 
-/// A record that is contiguous in memory, as an accessor.
+/// An accessor to a record whose components are contiguous in memory.
 template <class T>
 struct contiguous_record {
     T* first;  ///< component 0
-    /// Component i.
+    /// Returns the address of component i.
     WARPAGG_HD T* operator()(unsigned i) const { return first + i; }
 };
 
-/// A destination as an accessor, which returns the address of component i. The destination is a
-/// pointer, a span (anything with `data()`), or an accessor already (for a structure of arrays).
+/// Returns a destination as an accessor. The destination is a pointer, a span (an object with a const
+/// `data()` that gives write access), or already an accessor, as for a structure of arrays.
 /// @{
 template <class T>
 WARPAGG_HD contiguous_record<T> destination(T* p) {
     return {p};
 }
 template <class S>
-requires requires(const S& s) { *s.data() = *s.data(); }  // not a container, whose copy this would be
+requires requires(const S& s) { *s.data() = *s.data(); }  // excludes containers, which would be copied
 WARPAGG_HD auto destination(S s) { return destination(s.data()); }
 template <class A>
 requires requires(A a) { *a(0u); }
 WARPAGG_HD A destination(A a) { return a; }
 /// @}
 
-/// A pointer, a span or an accessor.
+/// Is satisfied by pointers, spans and accessors.
 template <class Dst>
 concept is_destination = requires(Dst dst) {
     destination(dst);

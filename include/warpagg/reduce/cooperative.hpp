@@ -3,8 +3,8 @@
 #pragma once
 
 /// @file
-/// The reduction `reduce::cooperative`, for comparison: that of cooperative groups. Include it beside
-/// atomic.hpp, in CUDA code.
+/// The reduction `reduce::cooperative`, which uses cooperative groups; for comparison. In CUDA code, include
+/// this header in addition to atomic.hpp.
 
 #include <cooperative_groups.h>
 #include <cooperative_groups/reduce.h>
@@ -15,13 +15,14 @@
 namespace warpagg {
 namespace reduce {
 
-/// `cooperative_groups::reduce`, value by value; every lane ends with the results. Only on `cuda_warp`.
+/// Reduces each value by `cooperative_groups::reduce` and leaves the results in every lane. Only for
+/// `cuda_warp`. Cost: N log2(W) shuffles.
 struct cooperative {
     static constexpr auto axis = warpagg::axis::reduce;
     static constexpr auto placement = result_placement::every_lane;
 };
 
-/// Cost: N log2(W) shuffles.
+/// Reduces N values per lane over the warp. Every lane holds the results afterwards.
 template <class Op, class Values, class T, int N>
 __device__ __forceinline__ void reduce_over_warp(cooperative, const cuda_warp&, const Values& value,
                                                  T (&results)[N]) {
@@ -34,7 +35,7 @@ __device__ __forceinline__ void reduce_over_warp(cooperative, const cuda_warp&, 
 
 }  // namespace reduce
 
-/// The tag as an object, for `policy{...}`.
+/// The tag `reduce::cooperative` as an object, for `policy{...}`.
 WARPAGG_TAG reduce::cooperative cooperative{};
 
 }  // namespace warpagg

@@ -3,7 +3,8 @@
 #pragma once
 
 /// @file
-/// The reduction `reduce::cub`, for comparison: CUB's. Include it beside atomic.hpp, in CUDA code.
+/// The reduction `reduce::cub`, which uses CUB; for comparison. In CUDA code, include this header in addition
+/// to atomic.hpp.
 
 #include <cub/warp/warp_reduce.cuh>
 
@@ -13,13 +14,14 @@
 namespace warpagg {
 namespace reduce {
 
-/// CUB's `WarpReduce`, value by value; lane 0 ends with the results. Only on `cuda_warp`.
+/// Reduces each value by `cub::WarpReduce` and leaves the results in lane 0. Only for `cuda_warp`. Cost:
+/// N log2(W) shuffles.
 struct cub {
     static constexpr auto axis = warpagg::axis::reduce;
     static constexpr auto placement = result_placement::first_lane;
 };
 
-/// Cost: N log2(W) shuffles.
+/// Reduces N values per lane over the warp. Lane 0 holds the results afterwards.
 template <class Op, class Values, class T, int N>
 __device__ __forceinline__ void reduce_over_warp(cub, const cuda_warp&, const Values& value,
                                                  T (&results)[N]) {
@@ -34,7 +36,7 @@ __device__ __forceinline__ void reduce_over_warp(cub, const cuda_warp&, const Va
 
 }  // namespace reduce
 
-/// The tag as an object, for `policy{...}`.
+/// The tag `reduce::cub` as an object, for `policy{...}`.
 WARPAGG_TAG reduce::cub cub{};
 
 }  // namespace warpagg

@@ -12,7 +12,7 @@ struct accumulator;  // see accumulator.hpp
 
 namespace detail {
 
-/// The accumulators of a destination, as an accessor.
+/// Returns the accumulators of a destination as an accessor.
 template <class Accumulate, class Dst>
 WARPAGG_HD auto accumulators_of(Dst dst) {
     static_assert(commit::is_destination<Dst>,
@@ -23,7 +23,7 @@ WARPAGG_HD auto accumulators_of(Dst dst) {
     return accumulators;
 }
 
-/// The limbs of the accumulators of a destination, as an accessor.
+/// Returns the limbs of the accumulators of a destination, as a pointer or an accessor.
 /// @{
 template <class Accumulators, int Limbs>
 struct limbs_of_accumulators {
@@ -47,7 +47,7 @@ inline constexpr bool can_fault = requires(const Accumulate& a) {
     a.fault;
 };
 
-/// Decomposes x; returns whether x is in range.
+/// Decomposes x into limbs. Returns whether x is in range, which only `fixed` restricts.
 template <class Accumulate>
 WARPAGG_HD bool decompose_one(const Accumulate& how, float x,
                               typename Accumulate::limb (&to)[Accumulate::limbs]) {
@@ -59,8 +59,8 @@ WARPAGG_HD bool decompose_one(const Accumulate& how, float x,
     }
 }
 
-/// Decomposes the values of the lanes: limb k of values[i] goes to limbs[i * Accumulate::limbs + k]. Sets
-/// `*how.fault` if a value of an active lane is out of range.
+/// Decomposes N values per lane: limb k of values[i] goes to limbs[i * Accumulate::limbs + k]. Sets
+/// `*how.fault` if a value of an active lane is out of range; with a `fault` this takes one vote.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Accumulate, warp W, class V, int N, class Limb, int M>
 WARPAGG_HD void decompose(const W& w, const Accumulate& how, const V (&values)[N], const mask_t<W>& active,
@@ -71,7 +71,7 @@ WARPAGG_HD void decompose(const W& w, const Accumulate& how, const V (&values)[N
     WARPAGG_UNROLL
     for (int i = 0; i < N; ++i) {
         if constexpr (requires { typename V::scalar; }) {
-            typename Accumulate::limb words[each][W::size];  // not set in vectors: see on_words
+            typename Accumulate::limb words[each][W::size];  // arrays, not vectors: see on_words
             for (int lane = 0; lane < static_cast<int>(W::size); ++lane) {
                 if (!decompose_one(how, values[i][lane], part)) fits.set(lane, false);
                 for (int k = 0; k < each; ++k) words[k][lane] = part[k];
@@ -92,7 +92,7 @@ WARPAGG_HD void decompose(const W& w, const Accumulate& how, const V (&values)[N
     }
 }
 
-/// Accumulators to which a warp adds its results, one float each.
+/// An accessor to accumulators, to which a warp adds one float each.
 template <class Accumulate, class Accumulators>
 struct accumulators_of_results {
     Accumulate how;
@@ -104,7 +104,7 @@ WARPAGG_HD auto results_to_accumulators(const Accumulate& how, Dst dst) {
     auto accumulators = accumulators_of<Accumulate>(dst);
     return accumulators_of_results<Accumulate, decltype(accumulators)>{how, accumulators};
 }
-/// Limb k of each of them, as an accessor.
+/// An accessor to limb k of each accumulator.
 template <class Accumulators>
 struct one_limb_of_accumulators {
     Accumulators accumulators;
@@ -112,7 +112,8 @@ struct one_limb_of_accumulators {
     WARPAGG_HD auto operator()(unsigned i) const { return accumulators(i)->limb + k; }
 };
 
-/// Commits one value per active lane to the component that the lane names.
+/// Commits one value per active lane to the component that the lane names. Cost: one atomic
+/// instruction, or one per limb for accumulators.
 /// @{
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Dst, class V>

@@ -6,15 +6,15 @@
 
 namespace warpagg::accumulate {
 
-/// A float decomposed: (-1)^negative significand 2^(bit - 149), or an infinity or NaN.
+/// The parts of a float: (-1)^negative significand 2^(bit - 149), or an infinity or NaN.
 struct parts_of_float {
     std::uint32_t significand;  ///< below 2^24
-    unsigned bit;               ///< 0 to 253: position of its lowest bit, in units of 2^-149
-    bool negative;              ///< its sign bit
+    unsigned bit;               ///< 0 to 253: weight 2^(bit - 149) of the significand's lowest bit
+    bool negative;              ///< the sign bit
     bool finite;                ///< if false, only `nan` and `negative` have a meaning
-    bool nan;                   ///< not a number
+    bool nan;                   ///< whether the float is NaN
 
-    /// Of any float.
+    /// Takes any float apart into its fields.
     WARPAGG_HD explicit parts_of_float(float x) {
         std::uint32_t bits;
         std::memcpy(&bits, &x, sizeof bits);
@@ -27,12 +27,13 @@ struct parts_of_float {
     }
 };
 
-/// A signed integer in units of 2^-149, the smallest float; limb i has the weight 2^(32 i) (Kulisch).
+/// A signed integer in units of 2^-149, the smallest positive float. Limb i has the weight 2^(32 i). Source:
+/// Kulisch.
 struct superaccumulator {
-    static constexpr unsigned count = 12;  ///< room for the 277 bits of floats, and for carries above them
-    std::int64_t limb[count]{};            ///< signed; carries need not be propagated
+    static constexpr unsigned count = 12;  ///< enough for the 277 bits of floats and the carries above them
+    std::int64_t limb[count]{};            ///< signed limbs, whose carries need not be propagated
 
-    /// Adds value 2^bit. Precondition: |value| < 2^62, bit <= 32 (count - 3), fewer than 2^29 additions.
+    /// Adds value 2^bit. Preconditions: |value| < 2^62, bit <= 32 (count - 3), and fewer than 2^29 additions.
     WARPAGG_HD void add(std::int64_t value, unsigned bit) {
         const bool negative = value < 0;
         const auto magnitude = static_cast<std::uint64_t>(negative ? -value : value);
@@ -45,7 +46,7 @@ struct superaccumulator {
         }
     }
 
-    /// The nearest float, ties to even; infinite beyond the largest float.
+    /// Returns the nearest float, ties to even. Returns an infinity beyond the largest float.
     WARPAGG_HD float nearest() const {
         std::uint32_t digit[count];
         const bool negative = digits(digit, 1);
@@ -62,10 +63,10 @@ struct superaccumulator {
         if (drop > 0 && bit(drop - 1) != 0) {
             bool odd_or_more = (significand & 1u) != 0;
             for (unsigned at = 0; at + 1 < drop; ++at) odd_or_more = odd_or_more || bit(at) != 0;
-            if (odd_or_more) ++significand;  // to 2^24 perhaps, which carries into the exponent below
+            if (odd_or_more) ++significand;  // a carry to 2^24 increments the exponent below
         }
-        // A significand of 24 bits has its highest one added to the exponent, which is one more than `drop`
-        // then.
+        // The highest bit of a significand of 24 bits adds 1 to the exponent field, which must be
+        // drop + 1 for such a significand.
         std::uint32_t bits = (drop << 23) + significand;
         if (drop > 253) bits = 0x7f800000u;
         bits |= negative ? 0x80000000u : 0u;
@@ -75,8 +76,8 @@ struct superaccumulator {
     }
 
   private:
-    /// Writes the digits of `sign` times this integer to base 2^32. Returns whether the product is negative;
-    /// the digits are its two's complement then.
+    /// Writes the digits of `sign` times this integer to base 2^32. Returns whether the product is negative.
+    /// The digits of a negative product are its two's complement.
     WARPAGG_HD bool digits(std::uint32_t (&digit)[count], std::int64_t sign) const {
         std::int64_t carry = 0;
         for (unsigned i = 0; i < count; ++i) {
@@ -88,7 +89,7 @@ struct superaccumulator {
     }
 };
 
-/// The sum of infinities of the given signs; a NaN counts as one of each sign.
+/// Returns the sum of infinities of the given signs. NaN counts as one infinity of each sign.
 WARPAGG_HD float sum_of_infinities(bool positive, bool negative) {
     const std::uint32_t bits = positive && negative ? 0x7fc00000u : positive ? 0x7f800000u : 0xff800000u;
     float result;

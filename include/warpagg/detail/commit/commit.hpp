@@ -12,7 +12,7 @@ namespace warpagg::commit {
 
 namespace detail {
 
-/// Whether the types allow one instruction per group of neighbors.
+/// Is true if the types allow one atomic instruction per group of neighbors.
 template <class Op, class Commit, class W, class Dst, class V>
 inline constexpr bool packs = false;
 template <unsigned K, class W, class T>
@@ -22,7 +22,7 @@ inline constexpr bool packs<operation::sum, packed<K>, W, contiguous_record<T>, 
     w.template atomic_add_packed<K>(to, v, active);
 };
 
-/// Commits v[I] to v[N - 1] in groups of K, and the rest in smaller groups.
+/// Commits v[I] to v[N - 1] of active lanes in groups of K, and the remainder in smaller groups.
 WARPAGG_EXEC_CHECK_DISABLE
 template <unsigned K, int I, warp W, class T, int N>
 WARPAGG_HD void by_groups(const W& w, T* to, const T (&v)[N], bool active) {
@@ -37,7 +37,7 @@ WARPAGG_HD void by_groups(const W& w, T* to, const T (&v)[N], bool active) {
 
 }  // namespace detail
 
-/// Whether `packed<K>` applies to this record; the same in all lanes.
+/// Returns whether `packed<K>` applies to this record. The result is uniform.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, class Commit, class V, warp W, class Dst>
 WARPAGG_HD bool is_packed(const W& w, Dst dst) {
@@ -48,8 +48,8 @@ WARPAGG_HD bool is_packed(const W& w, Dst dst) {
     }
 }
 
-/// Every active lane commits its own values by N atomics, or by about N / K where `packed<K>`
-/// applies.
+/// Commits each active lane's own N values. Cost: N atomic instructions, or about N / K where
+/// `packed<K>` applies.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, class Commit, warp W, class Dst, class V, int N>
 WARPAGG_HD void each_lane(const W& w, Dst dst, const V (&v)[N], const mask_t<W>& active) {
@@ -65,7 +65,7 @@ WARPAGG_HD void each_lane(const W& w, Dst dst, const V (&v)[N], const mask_t<W>&
                                           active);
 }
 
-/// Lane i commits v[i], which is the same in all lanes, by one atomic instruction per W values.
+/// Commits N uniform values: lane i commits v[i]. Cost: one atomic instruction per W values.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Dst, class V, int N>
 WARPAGG_HD void own_value(const W& w, Dst dst, const V (&v)[N]) {
@@ -82,7 +82,8 @@ WARPAGG_HD void own_value(const W& w, Dst dst, const V (&v)[N]) {
     }
 }
 
-/// Each lane commits its results of `scatter`, by one atomic instruction per W values.
+/// Commits the results of `scatter` from the lanes that hold them. Cost: one atomic instruction per W
+/// values.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Dst, class V, int N>
 WARPAGG_HD void scattered(const W& w, Dst dst, const V (&v)[N]) {

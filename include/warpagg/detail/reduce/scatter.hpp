@@ -7,14 +7,14 @@
 
 namespace warpagg::reduce {
 
-/// How many results a lane holds after `scatter`.
+/// Returns how many results a lane holds at most after a `scatter` of n values: ceil(n / W).
 template <warp W>
 WARPAGG_HD constexpr int held_after_scatter(int n) {
     return (n + static_cast<int>(W::size) - 1) / static_cast<int>(W::size);
 }
 
-/// Which of the N results the lane holds in slot k after `scatter`: its number with the bits reversed, plus
-/// k W. None if that is N or more.
+/// Returns the index of the result that the lane holds in slot k after `scatter`: the lane's number with its
+/// bits reversed, plus k W. If the index is N or more, the slot holds no result.
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W>
 WARPAGG_HD value_t<W, unsigned> scattered_index(const W& w, int k) {
@@ -23,14 +23,14 @@ WARPAGG_HD value_t<W, unsigned> scattered_index(const W& w, int k) {
     if constexpr (W::size == 1) {
         return value_t<W, unsigned>(first);
     } else {
-        constexpr unsigned unused = 32 - math::popcount(W::size - 1);  // bits of a lane's number
+        constexpr unsigned unused = 32 - math::popcount(W::size - 1);  // bits above a lane's number
         return (bit_reverse(w.lane()) >> unused) + first;              // mutate: scatter_second_row_lost
     }
 }
 
 namespace detail {
 
-/// Whether the lane is in the upper half of its 2 Distance lanes.
+/// Returns whether the lane is in the upper half of its group of 2 Distance lanes.
 WARPAGG_EXEC_CHECK_DISABLE
 template <unsigned Distance, warp W>
 WARPAGG_HD mask_t<W> is_upper(const W& w) {
@@ -41,19 +41,19 @@ WARPAGG_HD mask_t<W> is_upper(const W& w) {
     }
 }
 
-/// How many of n values a lane still holds after the step of `distance`, which halves them as those before
-/// it.
+/// Returns how many of n values a lane still holds after the step of `distance`. Each step from W / 2 down
+/// to `distance` halves them.
 template <warp W>
 WARPAGG_HD constexpr int held_after_step(int n, unsigned distance) {
     for (unsigned d = W::size / 2; d >= distance; d /= 2) n = (n + 1) / 2;
     return n;
 }
 
-/// What the lane holds at place K after the step of Distance: of the values at 2K and 2K + 1 before, it keeps
-/// the first and sends the other to its partner if its bit of Distance is clear, and the other way round if
-/// it is set. A last value without a neighbor is combined by both. Each value is asked for when it is
-/// needed, and a recursion has few of them at a time: on SIMD lanes, registers are fewer than values. No
-/// loop, since nvcc would split one on `upper` and so put the shuffles into divergent branches.
+/// Returns the value at place K after the step of Distance. The step takes the values at 2K and 2K + 1: a
+/// lower lane keeps the first and sends the second to its partner, an upper lane does the opposite. If 2K is
+/// the last place, both lanes combine its value. The recursion reads each value when it needs it and holds
+/// few at a time, because SIMD values outnumber the registers. It is no loop, because nvcc would split a loop
+/// on `upper` and put the shuffles into divergent branches.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class V, class Op, unsigned Distance, int N, int K, warp W, class Values>
 WARPAGG_HD V scattered(const W& w, const mask_t<W>* upper, const Values& value) {
@@ -84,9 +84,9 @@ WARPAGG_HD void scatter_from(const W& w, const mask_t<W>* upper, const Values& v
 }  // namespace detail
 
 /// Combines value(0) ... value(N - 1) over the warp and leaves the results spread over the lanes: see
-/// `scattered_index`. `results` has N places, of which the first `held_after_scatter` are filled. The tree is
-/// that of `shfl_down`, so the results have the same bits. Cost: about N - 1 + log2(W / N) shuffles (N = 9:
-/// 12).
+/// `scattered_index`. It fills the first `held_after_scatter` of the N elements of `results`. It combines in
+/// the tree of `shfl_down`, so the results have the same bits. Cost: about N - 1 + log2(W / N) shuffles (12
+/// for N = 9 on 32 lanes).
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
 WARPAGG_HD void reduce_over_warp(scatter, const W& w, const Values& value, V (&results)[N]) {

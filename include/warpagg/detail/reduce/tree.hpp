@@ -31,8 +31,8 @@ WARPAGG_HD void across_from(const W& w, V (&v)[N]) {
 
 }  // namespace detail
 
-/// Combines value(0) ... value(N - 1) over the warp by shuffles down with halved distances (the paper, Figure
-/// 1). Lane 0 holds the results afterwards. Cost: N log2(W) shuffles.
+/// Combines value(0) ... value(N - 1) over the warp by shuffles down, halving the distance in each step. Lane
+/// 0 holds the results afterwards. Cost: N log2(W) shuffles. Source: the paper, Figure 1.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
 WARPAGG_HD void reduce_over_warp(shfl_down, const W& w, const Values& value, V (&results)[N]) {
@@ -41,7 +41,8 @@ WARPAGG_HD void reduce_over_warp(shfl_down, const W& w, const Values& value, V (
     detail::down_from<Op, W::size / 2>(w, results);  // mutate: shfl_down_half_a_warp
 }
 
-/// Combines in the tree of `shfl_down`; every lane holds the results afterwards. Cost: N log2(W) shuffles.
+/// Combines value(0) ... value(N - 1) in the tree of `shfl_down`. Every lane holds the results afterwards.
+/// Cost: N log2(W) shuffles.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
 WARPAGG_HD void reduce_over_warp(butterfly, const W& w, const Values& value, V (&results)[N]) {
@@ -50,7 +51,8 @@ WARPAGG_HD void reduce_over_warp(butterfly, const W& w, const Values& value, V (
     detail::across_from<Op, W::size / 2>(w, results);
 }
 
-/// By `redux.sync` to every lane. Cost: N instructions, or those of `butterfly` on a model that lacks it.
+/// Combines value(0) ... value(N - 1) by `redux.sync`. Every lane holds the results afterwards. Cost: N
+/// instructions, or those of `butterfly` on a model without `redux.sync`.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
 WARPAGG_HD void reduce_over_warp(redux, const W& w, const Values& value, V (&results)[N]) {
