@@ -6,8 +6,8 @@
 /// The concept `warp`.
 ///
 /// `value_t<W, T>` holds one `T` per lane of a model `W`. It is `T` itself if each lane runs as a
-/// thread or a fiber, and a SIMD value if one thread runs all lanes. Code that uses `select`
-/// instead of `if` on lane values runs on every model.
+/// thread or a fiber, and a SIMD value if one thread runs all lanes. Masked code, which uses
+/// `select` instead of `if` on lane values, runs on every model.
 
 #include "../core/math.hpp"
 #include "../core/operation.hpp"
@@ -18,30 +18,30 @@ namespace warpagg {
 template <class W, class T>
 using value_t = typename W::template value<T>;
 
-/// One flag per lane.
+/// The type of a lane mask, which holds one flag per lane.
 template <class W>
 using mask_t = value_t<W, bool>;
 
-/// A warp: `W::size` lanes, a power of two up to 32. All lanes call each operation together.
+/// A warp of `W::size` lanes, a power of two up to 32. All lanes call each operation together.
 ///
 /// | operation | meaning |
 /// | --- | --- |
-/// | `lane()` | each lane's number, from 0 |
-/// | `ballot(p)` | bit i is lane i's p; the same in every lane |
-/// | `any(p)` | some lane's p; the same in every lane |
-/// | `match(key)` | bit i of lane j's result: lanes i and j hold equal keys |
-/// | `shfl(v, i)` | lane i's v; `i` may differ from lane to lane |
-/// | `shfl_down(v, d)` | v of lane `lane() + d`; lanes past the end keep their own |
+/// | `lane()` | the lane's number, from 0 |
+/// | `ballot(p)` | a uniform integer whose bit i is lane i's p |
+/// | `any(p)` | whether p is set in some lane; uniform |
+/// | `match(key)` | bit i of lane j's result tells whether lanes i and j hold equal keys |
+/// | `shfl(v, i)` | v of lane i; `i` may differ between lanes |
+/// | `shfl_down(v, d)` | v of lane `lane() + d`, or the lane's own v past the last lane |
 /// | `shfl_xor(v, d)` | v of lane `lane() ^ d` |
-/// | `load(p, i, active)` | `p[i]` per active lane; inactive lanes read nothing and get T{}; i < 2^31 |
-/// | `load_packed(p, i, v, active)` | `v[k] = p[i + k]`, k < 4 K; `p + i` is aligned to 4 values |
-/// | `store(p, i, v, active)` | `p[i] = v` per active lane |
-/// | `store_packed(p, i, v, active)` | `p[i + k] = v[k]`, likewise |
-/// | `load_row(p, i, active)` | `p[i + lane]` per active lane; `i` is uniform and may be negative |
-/// | `load_row(p, i)` | `p[i + lane]` in every lane |
-/// | `store_row(p, i, v, active)` | `p[i + lane] = v` per active lane |
-/// | `sync()` | writes of any lane before it are visible to every lane after it |
-/// | `atomic(op, dst, i, v, active)` | per active lane, `*dst(i) = op::combine(*dst(i), v)`, relaxed |
+/// | `load(p, i, active)` | `p[i]` in active lanes, T{} without a read in inactive lanes; i < 2^31 |
+/// | `load_packed(p, i, v, active)` | `v[k] = p[i + k]` for k < N, N % 4 = 0; `p + i` is aligned to 4 T |
+/// | `store(p, i, v, active)` | `p[i] = v` in active lanes |
+/// | `store_packed(p, i, v, active)` | `p[i + k] = v[k]` in active lanes, as `load_packed` |
+/// | `load_row(p, i, active)` | `p[i + lane()]` in active lanes; `i` is uniform and may be negative |
+/// | `load_row(p, i)` | `p[i + lane()]` in every lane |
+/// | `store_row(p, i, v, active)` | `p[i + lane()] = v` in active lanes |
+/// | `sync()` | makes earlier writes of all lanes visible to all lanes |
+/// | `atomic(op, dst, i, v, active)` | `*dst(i) = op::combine(*dst(i), v)` per active lane, relaxed |
 template <class W>
 concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i, mask_t<W> p, float* m,
                         value_t<W, float> (&packed)[4], float* (*dst)(unsigned)) {
@@ -79,7 +79,7 @@ struct scalar_of<V> {
 
 }  // namespace detail
 
-/// The type of one lane of `V`: the `T` of a `value_t<W, T>`.
+/// The type of one lane's value: `T` for a `value_t<W, T>`.
 template <class V>
 using scalar_t = typename detail::scalar_of<V>::type;
 

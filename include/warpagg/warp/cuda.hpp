@@ -9,15 +9,15 @@ namespace warpagg {
 
 namespace detail::cuda_memory {
 
-/// The parameter type of CUDA's atomics on 64-bit integers; two's complement makes signed sums
-/// right.
+/// The parameter type of CUDA's atomics: unsigned for 64-bit integers, T otherwise. Signed sums are
+/// correct in two's complement.
 template <class T>
 using bits = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, unsigned long long, T>;
 template <class T>
 using integer = std::conditional_t<sizeof(T) == 8,
                                    std::conditional_t<std::is_signed_v<T>, long long, unsigned long long>, T>;
 
-/// Four values; of 32 bits each, one instruction loads or stores them.
+/// Four values. If they have 32 bits each, one instruction loads or stores all four.
 template <class T>
 struct alignas(16) four {
     T at[4];
@@ -62,14 +62,14 @@ requires Op::by_exchange __device__ __forceinline__ void atomic(Op, T* to, T v) 
 
 }  // namespace detail::cuda_memory
 
-/// The model of the concept `warp` for a GPU: the warp that the calling thread belongs to. Empty;
-/// every operation is one instruction or a few.
+/// The model of the concept `warp` for a GPU: the warp of the calling thread. The object is empty, and
+/// each operation is one or a few instructions.
 ///
-/// Precondition: all 32 lanes of the warp are launched and call each operation together. A lane
-/// takes part or not by its `active` argument; no mask is taken from `__activemask()`, so results
-/// do not depend on how the compiler converges lanes.
+/// Precondition: all 32 lanes of the warp are launched and call each operation together. The argument
+/// `active` tells whether a lane is active. No operation uses `__activemask()`, so results do not
+/// depend on how the compiler converges lanes.
 struct cuda_warp {
-    /// The operation of this name of the concept `warp`.
+    /// The member of this name of the concept `warp`.
     /// @{
     static constexpr unsigned size = 32;
     template <class T>
@@ -80,8 +80,8 @@ struct cuda_warp {
         asm("mov.u32 %0, %%laneid;" : "=r"(id));
         return id;
     }
-    /// Whether `lane() & Distance` is set, by one instruction; the compiler would shift the bit
-    /// down first.
+    /// Returns whether `lane() & Distance` is not zero. Cost: one AND; compilers add a shift to the
+    /// same expression in C++.
     template <unsigned Distance>
     __device__ __forceinline__ bool is_upper() const {
         unsigned bit;
@@ -151,14 +151,16 @@ struct cuda_warp {
     }
     /// @}
 
-    /// Compiles to RED, which returns nothing. Sums of float, double, integers of 32 and 64 bits,
-    /// `__half2`, `__nv_bfloat162`; the other operations of integers.
+    /// Sets `*dst(index) = Op::combine(*dst(index), v)` in active lanes, relaxed. Sums take float,
+    /// double, integers of 32 and 64 bits, `__half2` and `__nv_bfloat162`; the other operations take
+    /// integers of 32 and 64 bits. Cost: one RED instruction, an atomic without a result; operations on
+    /// words take a compare-and-swap loop.
     template <class Op, class Dst, class T>
     __device__ __forceinline__ void atomic(Op op, Dst dst, unsigned index, T v, bool active) const {
         if (active) detail::cuda_memory::atomic(op, dst(index), v);  // mutate: cuda_inactive_lanes_commit
     }
-    /// Whether `atomic_add_packed<K>` may add to to[0..K): in global memory, aligned, and on a
-    /// compute capability of 9.0 or more.
+    /// Returns whether `atomic_add_packed<K>` may add to to[0..K): the address is in global memory and
+    /// aligned to K floats, and the compute capability is 9.0 or more.
     template <unsigned K>
     __device__ __forceinline__ bool packs(const float* to) const {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
@@ -167,7 +169,8 @@ struct cuda_warp {
         return false;
 #endif
     }
-    /// Adds v[0..K) to to[0..K) by one RED. Precondition: `packs<K>(to)`, or K = 1.
+    /// Adds v[0..K) to to[0..K) in active lanes. Cost: one RED instruction. Precondition:
+    /// `packs<K>(to)`, or K = 1.
     template <unsigned K>
     __device__ __forceinline__ void atomic_add_packed(float* to, const float* v, bool active) const {
         if (!active) return;
@@ -184,8 +187,8 @@ struct cuda_warp {
         }
     }
 
-#if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ >= 800  // before, `reduce::redux` takes butterfly
-    /// `redux.sync`: v combined over the warp, in every lane. One instruction.
+#if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ >= 800  // on older devices `reduce::redux` uses butterfly
+    /// Returns v combined over the warp, in every lane. Cost: one instruction, `redux.sync`.
     /// @{
     __device__ __forceinline__ int redux(operation::sum, int v) const { return __reduce_add_sync(all, v); }
     __device__ __forceinline__ int redux(operation::minimum, int v) const {
@@ -218,8 +221,9 @@ struct cuda_warp {
     /// @}
 #endif
 
-    /// The flag, hidden from the compiler. Otherwise it splits a loop on a flag that is constant in
-    /// it; a warp with both flags would then run both halves and wait at every shuffle.
+    /// Returns the flag, but hides its value from the compiler. Otherwise the compiler splits a loop in
+    /// which the flag is constant. A warp whose lanes differ then runs both halves and waits at every
+    /// shuffle.
     __device__ __forceinline__ bool opaque(bool flag) const {
         unsigned known = flag;
         asm volatile("" : "+r"(known));
@@ -227,7 +231,8 @@ struct cuda_warp {
     }
 
 #if defined(WARPAGG_CHECKS)
-    /// With WARPAGG_CHECKS, a kernel that breaks a rule prints a sentence and traps.
+    /// Checks a rule, in programs compiled with WARPAGG_CHECKS. A kernel that violates it prints a
+    /// message and traps.
     __device__ void require_uniform(const void* destination) const {
         int same = 0;
         __match_all_sync(all, reinterpret_cast<unsigned long long>(destination), &same);
@@ -242,7 +247,7 @@ struct cuda_warp {
 #if defined(WARPAGG_CHECKS)
     __device__ void stop(const char* sentence) const {
         if (lane() == 0) printf("warpagg: block %u, thread %u: %s\n", blockIdx.x, threadIdx.x, sentence);
-        __syncwarp();  // after the sentence is printed
+        __syncwarp();  // lets lane 0 print before any lane traps
         __trap();
     }
 #endif
@@ -252,9 +257,9 @@ struct cuda_warp {
 static_assert(warp<cuda_warp>);
 
 #if defined(WARPAGG_OLD_CUDA_NAME)
-/// The former place of `cuda_warp`. Without the macro this namespace does not exist: beside `using
-/// namespace warpagg` it would make `cuda::` ambiguous, since the CUDA toolkit has a namespace of
-/// that name.
+/// A deprecated name of `cuda_warp`. It requires the macro WARPAGG_OLD_CUDA_NAME, because with `using
+/// namespace warpagg` this namespace makes `cuda::` ambiguous: the CUDA toolkit also has a namespace
+/// `cuda`.
 namespace cuda {
 using warp [[deprecated("use warpagg::cuda_warp")]] = cuda_warp;
 }  // namespace cuda

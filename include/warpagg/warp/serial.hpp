@@ -8,9 +8,10 @@
 /// Models of the concept `warp` for a CPU.
 namespace warpagg::emulator {
 
-/// A warp of one lane: the reference for the results of other models.
+/// A model of `warp` with one lane, the reference for the results of other models. Several threads
+/// may run warps that commit to the same memory.
 struct serial {
-    /// The operation of this name of the concept `warp`.
+    /// The member of this name of the concept `warp`.
     /// @{
     static constexpr unsigned size = 1;
     template <class T>

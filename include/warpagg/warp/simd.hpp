@@ -11,24 +11,25 @@
 
 namespace warpagg::emulator {
 
-/// Counts nothing and costs nothing.
+/// Counts no operations, at no cost.
 struct uncounted {
     static constexpr bool counts = false;  ///< whether operations are counted
 };
 
-/// Counts the operations of the warp in `*to`. Not thread-safe.
+/// Counts the warp's operations in `*to`. Warps on several threads need separate counters.
 struct counted {
     static constexpr bool counts = true;  ///< whether operations are counted
-    counters* to;                         ///< the counters
+    counters* to;                         ///< the counters to increment
 };
 
-/// The fast emulator: one thread runs a warp of 8, 16 or 32 lanes in SIMD registers. Lane values
-/// are `warpagg::simd_value<T, Size>`, so kernels are masked (`select`, uniform branches). Lanes
-/// commit in the order of their lane numbers. A value takes one register with 8 lanes; with 32
-/// lanes, as on a GPU, a kernel of more than a few values keeps most of them in memory.
+/// The fast emulator: one thread runs a warp of 8, 16 or 32 lanes in SIMD registers. The value type
+/// is `warpagg::simd_value<T, Size>`, so kernels are masked code: they use `select` and uniform
+/// branches. Lanes commit in the order of their numbers. A 32-bit value takes one register of 256
+/// bits with 8 lanes, and four with 32 lanes. A kernel with 32 lanes and many values therefore keeps
+/// most of them in memory.
 template <class Counting, unsigned Size = 32>
 struct basic_lanes : Counting {
-    /// The operation of this name of the concept `warp`.
+    /// The member of this name of the concept `warp`.
     /// @{
     static constexpr unsigned size = Size;
     template <class T>
@@ -217,7 +218,7 @@ struct basic_lanes : Counting {
 #if defined(__AVX2__)
             if constexpr (sizeof(T) == 4) {
                 if (_mm256_movemask_ps(reinterpret_cast<__m256>(active.part[i])) == 0xff) {
-                    std::memcpy(p, &v.part[i], sizeof v.part[i]);  // some CPUs take long over a masked store
+                    std::memcpy(p, &v.part[i], sizeof v.part[i]);  // faster than a masked store on some CPUs
                 } else {
                     _mm256_maskstore_epi32(reinterpret_cast<int*>(p),
                                            reinterpret_cast<__m256i>(active.part[i]),
@@ -242,7 +243,7 @@ struct basic_lanes : Counting {
 
     /// @}
 
-    /// `warp_reduce_atomic` tells how many lanes it was called with.
+    /// Counts a library call by its number of active lanes. The library calls this, not kernels.
     WARPAGG_HD void observe(const mask& active) const requires(Counting::counts) {
         ++this->to->active[static_cast<std::size_t>(std::popcount(bits(active)))];
     }
@@ -281,7 +282,7 @@ struct basic_lanes : Counting {
             r |= static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(p.part[i])))
                  << (i * p.width);
 #else
-        typename mask::element flags[size];  // subscripts of vectors go astray in GCC 12 with sanitizers
+        typename mask::element flags[size];  // subscripts of vectors fail in GCC 12 with sanitizers
         static_assert(sizeof flags == sizeof p.part);
         std::memcpy(flags, p.part, sizeof flags);
         WARPAGG_UNROLL
@@ -294,8 +295,8 @@ struct basic_lanes : Counting {
         for (; who != 0; who &= who - 1) f(std::countr_zero(who));
     }
 
-    /// f(i, records) for each chunk i of 8 lanes: where the record of each lies, or that of
-    /// inactive ones.
+    /// Calls f(i, records) for each chunk i of 8 lanes. `records` has the address of each active lane's
+    /// record, and `of_inactive` for each inactive lane.
     template <class T, class U, class F>
     static WARPAGG_HD void for_each_chunk(T* first, U* of_inactive, const value<unsigned>& index,
                                           const mask& active, const F& f) {
@@ -309,7 +310,7 @@ struct basic_lanes : Counting {
             f(i, record);
         }
     }
-    /// Eight values of 32 bits from four and four, and back.
+    /// Joins two groups of four 32-bit values into one chunk, or parts a chunk into two groups.
     /// @{
     template <class T, class Chunk>
     static WARPAGG_HD void join(const T* low, const T* high, Chunk& both) {
@@ -327,7 +328,7 @@ struct basic_lanes : Counting {
         std::memcpy(high, &h, sizeof h);
     }
     /// @}
-    /// Of four times eight values, the first four by four and the last four by four.
+    /// Transposes two 4×4 matrices: one in the lower halves of the four chunks, one in the upper halves.
     template <class Chunk>
     static WARPAGG_HD void transpose(Chunk (&c)[4]) {
         const Chunk a = __builtin_shufflevector(c[0], c[1], 0, 8, 1, 9, 4, 12, 5, 13);
@@ -384,11 +385,11 @@ struct basic_lanes : Counting {
     }
 };
 
-/// The fast emulator with 32 lanes.
+/// The fast emulator with 32 lanes and no counters.
 using lanes = basic_lanes<uncounted>;
-/// The same with counters: `counted_lanes{{&counters}}`.
+/// The fast emulator with 32 lanes and counters, as in `counted_lanes{{&counters}}`.
 using counted_lanes = basic_lanes<counted>;
-/// A warp of fewer lanes: 8 or 16.
+/// The fast emulator with 8 or 16 lanes and no counters.
 template <unsigned Size>
 using narrow_lanes = basic_lanes<uncounted, Size>;
 

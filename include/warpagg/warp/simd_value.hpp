@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// `simd_value<T, L>`: L values of T in SIMD registers. It uses the vector extension of GCC and
-/// Clang in chunks of 256 bits, because compilers do not vectorize plain arrays reliably. Not for
-/// nvcc, which rejects vector types in host-device templates: keep such code in `.cpp` files.
+/// `simd_value<T, L>`, which holds L values of T in SIMD registers. It uses the vector extension of
+/// GCC and Clang in chunks of 256 bits, because compilers do not vectorize plain arrays reliably.
+/// nvcc rejects vector types in host-device templates, so include this header in `.cpp` files only.
 
 #if defined(__AVX__)
 #include <immintrin.h>
@@ -23,7 +23,8 @@ namespace detail {
 
 constexpr int chunk_bytes = 32;
 
-/// A chunk holds flags as 32-bit all-ones or zero, the form that comparisons of 32-bit values give.
+/// The type of a stored value. A flag is stored as 32 bits, all ones or all zeros, because comparisons
+/// of 32-bit vectors return this form.
 template <class T>
 struct element {
     using type = T;
@@ -44,12 +45,13 @@ using chunk_t = typename chunk<T>::type;
 
 }  // namespace detail
 
-/// L values of T, one per lane: `float`, `double`, integers of 32 and 64 bits, `bool`. Has T's
-/// arithmetic and bitwise operators, and comparisons, which give `simd_value<bool, L>`; all work
-/// lane by lane, and a plain T stands for the same value in every lane.
+/// A SIMD value: L values of T, one per lane. T is `float`, `double`, `bool` or an integer of 32 or
+/// 64 bits. It has the arithmetic and bitwise operators of T, and comparisons that return
+/// `simd_value<bool, L>`. All of them work lane by lane. A plain T converts to the same value in
+/// every lane.
 template <class T, int L>
 struct simd_value {
-    /// What a lane holds, and how chunks of lanes are laid out.
+    /// The type of a lane's value, and the layout of lanes in chunks of 256 bits.
     /// @{
     using scalar = T;
     using element = detail::element_t<T>;
@@ -62,9 +64,9 @@ struct simd_value {
     chunk part[chunks];
     /// @}
 
-    /// Uninitialized.
+    /// Leaves the values uninitialized.
     simd_value() = default;
-    /// The same value in every lane.
+    /// Sets every lane to `value`.
     WARPAGG_HD simd_value(T value) {  // NOLINT: implicit, so that uniform values mix with lane values
         element e;
         if constexpr (std::is_same_v<T, bool>) {
@@ -76,9 +78,9 @@ struct simd_value {
         for (auto& p : part) p = e - chunk{};
     }
 
-    /// The stored value of one lane; a flag is stored as -1 or 0.
+    /// Returns the stored value of one lane, 0 <= lane < L. A flag is stored as -1 or 0.
     WARPAGG_HD element raw(int lane) const { return part[lane / width][lane % width]; }
-    /// The value of one lane, 0 <= lane < L.
+    /// Returns the value of one lane, 0 <= lane < L.
     WARPAGG_HD T operator[](int lane) const {
         if constexpr (std::is_same_v<T, bool>) {
             return raw(lane) != 0;
@@ -86,7 +88,7 @@ struct simd_value {
             return raw(lane);
         }
     }
-    /// Sets the value of one lane.
+    /// Sets the value of one lane, 0 <= lane < L.
     WARPAGG_HD void set(int lane, T value) {
         if constexpr (std::is_same_v<T, bool>) {
             part[lane / width][lane % width] = value ? -1 : 0;
@@ -95,7 +97,7 @@ struct simd_value {
         }
     }
 
-/// Defines an operator, lane by lane.
+/// Defines a binary operator and its assignment, lane by lane.
 #define WARPAGG_LANES_OPERATOR(op)                                                       \
     friend WARPAGG_HD simd_value operator op(const simd_value& a, const simd_value& b) { \
         simd_value r;                                                                    \
@@ -116,7 +118,7 @@ struct simd_value {
     WARPAGG_LANES_OPERATOR(>>)
 #undef WARPAGG_LANES_OPERATOR
 
-    /// Lane by lane, without short-circuit.
+    /// Applies the operator lane by lane. `&&` and `||` evaluate both operands.
     /// @{
     friend WARPAGG_HD simd_value operator-(const simd_value& a) {
         simd_value r;
@@ -140,7 +142,7 @@ struct simd_value {
     }
     /// @}
 
-/// Defines a comparison, lane by lane, where `allowed`.
+/// Defines a comparison, lane by lane, for types that satisfy `allowed`.
 #define WARPAGG_LANES_COMPARISON(op, allowed)                                                  \
     friend WARPAGG_HD simd_value<bool, L> operator op(const simd_value& a,                     \
                                                       const simd_value& b) requires(allowed) { \
@@ -157,7 +159,7 @@ struct simd_value {
     WARPAGG_LANES_COMPARISON(!=, true)
 #undef WARPAGG_LANES_COMPARISON
 
-    /// Chunk `i` of lanes of 64 bits, converted from lanes of 32 bits.
+    /// Converts the 32-bit lanes of `from` that belong to chunk `i` of this 64-bit type, into `to`.
     template <class From>
     static WARPAGG_HD void widen(const simd_value<From, L>& from, int i, chunk& to) {
         const auto& both = from.part[i / 2];
@@ -180,7 +182,7 @@ struct simd_value {
     }
 };
 
-/// The functions of `math`, lane by lane.
+/// The function of this name in `math`, lane by lane.
 /// @{
 template <class T, int L>
 WARPAGG_HD simd_value<T, L> select(const simd_value<bool, L>& mask, const simd_value<T, L>& yes,
@@ -211,7 +213,7 @@ requires(!std::is_same_v<T, bool>)
     WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
 #if defined(__AVX__)
-        if constexpr (std::is_same_v<T, float>) {  // GCC would compile a constant to a comparison and a blend
+        if constexpr (std::is_same_v<T, float>) {  // GCC compares and blends if an operand is constant
             r.part[i] = reinterpret_cast<typename simd_value<T, L>::chunk>(
                 _mm256_min_ps(reinterpret_cast<__m256>(b.part[i]), reinterpret_cast<__m256>(a.part[i])));
             continue;
@@ -228,7 +230,7 @@ requires(!std::is_same_v<T, bool>)
     WARPAGG_UNROLL
     for (int i = 0; i < r.chunks; ++i) {
 #if defined(__AVX__)
-        if constexpr (std::is_same_v<T, float>) {  // GCC would compile a constant to a comparison and a blend
+        if constexpr (std::is_same_v<T, float>) {  // GCC compares and blends if an operand is constant
             r.part[i] = reinterpret_cast<typename simd_value<T, L>::chunk>(
                 _mm256_max_ps(reinterpret_cast<__m256>(b.part[i]), reinterpret_cast<__m256>(a.part[i])));
             continue;
@@ -249,7 +251,7 @@ requires(!std::is_same_v<T, bool>)
     return max(a, simd_value<T, L>(b));
 }
 
-/// a * b + c, rounded once.
+/// Returns a * b + c, rounded once.
 template <class T, int L>
 WARPAGG_HD simd_value<T, L> fma(const simd_value<T, L>& a, const simd_value<T, L>& b,
                                 const simd_value<T, L>& c) {
@@ -318,9 +320,10 @@ WARPAGG_HD simd_value<To, L> convert(const simd_value<From, L>& a) {
     return r;
 }
 
-/// 2^a, within 1 ulp for a in [-126, 128); beyond, the nearest of these counts, as no caller needs
-/// denormals and they make x86 several times slower. 2^a = 2^n 2^f with n = round(a), f in [-1/2,
-/// 1/2]; 2^f by the polynomial of degree 6 with p(0) = 1 and least relative error, 2e-9.
+/// Returns 2^x, within 1 ulp for x in [-126, 128). Other arguments are clamped to this range, because
+/// no caller needs denormals, which are slow on x86. The float version computes 2^x = 2^n 2^f with
+/// n = round(x) and f in [-1/2, 1/2]. For 2^f it takes the polynomial of degree 6 with p(0) = 1 and the
+/// least relative error, 2e-9.
 template <int L>
 WARPAGG_HD simd_value<float, L> exp2(const simd_value<float, L>& x) {
     using real = simd_value<float, L>;
@@ -352,9 +355,9 @@ WARPAGG_HD simd_value<double, L> exp2(const simd_value<double, L>& a) {
     return r;
 }
 
-/// log2 of a, within 3 ulp for normal a > 0; -127 for zero, and of no meaning for all others. With
-/// a = 2^n m and m in [sqrt(1/2), sqrt(2)), log2(m) is 2 / ln 2 artanh(s) of s = (m - 1) / (m + 1),
-/// whose series ends at s^11, where the rest is 2e-11 of it.
+/// Returns log2(a), within 3 ulp for normal a > 0, and -127 for zero. The float version is undefined
+/// for other arguments. With a = 2^n m and m in [sqrt(1/2), sqrt(2)), log2(m) is 2 / ln 2 artanh(s) for
+/// s = (m - 1) / (m + 1). Its series is cut after s^11; the relative error of the cut is 2e-11.
 template <int L>
 WARPAGG_HD simd_value<float, L> log2(const simd_value<float, L>& a) {
     using real = simd_value<float, L>;
@@ -398,7 +401,7 @@ WARPAGG_HD simd_value<std::uint32_t, L> countr_zero(const simd_value<std::uint32
     for (int k = 0; k < L; ++k) r.set(k, math::countr_zero(a[k]));
     return r;
 }
-/// a + b; of integers modulo 2^bits, signed ones too.
+/// Returns a + b. Integers wrap modulo 2^bits, signed ones too.
 template <class T, int L>
 WARPAGG_HD simd_value<T, L> wrapping_add(const simd_value<T, L>& a, const simd_value<T, L>& b) {
     if constexpr (std::is_integral_v<T> && std::is_signed_v<T>) {
@@ -421,8 +424,8 @@ WARPAGG_HD T uniform(const simd_value<T, L>& a) {
 }
 /// @}
 
-/// For masked code that names them in full; unqualified calls find them by argument-dependent
-/// lookup.
+/// Makes the functions available in `math`, for masked code that qualifies calls. Argument-dependent
+/// lookup finds them for unqualified calls.
 namespace math {
 using warpagg::abs;
 using warpagg::convert;
