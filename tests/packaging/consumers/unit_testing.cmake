@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
 #
-# Part of run.cmake. The project of docs/unit_testing.md, which is examples/unit_testing: its tests pass, and the page
+# Part of run.cmake. The project of docs/tutorials/first_unit_test.md, which is examples/unit_testing: its tests pass, and the page
 # shows its files and its output as they are.
 set(project "${SOURCE_DIR}/examples/unit_testing")
 set(build "${WORK_DIR}/unit_testing")
-file(READ "${SOURCE_DIR}/docs/unit_testing.md" page)
+file(READ "${SOURCE_DIR}/docs/tutorials/first_unit_test.md" page)
 
 function(must_be_on_page what text)
     string(FIND "${page}" "${text}" at)
     if(at EQUAL -1)
-        message(FATAL_ERROR "docs/unit_testing.md does not show ${what} as it is:\n${text}")
+        message(FATAL_ERROR "docs/tutorials/first_unit_test.md does not show ${what} as it is:\n${text}")
     endif()
 endfunction()
 
