@@ -3,9 +3,10 @@
 #pragma once
 
 /// @file
-/// Lets the emulator `checked` fork, to diagnose every dependence of memory on undefined values. Include this
-/// header in exactly one source file of a test program. Without it `checked` diagnoses only undefined floats
-/// and doubles that are written, or that a written value is computed from.
+/// Enables shadow processes, with which the model `checked` diagnoses all writes that depend on undefined
+/// values. Include this header in exactly one source file of a test program. Without it, `checked` diagnoses
+/// only written floats and doubles that are undefined or computed from undefined ones. Requires POSIX. Cost:
+/// one fork per launch that reads an undefined value.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -25,10 +26,10 @@
 
 namespace warpagg::emulator::detail {
 
-/// A shadow process that is a fork of this one. The child prints nothing and ends with the launch.
+/// A shadow process made by fork(). The child prints nothing and ends with the launch.
 class forked_shadow_process final : public shadow_process {
   public:
-    /// Forks.
+    /// Forks this process. Aborts the program if that fails.
     forked_shadow_process() {
         int ends[2];
         if (pipe(ends) != 0 || (child_ = fork()) < 0) {
@@ -39,7 +40,7 @@ class forked_shadow_process final : public shadow_process {
         close(ends[child_ == 0 ? 0 : 1]);
         if (child_ == 0) {
             sanitizers::forked() = true;
-            // The parent prints what the kernel prints.
+            // Only the parent shows the kernel's output.
             const int nowhere = open("/dev/null", O_WRONLY);
             dup2(nowhere, STDOUT_FILENO);
             dup2(nowhere, STDERR_FILENO);
@@ -74,7 +75,7 @@ class forked_shadow_process final : public shadow_process {
             first += written;
             left -= static_cast<std::size_t>(written);
         }
-        close(pipe_);  // the parent goes on at this point, however long this process takes to end
+        close(pipe_);  // the parent continues here and does not wait for the exit
         _exit(EXIT_SUCCESS);
     }
 
@@ -106,7 +107,7 @@ class forked_shadow_process final : public shadow_process {
     std::size_t first_difference_ = 0;
 };
 
-/// Not inline: a second definition in the program is one too many.
+/// Starts a shadow process. It is not inline, so that two inclusions in one program fail to link.
 std::unique_ptr<shadow_process> fork_shadow_process() { return std::make_unique<forked_shadow_process>(); }
 
 namespace {

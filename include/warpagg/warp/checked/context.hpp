@@ -3,10 +3,10 @@
 #pragma once
 
 /// @file
-/// Contexts of execution and switches between them: a few instructions on x86-64; on other
-/// machines, and with WARPAGG_UCONTEXT, ucontext, which asks the system for the signal mask at
-/// every switch. AddressSanitizer and ThreadSanitizer are informed. Floating-point modes belong to
-/// the thread, not to the fiber.
+/// Contexts of execution, and switches between them. On x86-64 a switch takes a few instructions.
+/// Other machines, and builds with WARPAGG_UCONTEXT, use ucontext, which makes a system call per
+/// switch. Switches inform AddressSanitizer and ThreadSanitizer. Floating-point modes belong to the
+/// thread, not to the fiber.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +22,8 @@
 namespace warpagg::emulator::detail {
 
 #if defined(WARPAGG_FIBER_SWITCH_X86_64)
-/// Pushes the callee-saved registers, stores the stack pointer in *from and continues at `to`.
+/// Pushes the callee-saved registers, stores the stack pointer in `*from`, loads it from `to`, and
+/// continues there.
 __attribute__((naked, noinline)) WARPAGG_NO_SANITIZE inline void switch_stack(void** /*from*/, void* /*to*/) {
     asm volatile(
         "pushq %rbp\n pushq %rbx\n pushq %r12\n pushq %r13\n pushq %r14\n pushq %r15\n"
@@ -31,7 +32,7 @@ __attribute__((naked, noinline)) WARPAGG_NO_SANITIZE inline void switch_stack(vo
 }
 #endif
 
-/// Either a fiber, after `start_at`, or the thread's own stack.
+/// A context: a fiber after `start_at`, and otherwise the thread's own stack.
 class context {
   public:
     context() = default;
@@ -39,8 +40,8 @@ class context {
     context& operator=(const context&) = delete;
     ~context() { forget_fiber(); }
 
-    /// The next switch to this context calls `entry` on the given stack, whose former content is
-    /// lost. `entry` must not return.
+    /// Makes the next switch to this context call `entry` on the given stack of `size` bytes, whose
+    /// content is lost. Precondition: `entry` does not return.
     void start_at(char* stack, std::size_t size, void (*entry)()) {
         forget_fiber();
         bottom_ = stack;
@@ -65,8 +66,8 @@ class context {
 #endif
     }
 
-    /// Switches from this context, which must be the running one, to `to`. Returns when another
-    /// context switches back.
+    /// Switches from this context to `to`. Returns when another context switches back. Precondition:
+    /// this context is running.
     void switch_to(context& to) {
         if (tsan_fiber_ == nullptr) tsan_fiber_ = sanitizers::current_fiber();
         to.came_from_ = this;
@@ -80,12 +81,12 @@ class context {
         arrived(fake_stack);
     }
 
-    /// An `entry` calls this first, on its own context.
+    /// Ends a switch to this context. Each `entry` must call this first, on its own context.
     void arrived(void* fake_stack = nullptr) {
         const void* bottom = nullptr;
         std::size_t size = 0;
         sanitizers::finish_switch(fake_stack, &bottom, &size, owns_fiber_, ignores_);
-        if (came_from_->bottom_ == nullptr) {  // the thread's own stack, seen for the first time
+        if (came_from_->bottom_ == nullptr) {  // the first switch from the thread's own stack
             came_from_->bottom_ = bottom;
             came_from_->size_ = size;
         }

@@ -13,21 +13,21 @@ namespace warpagg::emulator {
 
 /// The rule that a kernel violated; docs/unit_testing.md shows an example of each.
 enum class diagnosis {
-    none,                     ///< nothing
+    none,                     ///< no rule was violated
     lane_not_in_mask,         ///< a lane calls a masked operation with a mask that lacks its own bit
-    collective_not_reached,   ///< some lanes wait for others that have returned or wait at the barrier
-    different_call_sites,     ///< lanes wait for one another at different places
-    different_masks,          ///< lanes wait for one another at one place, each with a mask of its own
-    different_iterations,     ///< lanes meet at one place in different iterations of a loop over `iterations`
-    destination_not_uniform,  ///< lanes name different destinations
+    collective_not_reached,   ///< lanes wait for others that have returned or wait at the barrier
+    different_call_sites,     ///< lanes wait for one another at different call sites
+    different_masks,          ///< lanes wait for one another at one call site with different masks
+    different_iterations,     ///< lanes meet in different iterations of a loop over `iterations`
+    destination_not_uniform,  ///< the lanes' destinations differ
     inactive_lane_read,       ///< memory depends on a value read from a lane that took no part
-    idle_warp,                ///< `assume_busy`, but no lane is active
-    mixed_access,             ///< atomic and plain accesses to one address, not ordered by a barrier or sync
-    data_race,                ///< a plain write and another plain access to one address, not ordered
-    barrier_not_reached,      ///< a thread has returned, and others wait for it at the barrier
+    idle_warp,                ///< `assume_busy` is set, but no lane is active
+    mixed_access,             ///< an atomic and a plain access to one address are not ordered
+    data_race,                ///< a plain write and another plain access to one address are not ordered
+    barrier_not_reached,      ///< threads wait at the barrier for a thread that has returned
 };
 
-/// The name, as in the enumeration.
+/// Returns the name of a diagnosis, as in the enumeration.
 inline const char* name(diagnosis what) {
     constexpr const char* names[] = {"none",
                                      "lane_not_in_mask",
@@ -47,23 +47,23 @@ inline const char* name(diagnosis what) {
 /// The result of a launch.
 struct report {
     diagnosis what = diagnosis::none;  ///< the violated rule
-    call_site at{};                    ///< the call in the kernel
-    call_site other{};                 ///< the other call involved; `file` is null if there is none
-    std::uint32_t lanes = 0;           ///< bit i: lane i violated the rule
-    unsigned block = 0;                ///< of these lanes
-    unsigned warp = 0;                 ///< of these lanes, within the block
+    call_site at{};                    ///< the call in the kernel that violated it
+    call_site other{};                 ///< a second call that is involved; if none, `file` is null
+    std::uint32_t lanes = 0;           ///< bit i is set if lane i violated the rule
+    unsigned block = 0;                ///< index of the block of these lanes
+    unsigned warp = 0;                 ///< index of their warp within the block
     std::string sentence;              ///< a description
-    std::uint64_t seed = 0;            ///< of the schedule, whether or not there was a diagnosis
+    std::uint64_t seed = 0;            ///< seed of the schedule, also without a diagnosis
 
-    /// Whether no rule was violated.
+    /// Returns whether no rule was violated.
     bool ok() const { return what == diagnosis::none; }
-    /// The whole report as text; empty if ok.
+    /// Returns the whole report as text, or an empty string if `ok()`.
     std::string text() const;
 };
 
 namespace detail {
 
-/// "lanes 0-3, 7".
+/// Returns a text such as "lanes 0-3, 7".
 inline std::string lanes_text(std::uint32_t lanes) {
     std::string list;
     unsigned count = 0;
@@ -79,14 +79,14 @@ inline std::string lanes_text(std::uint32_t lanes) {
     return (count == 1 ? "lane " : "lanes ") + list;
 }
 
-/// The same with a capital, to begin a sentence.
+/// Returns a text such as "Lanes 0-3, 7", for the start of a sentence.
 inline std::string lanes_sentence(std::uint32_t lanes) {
     std::string text = lanes_text(lanes);
     text[0] = 'L';
     return text;
 }
 
-/// "kernel.hpp:12, any".
+/// Returns a text such as "kernel.hpp:12, any".
 inline std::string site_text(const call_site& site) {
     return std::string(site.file) + ":" + std::to_string(site.line) + ", " + site.function;
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// The text of each diagnosis.
+/// Functions that describe violations in sentences.
 
 #include <bit>
 #include <cstdint>
@@ -41,7 +41,7 @@ inline violation out_of_step(const call_site& at, std::uint32_t lanes, std::uint
                 " in different iterations of a loop."};
 }
 
-/// No lane of the warp can continue, and some wait for others.
+/// Describes a warp in which no lane can continue and some lanes wait for others.
 inline violation stuck(const warp_state& w) {
     const lane_state& first = w.lane[first_of(w.waiting)];
     std::uint32_t here = 0;
@@ -124,7 +124,7 @@ inline violation conflict(const access& before, const access& now) {
                                            : ", and nothing orders blocks of one launch.")};
 }
 
-/// The write at `at` depends on the value of `read`.
+/// Describes a write at `at` that depends on the undefined value of `read`.
 inline violation inactive_lane_read(const undefined_read& read, const call_site& at) {
     const unsigned lane = read.thread % warp_state::size;
     return {diagnosis::inactive_lane_read, at, read.at, 1u << lane,

@@ -15,15 +15,15 @@
 
 namespace warpagg::emulator::detail {
 
-/// A context with its own stack. The page below the stack is not accessible, so that a stack
-/// overflow crashes.
+/// A context with its own stack. The page below the stack is not accessible, so a stack overflow
+/// crashes the program.
 class fiber {
   public:
-    /// The system provides memory only for the part of the stack that a lane uses.
+    /// Size of a stack in bytes. The system provides memory only for the part that a lane uses.
     static constexpr std::size_t stack_size = 256 * 1024;
 
-    /// `number` shifts the frames of a fiber within its stack; otherwise the same frames of all
-    /// fibers would share a cache set.
+    /// Maps the stack, or aborts the program. `number` shifts the frames within the stack; otherwise
+    /// equal frames of all fibers would share a cache set.
     explicit fiber(std::size_t number) : size_(stack_size - number % 32 * (17 * 64)) {
         void* memory = mmap(nullptr, page() + stack_size, PROT_READ | PROT_WRITE,
                             MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -40,12 +40,12 @@ class fiber {
         munmap(mapping_, page() + stack_size);
     }
 
-    /// The next switch to the context starts `loop`, or continues it after `park`.
+    /// Makes the next switch to the context start `loop`, or continue it after `park`.
     void prepare(void (*loop)()) {
         if (!parked_) context_.start_at(stack(), size_, loop);
         parked_ = false;
     }
-    /// Called by the loop before it switches away at the end of a round.
+    /// Marks the end of a round. The loop calls this before it switches away.
     void park() { parked_ = true; }
 
     context& own_context() { return context_; }
@@ -67,7 +67,7 @@ class fiber {
     bool parked_ = false;
 };
 
-/// The fibers of a thread, reused by its launches.
+/// The fibers of a thread, which its launches reuse.
 class fiber_pool {
   public:
     static fiber_pool& of_this_thread() {

@@ -21,12 +21,12 @@ void for_each_lane(std::uint32_t lanes, F f) {
     for (; lanes != 0; lanes &= lanes - 1) f(first_of(lanes));
 }
 
-/// A lane that waits at a collective.
+/// The call with which a lane waits at a collective.
 struct arrival {
     std::uint32_t mask;   ///< the lanes that meet
-    bool all_lanes;       ///< whether a lane of the mask that has returned is an error
-    unsigned value_size;  ///< size of the operand type
-    call_site at;         ///< in the library, if the library calls the collective
+    bool all_lanes;       ///< whether it is an error if a lane of the mask has returned
+    unsigned value_size;  ///< size of the value type in bytes
+    call_site at;         ///< the call, which may be in the library
     void* operands;       ///< the operands of this lane, of a type that `complete` knows
     void (*complete)(simulator&, unsigned warp, std::uint32_t lanes);  ///< null for activemask
 };
@@ -42,7 +42,7 @@ struct lane_state {
     std::vector<call_site> calls;   ///< active calls of the library, outermost first
     std::vector<loop_frame> loops;  ///< active loops over `iterations`, outermost first
 
-    /// The line in the kernel, also for calls within the library.
+    /// Returns the call site in the kernel, also for calls that the library makes.
     const call_site& kernel_site(const call_site& here) const { return calls.empty() ? here : calls.front(); }
     const call_site& site() const { return kernel_site(at.at); }
 
@@ -51,7 +51,7 @@ struct lane_state {
                // mutate: call_sites_not_compared
                same(at.at.function, b.at.at.function) && same(at.at, b.at.at) && same(site(), b.site());
     }
-    /// Whether the two are in different iterations of one loop.
+    /// Returns whether the two lanes are in different iterations of one loop.
     bool out_of_step(const lane_state& b) const {
         for (std::size_t depth = 0; depth < loops.size() && depth < b.loops.size(); ++depth) {
             if (!same(loops[depth].at, b.loops[depth].at)) return false;
@@ -65,8 +65,8 @@ struct warp_state {
     static constexpr unsigned size = 32;
 
     std::array<lane_state, size> lane;
-    std::uint32_t waiting = 0;   ///< at a collective of the warp, or for activemask
-    std::uint32_t returned = 0;  ///< from the kernel
+    std::uint32_t waiting = 0;   ///< lanes that wait at a collective or in activemask
+    std::uint32_t returned = 0;  ///< lanes that have returned from the kernel
     std::uint32_t in_barrier = 0;
 
     /// Vector clocks: known[a][b] is the number of synchronizations of lane b that lane a has seen.
@@ -78,7 +78,7 @@ struct warp_state {
 
     bool stands() const { return (waiting | returned | in_barrier) == ~std::uint32_t{0}; }
 
-    /// Orders all earlier accesses of these lanes before all their later ones.
+    /// Orders all earlier accesses of these lanes before all later accesses of these lanes.
     void synchronize(std::uint32_t lanes) {
         std::array<std::uint32_t, size> all{};
         for_each_lane(lanes, [&](unsigned a) {

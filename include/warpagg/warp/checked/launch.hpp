@@ -15,18 +15,20 @@ namespace warpagg::emulator {
 /// The parameters of a launch.
 struct grid {
     unsigned blocks = 1;                  ///< number of blocks
-    unsigned threads = 32;                ///< per block: a multiple of 32, up to 1024
-    std::optional<std::uint64_t> seed{};  ///< of the schedule; default: $WARPAGG_SEED, or 1
-    counters* count = nullptr;            ///< counts the operations of all warps; or null
+    unsigned threads = 32;                ///< threads per block: a multiple of 32, from 32 to 1024
+    std::optional<std::uint64_t> seed{};  ///< seed of the schedule; default: $WARPAGG_SEED, or 1
+    counters* count = nullptr;            ///< counters for the operations of all warps, or null
 };
 
-/// Runs `kernel(const checked& w)` once per thread. Blocks run one after the other, in an order
-/// drawn from the seed; the threads of a block take turns, as drawn from the seed. After a
-/// diagnosis the launch ends: lanes do not continue, and destructors of objects on their stacks do
-/// not run. An exception that leaves the kernel leaves `try_launch`, too.
+/// Runs `kernel(const checked& w)` once per thread and returns the report. The seed determines the
+/// order of blocks, which run one after the other, and the turns of a block's threads. A diagnosis
+/// ends the launch: lanes do not continue, and destructors of objects on their stacks do not run.
 ///
-/// Cost: one switch of fibers per operation of each lane, which is slow, but fit for tests. A
-/// launch uses one thread of the process; several threads may launch at the same time.
+/// Errors: rethrows an exception that leaves the kernel. Aborts the program if `g.threads` is not
+/// allowed.
+///
+/// Cost: about one switch of fibers per operation of each lane, which is fast enough for tests only.
+/// A launch uses one thread of the process; several threads may launch at the same time.
 template <class Kernel>
 report try_launch(const grid& g, const Kernel& kernel) {
     if (g.threads == 0 || g.threads > 1024 || g.threads % 32 != 0) {
@@ -40,7 +42,7 @@ report try_launch(const grid& g, const Kernel& kernel) {
     });
 }
 
-/// The same, but prints a diagnosis on stderr and aborts the program.
+/// Works as `try_launch`, but prints a diagnosis on stderr and aborts the program.
 template <class Kernel>
 void launch(const grid& g, const Kernel& kernel) {
     const report r = try_launch(g, kernel);

@@ -13,36 +13,36 @@
 namespace warpagg::emulator {
 
 /// The checked model of `warp`, as one lane sees it. Each lane is a fiber that runs the kernel by
-/// itself, so kernels are ordinary scalar code (`if`, loops, early returns), and `value_t<checked,
-/// T>` is `T`. Violations of the rules are diagnosed. `try_launch` creates the lanes;
-/// docs/unit_testing.md shows how to use it.
+/// itself. Kernels are therefore ordinary scalar code (`if`, loops, early returns), and
+/// `value_t<checked, T>` is `T`. The model diagnoses violations of the rules. `try_launch` creates
+/// the lanes; docs/unit_testing.md shows how to use it.
 ///
-/// All lanes call the operations of the concept, `sync()` and `barrier()`; a lane that has returned
-/// is an error. The operations that end in `_sync`, and `sync(mask)`, are those of CUDA, for the
-/// lanes of the mask that have not returned. A single lane may call `load`, `store` and the like,
-/// also in branches. As on CUDA, only `sync` and `barrier` order memory accesses. The last
-/// parameter of each operation is the place of the call; leave it to its default.
+/// All lanes must call the collectives of the concept, `sync()` and `barrier()`; it is an error if
+/// a lane has returned. The operations that end in `_sync`, and `sync(mask)`, work as CUDA's: the
+/// lanes of the mask that have not returned must call them. A single lane may call `load`, `store`
+/// and their variants, also in branches. As on CUDA, only `sync` and `barrier` order memory
+/// accesses. The last parameter of each operation is the call site; leave it at its default.
 class checked {
   public:
-    /// The operation of this name of the concept `warp`.
+    /// The member of this name of the concept `warp`.
     /// @{
     static constexpr unsigned size = 32;
     template <class T>
     using value = T;
     /// @}
 
-    /// Called by `launch`.
+    /// Creates the model for the running lane. `try_launch` calls this.
     explicit checked(detail::simulator& m) : simulator_(&m) {}
 
-    unsigned lane() const { return simulator_->lane(); }            ///< in the warp
-    unsigned thread_index() const { return simulator_->thread(); }  ///< in the block
-    unsigned block_size() const { return simulator_->threads(); }   ///< in threads
-    unsigned block_index() const { return simulator_->block(); }    ///< in the grid
-    unsigned grid_size() const { return simulator_->blocks(); }     ///< in blocks
+    unsigned lane() const { return simulator_->lane(); }            ///< Number of the lane in its warp
+    unsigned thread_index() const { return simulator_->thread(); }  ///< Index of the thread in its block
+    unsigned block_size() const { return simulator_->threads(); }   ///< Number of threads per block
+    unsigned block_index() const { return simulator_->block(); }    ///< Index of the block in the grid
+    unsigned grid_size() const { return simulator_->blocks(); }     ///< Number of blocks in the grid
 
     // ------------------------------------------------------- for all lanes
 
-    /// The operation of this name of the concept `warp`.
+    /// The collective of this name of the concept `warp`.
     /// @{
     std::uint32_t ballot(bool p, call_site at = call_site::here("ballot")) const {
         return vote(all_lanes, p, at);
@@ -67,8 +67,8 @@ class checked {
 
     /// @}
 
-    /// All lanes call this; the active ones commit one after the other, in an order drawn from the
-    /// seed, with lanes of other warps in between.
+    /// Commits the values of active lanes. All lanes call this. Active lanes commit one after another,
+    /// in an order drawn from the seed, in which lanes of other warps may intervene.
     template <class Op, class Dst, class T>
     WARPAGG_OUT_OF_LINE void atomic(Op op, Dst dst, unsigned index, T v, bool active,
                                     call_site at = call_site::here("atomic")) const {
@@ -82,15 +82,15 @@ class checked {
         detail::atomic(op, to, v);
     }
 
-    /// `__syncwarp()`: orders the earlier memory accesses of all lanes before the later ones.
+    /// Works as `__syncwarp()`: orders all lanes' earlier memory accesses before their later ones.
     void sync(call_site at = call_site::here("sync")) const { synchronize(all_lanes, at); }
-    /// `__syncthreads()`.
+    /// Works as `__syncthreads()`. All threads of the block call this.
     void barrier(call_site at = call_site::here("barrier")) const { simulator_->barrier(at); }
 
     // ------------------------------------------------------- for the lanes of a mask
 
-    /// The CUDA function of this name with two leading underscores. All lanes of the mask that have
-    /// not returned call it with the same mask.
+    /// Works as the CUDA function of this name with two leading underscores. All lanes of the mask that
+    /// have not returned call this with the same mask.
     /// @{
     std::uint32_t ballot_sync(std::uint32_t mask, bool p,
                               call_site at = call_site::here("ballot_sync")) const {
@@ -104,8 +104,8 @@ class checked {
                                  call_site at = call_site::here("match_any_sync")) const {
         return equal({mask}, key, at);
     }
-    /// A value read from a lane that is not in the mask, or has returned, is undefined; memory must
-    /// not depend on it.
+    /// Works as the CUDA function of this name. A value from a lane that is not in the mask, or has
+    /// returned, is undefined; memory must not depend on it.
     template <class T>
     T shfl_sync(std::uint32_t mask, T v, unsigned from, call_site at = call_site::here("shfl_sync")) const {
         return exchange({mask}, v, from % size, at);
@@ -121,12 +121,12 @@ class checked {
         return exchange({mask}, v, (lane() ^ distance) % size, at);
     }
     /// @}
-    /// `__syncwarp(mask)`.
+    /// Works as `__syncwarp(mask)`.
     void sync(std::uint32_t mask, call_site at = call_site::here("sync")) const { synchronize({mask}, at); }
 
-    /// `__activemask()`: some of the lanes that wait at this line, including the caller. The named
-    /// lanes get the same answer. The seed decides the rest, because a compiler may split lanes in
-    /// any way.
+    /// Works as `__activemask()`: returns some of the lanes that wait at this line, with the caller
+    /// among them. All lanes in the result get the same result. The seed decides which lanes these
+    /// are, because a compiler may split lanes in any way.
     std::uint32_t activemask(call_site at = call_site::here("activemask")) const {
         std::uint32_t mask = 0;
         simulator_->meet({~std::uint32_t{0}, false, 0, at, &mask, nullptr});
@@ -172,8 +172,8 @@ class checked {
     }
     /// @}
 
-    /// An uninitialized array of `n` values that the block shares and that this line declares, as
-    /// `__shared__ T a[n]` does.
+    /// Returns an uninitialized array of `n` values in the block's shared memory. The line of the call
+    /// identifies the array, as in a declaration `__shared__ T a[n]`.
     template <class T>
     watched<T> shared(std::size_t n, call_site at = call_site::here("shared")) const {
         return {static_cast<T*>(simulator_->shared().at(at, n * sizeof(T))), n};
@@ -181,7 +181,7 @@ class checked {
 
     // ------------------------------------------------------- for the library
 
-    /// Called by the library, not by kernels.
+    /// Informs or checks the simulator. The library calls this, not kernels.
     /// @{
     void enter(const call_site& at) const { simulator_->self().calls.push_back(at); }
     void leave() const { simulator_->self().calls.pop_back(); }

@@ -3,7 +3,8 @@
 #pragma once
 
 /// @file
-/// Informs AddressSanitizer and ThreadSanitizer of fibers; empty without them.
+/// Functions that inform AddressSanitizer and ThreadSanitizer of fibers. Without sanitizers they do
+/// nothing.
 
 #include <cstddef>
 
@@ -41,7 +42,7 @@ void AnnotateIgnoreWritesEnd(const char* file, int line);
 
 namespace warpagg::emulator::detail {
 
-/// Removes the marks of former frames of a stack.
+/// Removes AddressSanitizer's marks of earlier frames from a stack of `size` bytes.
 inline void unpoison([[maybe_unused]] const void* stack, [[maybe_unused]] std::size_t size) {
 #if defined(WARPAGG_ASAN)
     __asan_unpoison_memory_region(stack, size);
@@ -70,14 +71,15 @@ inline void destroy_fiber([[maybe_unused]] void* fiber) {
 #endif
 }
 
-/// Whether this is a child process after a fork. There ThreadSanitizer reports false races, since
-/// it ignores synchronization after a fork and takes fibers for threads.
+/// A flag that is set in a forked child process. There ThreadSanitizer reports false races, because it
+/// ignores synchronization after a fork and takes fibers for threads.
 inline bool& forked() {
     static bool yes = false;
     return yes;
 }
 
-/// Called right before a switch. `ignores`: what `finish_switch` set for the fiber that is left.
+/// Announces a switch to `fiber`, whose stack has `size` bytes from `bottom`. Call it right before the
+/// switch. `ignores` is the flag that `finish_switch` set for the fiber that is left.
 WARPAGG_NO_SANITIZE inline void start_switch([[maybe_unused]] void** fake_stack,
                                              [[maybe_unused]] const void* bottom,
                                              [[maybe_unused]] std::size_t size, [[maybe_unused]] void* fiber,
@@ -95,8 +97,9 @@ WARPAGG_NO_SANITIZE inline void start_switch([[maybe_unused]] void** fake_stack,
     __tsan_switch_to_fiber(fiber, 0);
 #endif
 }
-/// Called right after a switch; returns the stack that was left. `lane`: a fiber was entered, not
-/// the thread's own stack. Sets `ignores` if ThreadSanitizer ignores what the fiber accesses now.
+/// Completes a switch, and returns the stack that was left in `*bottom` and `*size`. Call it right
+/// after the switch. `lane` tells whether a fiber was entered, not the thread's own stack. Sets
+/// `ignores` if ThreadSanitizer ignores the fiber's accesses from here on.
 WARPAGG_NO_SANITIZE inline void finish_switch([[maybe_unused]] void* fake_stack,
                                               [[maybe_unused]] const void** bottom,
                                               [[maybe_unused]] std::size_t* size, [[maybe_unused]] bool lane,

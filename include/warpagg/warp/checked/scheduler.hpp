@@ -11,21 +11,21 @@
 
 namespace warpagg::emulator::detail {
 
-/// Runs the threads of a block, each a fiber, one at a time, in random order.
+/// Runs the threads of a block as fibers, one at a time, in random order.
 class scheduler {
   public:
     explicit scheduler(random_source& random) : random_(random) {}
     scheduler(const scheduler&) = delete;
     scheduler& operator=(const scheduler&) = delete;
     ~scheduler() {
-        while (!fibers_.empty()) {  // so that the next launch gets them in the same order
+        while (!fibers_.empty()) {  // from the back, so that the next launch takes them in the same order
             fiber_pool::of_this_thread().give_back(std::move(fibers_.back()));
             fibers_.pop_back();
         }
     }
 
-    /// Each of `threads` fibers runs `loop`, which must call `begin` once and then `finish` after
-    /// each round. Returns when all have finished or one has called `abandon`.
+    /// Runs one round of `loop` on each of `threads` fibers. `loop` must call `begin` once, and
+    /// `finish` after each round. Returns when all fibers have finished, or one has called `abandon`.
     void run(unsigned threads, void (*loop)()) {
         while (fibers_.size() < threads) fibers_.push_back(fiber_pool::of_this_thread().take());
         runnable_.clear();
@@ -39,10 +39,10 @@ class scheduler {
 
     unsigned current() const { return current_; }
     void begin() { fibers_[current_]->own_context().arrived(); }
-    /// Whether the address lies on the stack of the running fiber.
+    /// Returns whether the address lies on the stack of the running fiber.
     bool on_stack(const void* address) const { return fibers_[current_]->has(address); }
 
-    /// The running fiber sleeps until it is woken. Another one must be runnable.
+    /// Suspends the running fiber until `wake`. Precondition: a fiber is runnable, possibly this one.
     void sleep() {
         context& me = fibers_[current_]->own_context();
         take_next();
@@ -50,13 +50,13 @@ class scheduler {
         if (&next != &me) me.switch_to(next);
     }
     void wake(unsigned thread) { runnable_.push_back(thread); }
-    /// Lets other fibers run first.
+    /// Gives other runnable fibers a chance to run first.
     void let_others_run() {
         wake(current_);
         sleep();
     }
 
-    /// Ends the round of the running fiber; returns in the next round or the next launch.
+    /// Ends the round of the running fiber. Returns in the next round, or in the next launch.
     void finish() {
         fiber& me = *fibers_[current_];
         me.park();
@@ -67,7 +67,7 @@ class scheduler {
             me.own_context().switch_to(fibers_[current_]->own_context());
         }
     }
-    /// Returns to the caller of `run`; no fiber continues.
+    /// Makes `run` return. No fiber continues.
     [[noreturn]] void abandon() {
         fibers_[current_]->own_context().switch_to(own_);
         __builtin_unreachable();

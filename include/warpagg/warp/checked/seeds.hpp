@@ -10,8 +10,8 @@
 
 namespace warpagg::emulator {
 
-/// The seed in the environment variable WARPAGG_SEED, to replay a failure; none if the variable is
-/// not set. Aborts the program if it is not a number.
+/// Returns the seed in the environment variable WARPAGG_SEED, which replays a failure, or nothing if
+/// the variable is not set or empty. Exits the program with an error if it is not a number.
 inline std::optional<std::uint64_t> seed_in_environment() {
     const char* text = std::getenv("WARPAGG_SEED");
     if (text == nullptr || *text == '\0') return std::nullopt;
@@ -26,7 +26,7 @@ inline std::optional<std::uint64_t> seed_in_environment() {
 
 namespace detail {
 
-/// Prints the seed if it is destroyed by an exception or told of a failure.
+/// Prints the seed in its destructor unless `passed` is set, so also if an exception is thrown.
 struct seed_on_failure {
     std::uint64_t seed;
     bool passed = false;
@@ -40,8 +40,8 @@ struct seed_on_failure {
 }  // namespace detail
 
 /// Calls f(seed) for the seeds 1 to n, or only for WARPAGG_SEED if that is set. Stops at the first
-/// failure, which is an exception or the return value false, and prints its seed on stderr. Returns
-/// whether all passed. An `f` that returns void fails by exceptions only.
+/// failure and prints its seed on stderr. A failure is an exception, which is passed on, or the
+/// return value false; an `f` that returns void fails by exceptions only. Returns whether all passed.
 ///
 /// ```cpp
 /// emulator::for_each_seed(200, [](std::uint64_t seed) {
@@ -68,7 +68,7 @@ bool for_each_seed(std::uint64_t n, F f) {
 
 namespace detail {
 
-/// Splitmix64, the source of random numbers for the schedule.
+/// The source of random numbers for the schedule: splitmix64.
 class random_source {
   public:
     explicit random_source(std::uint64_t seed) : state_(seed) {}
@@ -79,7 +79,7 @@ class random_source {
         z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
         return z ^ (z >> 31);
     }
-    /// From 0 to n - 1.
+    /// Returns a random integer from 0 to n - 1.
     std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(((bits() >> 32) * n) >> 32); }
 
   private:

@@ -16,20 +16,20 @@ namespace warpagg::emulator::detail {
 enum class access_kind : std::uint8_t { read, write, atomic };
 
 struct access {
-    unsigned block, thread;  ///< the accessing thread; threads count from 0 in each block
+    unsigned block, thread;  ///< the accessing thread, by its block and its index within the block
     unsigned phase;          ///< number of barriers that the block had passed
     unsigned clock;          ///< number of synchronizations of the lane within its warp
     access_kind kind;
-    std::uint8_t bytes;  ///< which bytes of the word
+    std::uint8_t bytes;  ///< bit i is set if byte i of the word was accessed
     call_site at;
 };
 
-/// Remembers the accesses to each 4-byte word of memory, up to the last 128 relevant ones per word.
+/// Remembers the accesses to each 4-byte word of memory: at most the last 128 relevant ones per word.
 class shadow_memory {
   public:
-    /// Records an access to `size` bytes. Returns an earlier access of another thread that
-    /// conflicts with it and for which `ordered(earlier)` is false, or null. Accesses conflict if
-    /// one is a plain write, or if one is plain and one atomic.
+    /// Records an access to `size` bytes. Returns an earlier access that conflicts with it and for
+    /// which `ordered(earlier)` is false, or null. Two accesses to common bytes conflict if one is a
+    /// plain write, or if one is plain and the other atomic.
     template <class Ordered>
     const access* note(const void* address, std::size_t size, access a, Ordered ordered) {
         const auto first = reinterpret_cast<std::uintptr_t>(address), end = first + size;
@@ -50,7 +50,7 @@ class shadow_memory {
     }
 
   private:
-    static constexpr std::uint32_t none = 0;  // nodes_[0] is not used
+    static constexpr std::uint32_t none = 0;  // no node; nodes_[0] is not used
     static constexpr unsigned words_per_page = 1024, remembered = 128;
     struct node {
         access a;
@@ -69,8 +69,8 @@ class shadow_memory {
         return &(*last_page_)[word % words_per_page];
     }
 
-    /// Whether the earlier access can be dropped, because every conflict with it is also a conflict
-    /// with `now`.
+    /// Returns whether the earlier access can be dropped, because every access that conflicts with it
+    /// also conflicts with `now`.
     static bool covered(const access& before, const access& now) {
         return (now.kind == access_kind::write || now.kind == before.kind) &&
                (before.bytes & ~now.bytes) == 0;

@@ -9,34 +9,35 @@
 
 namespace warpagg::emulator::detail {
 
-/// Finds out whether memory depends on undefined values: a second process goes on with other values in their
-/// place and the same schedule, and both keep a list of what the lanes write. Differences depend on the
-/// undefined values, in whatever way: by sums, comparisons or branches.
+/// Finds out whether memory depends on undefined values. A second process continues with the same schedule
+/// and other undefined values. Both record all writes of the lanes. Any difference comes from an undefined
+/// value, through sums, comparisons or branches.
 class shadow_process {
   public:
     struct write {
         call_site at;
         unsigned block, thread;
-        std::size_t reads_before;  ///< how many undefined values had been read
+        std::size_t reads_before;  ///< number of undefined values read before the write
     };
 
     virtual ~shadow_process() = default;
 
-    /// Whether this is the second process.
+    /// Returns whether this is the second process.
     virtual bool is_child() const = 0;
-    /// Called before each write, and before the operand of an atomic is combined.
+    /// Records a write of `size` bytes, or the operand of an atomic. Call it before the access.
     virtual void note(const write& who, const void* address, const void* value, std::size_t size) = 0;
-    /// In the child, after the launch: sends its list and ends the process.
+    /// Sends the child's list to the parent and ends the child. Call it in the child after the launch.
     [[noreturn]] virtual void hand_over() = 0;
-    /// In the parent, after the launch: whether the child made other writes, or did not end within a minute.
+    /// Returns whether the child made other writes, or did not send its list in time: a minute without
+    /// data ends the wait. Call it in the parent after the launch.
     virtual bool differs() = 0;
-    /// After `differs`: the first write that the child did not make in the same way; null if the child made
-    /// all of them and more.
+    /// Returns the first write of the parent that the child did not make in the same way, or null if the
+    /// child made all of them and more. Call it after `differs`.
     virtual const write* first_difference() const = 0;
 };
 
-/// Starts a shadow process. Null unless the program includes fork_shadow_process.hpp, so that this emulator
-/// never forks by itself.
+/// Starts a shadow process. The pointer is null unless the program includes fork_shadow_process.hpp, so the
+/// emulator never forks by default.
 inline std::unique_ptr<shadow_process> (*start_shadow_process)() = nullptr;
 
 }  // namespace warpagg::emulator::detail

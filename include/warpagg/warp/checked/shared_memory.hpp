@@ -12,12 +12,12 @@
 
 namespace warpagg::emulator::detail {
 
-/// The shared arrays of a block, each identified by the place that declares it, as a `__shared__`
-/// array is.
+/// The shared arrays of a block. The call site that declares an array identifies it, as a `__shared__`
+/// declaration does.
 class shared_memory {
   public:
-    /// Prepares for the next block, which uses the same memory; calls `forget(first, size)` for
-    /// each array.
+    /// Prepares for the next block, which uses the same memory. Calls `forget(first, size)` for each
+    /// array and overwrites it.
     template <class F>
     void begin_block(F forget) {
         for (array& a : arrays_) {
@@ -26,7 +26,8 @@ class shared_memory {
         }
     }
 
-    /// The memory of the array that `at` declares; the same for all threads of the block.
+    /// Returns the memory of the array of `size` bytes that `at` declares, the same for all threads of
+    /// the block.
     void* at(const call_site& at, std::size_t size) {
         for (array& a : arrays_)
             if (same(a.at, at) && a.size == size) return a.first.get();
@@ -41,7 +42,7 @@ class shared_memory {
         std::size_t size;
         std::unique_ptr<std::byte[]> first;
     };
-    /// Fills the array with bits that are not zero; floats are NaN.
+    /// Sets all bits of the array, so that floats are NaN.
     // mutate: shared_memory_starts_at_zero
     static void spoil(array& a) { std::memset(a.first.get(), 0xff, a.size); }
 

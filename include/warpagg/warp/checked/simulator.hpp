@@ -18,14 +18,14 @@
 #include "shared_memory.hpp"
 #include "undefined.hpp"
 
-// The library unrolls its loops over operations of a warp; functions that are not inlined keep
-// compile times short.
+// Keeps a function from being inlined. The library unrolls its loops over a warp's operations, so
+// inlined operations would compile slowly.
 #define WARPAGG_OUT_OF_LINE __attribute__((noinline))
 
 namespace warpagg::emulator::detail {
 
-/// Runs the lanes of a launch, one block at a time: what the lanes wait for, and their memory
-/// accesses.
+/// Runs the lanes of a launch, one block at a time. It completes collectives and barriers, and checks
+/// memory accesses.
 class simulator {
   public:
     simulator(unsigned blocks, unsigned threads, std::uint64_t seed, counters* count)
@@ -36,14 +36,14 @@ class simulator {
     simulator(const simulator&) = delete;
     simulator& operator=(const simulator&) = delete;
 
-    /// The simulator of the calling lane; null outside of kernels.
+    /// Returns the simulator of the calling lane; null outside kernels.
     static simulator*& running() {
         static thread_local simulator* m = nullptr;
         return m;
     }
 
-    /// Runs `body` once per thread, block after block in an order drawn at random, until a
-    /// diagnosis.
+    /// Runs `body` once per thread, block after block in random order, until a diagnosis. Rethrows an
+    /// exception that leaves `body`.
     template <class F>
     report run(const F& body) {
         body_ = [](simulator& m, const void* f) { (*static_cast<const F*>(f))(m); };
@@ -81,7 +81,7 @@ class simulator {
     counters* count() const { return count_; }
     shared_memory& shared() { return shared_; }
 
-    /// Waits for the other lanes of the mask; the last lane calls `complete` for all of them.
+    /// Waits for the other lanes of the mask. The last lane to arrive calls `complete` for all lanes.
     WARPAGG_OUT_OF_LINE void meet(const arrival& a) {
         const std::uint32_t bit = 1u << lane();
         // mutate: own_bit_not_asked_for
@@ -102,7 +102,8 @@ class simulator {
         scheduler_.sleep();
     }
 
-    /// The value that a lane reads from lane `from`, which takes no part.
+    /// Returns an undefined value, which a lane reads from a lane `from` that takes no part. The first
+    /// call starts a shadow process, if `start_shadow_process` is set.
     template <class T>
     T undefined(unsigned number, unsigned lane, unsigned from) {
         if (shadow_process_ == nullptr && start_shadow_process != nullptr)
@@ -113,7 +114,7 @@ class simulator {
         return undefined_.make<T>(read, random_, is_shadow());
     }
 
-    /// Called before a memory access: lets other lanes run first, and diagnoses conflicts.
+    /// Diagnoses conflicts of a memory access; may let other lanes run first. Call it before the access.
     WARPAGG_OUT_OF_LINE void access_memory(const void* address, std::size_t size, access_kind kind,
                                            const call_site& here) {
         if (random_.below(8) == 0) scheduler_.let_others_run();
@@ -124,7 +125,8 @@ class simulator {
             shadow_.note(address, size, now, [this](const access& a) { return ordered(a); });
         if (before != nullptr) diagnose([&] { return conflict(*before, now); });
     }
-    /// Called before a write of `value`, or an atomic with the operand `value`.
+    /// Diagnoses conflicts and undefined values. Call it before a write of `value`, or before an atomic
+    /// with the operand `value`.
     template <class T>
     WARPAGG_OUT_OF_LINE void write_memory(const void* address, const T& value, access_kind kind,
                                           const call_site& here) {
@@ -136,8 +138,8 @@ class simulator {
             shadow_process_->note({at, block_, thread(), undefined_.count()}, address, &value, sizeof(T));
     }
 
-    /// Reports the violation that `find()` returns, and ends the launch. Lanes do not continue, so
-    /// the caller must not own memory.
+    /// Reports the violation that `find()` returns and ends the launch. Lanes do not continue, so the
+    /// caller must not own memory, which would leak.
     template <class F>
     [[noreturn]] void diagnose(unsigned number, F find) {
         note(number, find());
@@ -160,7 +162,7 @@ class simulator {
         scheduler_.run(threads_, run_threads);
     }
 
-    /// The loop of a fiber, in this launch and in later ones.
+    /// The loop of a fiber, which later launches continue.
     static void run_threads() {
         running()->scheduler_.begin();
         for (;;) running()->run_thread();
@@ -180,14 +182,14 @@ class simulator {
         body_(*this, argument_);
 #endif
         lane_returns();
-        scheduler_.finish();  // the simulator may be gone when it returns
+        scheduler_.finish();  // when it returns, this simulator may not exist
     }
 
     void lane_returns() {
         const unsigned number = warp_number();
         warp().returned |= 1u << lane();
         ++returned_;
-        // Lanes that wait for a mask do not wait for lanes that have returned.
+        // A mask may name lanes that have returned, so this return may complete a collective.
         for_each_lane(warp().waiting, [&](unsigned other) {
             if (warp().lane[other].waiting) try_complete(number, other);
         });
@@ -223,7 +225,7 @@ class simulator {
         });
     }
 
-    /// If no lane of the warp can continue: answers the calls of `activemask`, or diagnoses.
+    /// Answers the calls of `activemask`, or diagnoses, if no lane of the warp can continue.
     void settle(unsigned number) {
         warp_state& w = warps_[number];
         if (!w.stands() || w.waiting == 0) return;
@@ -244,8 +246,8 @@ class simulator {
         }
     }
 
-    /// Answers `activemask` for these lanes with random groups of them, as a compiler may split a
-    /// divergent warp.
+    /// Splits these lanes into random groups and returns each lane's group from `activemask`, because a
+    /// compiler may split a divergent warp in any way.
     void partition(warp_state& w, std::uint32_t lanes) {
         const std::uint32_t parts = 1 + random_.below(3);  // mutate: activemask_names_all
         std::uint32_t part[3] = {}, of[warp_state::size] = {};
@@ -255,8 +257,8 @@ class simulator {
         });
     }
 
-    /// If all threads of the block wait at the barrier or have returned: lets them pass, or
-    /// diagnoses.
+    /// Lets the threads pass the barrier, or diagnoses, if all threads of the block wait at it or have
+    /// returned.
     void check_barrier() {
         if (in_barrier_ == 0 || in_barrier_ + returned_ < threads_) return;
         const call_site* at = nullptr;
@@ -281,7 +283,7 @@ class simulator {
         for (unsigned t = 0; t < threads_; ++t) scheduler_.wake(t);
     }
 
-    /// Whether the access `a` is ordered before any access that the running lane makes now.
+    /// Returns whether the access `a` is ordered before the running lane's next access.
     bool ordered(const access& a) {
         if (a.block != block_) return false;
         if (a.thread == thread() || a.phase < phase_) return true;
@@ -291,7 +293,7 @@ class simulator {
 
     bool is_shadow() const { return shadow_process_ != nullptr && shadow_process_->is_child(); }
 
-    /// The shadow process made other writes: diagnoses the undefined read before the first of them.
+    /// Diagnoses the last undefined read before the first write that differs in the shadow process.
     void blame_undefined_read() {
         const shadow_process::write* write = shadow_process_->first_difference();
         const undefined_read& read =
@@ -326,7 +328,7 @@ class simulator {
 
     shadow_memory shadow_;
     undefined_values undefined_;
-    std::unique_ptr<shadow_process> shadow_process_;  // from the first undefined read on
+    std::unique_ptr<shadow_process> shadow_process_;  // null before the first undefined read
 
     bool stopped_ = false;
     report report_;

@@ -3,8 +3,8 @@
 #pragma once
 
 /// @file
-/// Undefined values, which a lane reads from a lane that takes no part: a NaN that encodes its
-/// origin for float and double, and random bits for other types.
+/// Undefined values, which a lane reads from a lane that takes no part. For float and double they are
+/// NaN whose bits encode their origin; for other types they are random bits.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,13 +20,13 @@ namespace warpagg::emulator::detail {
 struct undefined_read {
     call_site at;
     unsigned block, thread;
-    unsigned from;  ///< the lane
+    unsigned from;  ///< the lane that was read
 };
 
 class undefined_values {
   public:
-    /// The undefined value for the reader. `inverted` selects another value from the same random
-    /// numbers.
+    /// Returns the undefined value for a read. `inverted` selects another value, made from the same
+    /// random numbers.
     template <class T>
     T make(const undefined_read& read, random_source& random, bool inverted) {
         if (reads_.size() < most) reads_.push_back(read);
@@ -51,7 +51,7 @@ class undefined_values {
         return value;
     }
 
-    /// The origin of `value` if it is such a NaN or computed from one; null otherwise.
+    /// Returns the origin of `value` if it is such a NaN or computed from one, and null otherwise.
     template <class T>
     const undefined_read* origin(const T& value) const {
         std::uint32_t mantissa = 0;
@@ -72,7 +72,8 @@ class undefined_values {
 
     std::size_t count() const { return reads_.size(); }
     const undefined_read& last() const { return reads_.back(); }
-    /// The last of the first `n` reads by that thread, or by any thread if it made none.
+    /// Returns the last of the first `n` reads that this thread made, or that any thread made if this
+    /// thread made none. Precondition: n > 0.
     const undefined_read& last_of(std::size_t n, unsigned block, unsigned thread) const {
         for (std::size_t i = n; i-- > 0;)
             if (reads_[i].block == block && reads_[i].thread == thread) return reads_[i];
@@ -80,8 +81,8 @@ class undefined_values {
     }
 
   private:
-    // The mantissa of a float: the quiet bit, a tag of 10 bits, and the index of the read in 12
-    // bits. The mantissa of a double begins with the same 23 bits, which conversions preserve.
+    // The mantissa of a float holds the quiet bit, a tag of 10 bits, and the index of the read in 12
+    // bits. The mantissa of a double begins with the same 23 bits, because conversions preserve them.
     static constexpr std::uint32_t infinity = 0x7f800000, half = 0x400000, quiet_nan = infinity | half;
     static constexpr std::uint32_t tag = 0x2b5u << 12, most = 1u << 12;
 

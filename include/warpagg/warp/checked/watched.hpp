@@ -14,7 +14,7 @@ namespace warpagg::emulator {
 
 namespace detail {
 
-/// An index and the place where it is used.
+/// An index, and the call site that uses it.
 struct place {
     template <std::integral I>
     place(I i, call_site site = call_site::here("[]"))  // NOLINT: implicit, as `a[i]` converts i to it
@@ -25,30 +25,30 @@ struct place {
 
 }  // namespace detail
 
-/// An array whose accesses the simulator sees, so that ordinary code (`a[i] = b[j]`) is checked for
-/// races: in place of a pointer, which a kernel that is a template over its arrays' types takes on
-/// CUDA. `T` is trivially copyable. Outside of a kernel it is an ordinary span. Does not check
-/// bounds; address sanitizer does.
+/// A watched array: the simulator sees its accesses, so ordinary code (`a[i] = b[j]`) is checked for
+/// races. Write the kernel as a template over the types of its arrays, and pass a pointer on CUDA and
+/// a watched array in tests. Outside kernels it works as a span. It does not check bounds;
+/// AddressSanitizer does. Precondition: `T` is trivially copyable.
 template <class T>
 class watched {
   public:
     /// The type of an element.
     using value_type = std::remove_const_t<T>;
 
-    /// `size` elements from `first` on.
+    /// Watches `size` elements from `first` on.
     watched(T* first, std::size_t size) : first_(first), size_(size) {}
-    /// All elements of a vector, an array or a span.
+    /// Watches all elements of a vector, an array or a span.
     template <class Range>
     requires requires(Range& r) {
         { std::data(r) } -> std::convertible_to<T*>;
     }
     explicit watched(Range& range) : watched(std::data(range), std::size(range)) {}
 
-    /// An element; the simulator sees its reads (conversions) and writes (assignments).
+    /// A reference to an element. The simulator sees its reads (conversions) and writes (assignments).
     class reference {
       public:
         /// @{
-        /// As for a `T&`.
+        /// Works as in a `T&`.
         reference(T* to, const call_site& at) : to_(to), at_(at) {}
         operator value_type() const {  // NOLINT: implicit, as for a reference
             if (auto* m = detail::simulator::running())
@@ -76,11 +76,11 @@ class watched {
         call_site at_;
     };
 
-    /// Element i, of any integral type; i < size().
+    /// Returns a reference to element i, an index of any integral type. Precondition: 0 <= i < size().
     reference operator[](detail::place i) const { return {first_ + i.index, i.at}; }
-    /// The array itself, for accesses that the simulator does not see.
+    /// Returns the array itself, for accesses that the simulator does not see.
     T* data() const { return first_; }
-    /// The number of elements.
+    /// Returns the number of elements.
     std::size_t size() const { return size_; }
 
   private:
@@ -88,7 +88,7 @@ class watched {
     std::size_t size_;
 };
 
-/// `watched(vector)` watches the vector's elements.
+/// Deduces the element type: `watched(vector)` watches the vector's elements.
 template <class Range>
 watched(Range&) -> watched<std::remove_pointer_t<decltype(std::data(std::declval<Range&>()))>>;
 
