@@ -10,10 +10,10 @@
 
 namespace gs {
 
-/// Replaces a file by what `fill` writes. `fill` writes to a temporary file beside it, which is
-/// renamed in the end, so that others see the old file or the complete new one. Throws `error`
-/// naming the file if it cannot be written; what `fill` throws passes through. The old file stays
-/// then.
+/// Replaces a file with the output of `fill`. `fill` writes to a temporary file in the same folder,
+/// which is then renamed, so that other programs see either the old file or the complete new one.
+/// Throws `error` with the file's name if it cannot be written, and rethrows exceptions of `fill`.
+/// In both cases the old file stays.
 inline void atomic_file_write(const std::filesystem::path& file,
                               const std::function<void(std::ostream&)>& fill) {
     const std::filesystem::path temporary = file.string() + ".part";

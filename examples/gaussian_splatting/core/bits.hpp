@@ -9,12 +9,12 @@
 
 namespace gs::raster {
 
-/// The unsigned integer with as many bits as a Real.
+/// The unsigned integer type with the size of `Real`, 4 or 8 bytes.
 template <class Real>
 using bits_as = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
 
-/// Reinterprets the bits of x, for lane values in each lane. As integers, the bits of non-negative
-/// floats are a sort key.
+/// Returns the bits of x as an integer, lane by lane for SIMD values. The bits of non-negative floats
+/// have the order of the floats, so they can serve as a sort key.
 template <class Bits = std::uint32_t, class V>
 WARPAGG_HD Bits bits_of(const V& x) {
     Bits bits;

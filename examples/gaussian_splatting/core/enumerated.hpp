@@ -7,7 +7,7 @@
 
 namespace gs {
 
-/// Words for a sentence: "a, b or c" if `last_separator` is " or ".
+/// Joins words for a sentence: returns "a, b or c" if `last_separator` is " or ".
 std::string enumerated(const auto& words, const char* last_separator) {
     std::string text;
     std::size_t i = 0;

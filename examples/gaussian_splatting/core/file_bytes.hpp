@@ -11,8 +11,8 @@
 
 namespace gs {
 
-/// A file that is open for reading, and its size in bytes. Throws `error` naming the file if it
-/// cannot be read.
+/// A file that is open for reading, with its size in bytes. The constructor throws `error` with the
+/// file's name if the file cannot be read.
 struct opened_file {
     explicit opened_file(const std::filesystem::path& file) : name(file.string()) {
         std::error_code failed;
@@ -22,12 +22,12 @@ struct opened_file {
         if (!in) throw error("cannot read " + name);
     }
 
-    std::string name;  ///< for messages
+    std::string name;  ///< the path, for messages
     std::uint64_t size = 0;
     std::ifstream in;
 };
 
-/// Reads a whole file. Throws `error` naming the file if it cannot be read.
+/// Returns the content of a file. Throws `error` with the file's name if it cannot be read.
 inline std::string file_bytes(const std::filesystem::path& file) {
     opened_file opened(file);
     std::string bytes(opened.size, '\0');

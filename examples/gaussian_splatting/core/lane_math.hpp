@@ -11,8 +11,8 @@
 
 namespace gs {
 
-/// What is computed of a Gaussian is written for a `Real` that is a number, or SIMD registers that hold one
-/// number for each of several Gaussians (`warpagg::simd_value`).
+/// Helpers for formulas that run on one Gaussian or on several. `Real` is a number, or a
+/// `warpagg::simd_value`, which holds one number per Gaussian.
 /// @{
 template <class Real>
 using flag_of = decltype(std::declval<Real>() < std::declval<Real>());
@@ -34,7 +34,7 @@ WARPAGG_HD Real exponential(const Real& x) {
     if constexpr (std::is_arithmetic_v<Real>) {
         return glm::exp(x);
     } else {
-        // exp2 saturates at the largest number, but an overflow has to remain visible.
+        // exp2 of SIMD values saturates, but an overflow must stay visible as an infinity.
         using limits = std::numeric_limits<Real>;
         const Real log2 = x * constant<Real>(1.4426950408889634);
         return select(log2 < Real(limits::max_exponent), exp2(log2), Real(limits::infinity()));
@@ -48,6 +48,6 @@ namespace warpagg {
 template <class T, int L>
 struct simd_value;
 }
-/// For GLM's assertions.
+/// Satisfies the static assertions of GLM.
 template <class T, int L>
 struct std::numeric_limits<warpagg::simd_value<T, L>> : std::numeric_limits<T> {};

@@ -7,7 +7,7 @@
 
 namespace gs {
 
-/// Receives lines for the user: what was resized, undistorted or dropped.
+/// A function that receives messages for the user, such as which images were resized.
 using log_function = std::function<void(const std::string&)>;
 
 }  // namespace gs

@@ -10,19 +10,19 @@
 
 namespace gs::train {
 
-/// Counter-based random numbers: seed, step and index determine them, on every device and in any
-/// order. Uses the finalizer of SplitMix64 (Steele et al. 2014).
+/// Counter-based random numbers. Seed, step and index determine them, independent of the device and
+/// of the order of calls. Source: the finalizer of SplitMix64 (Steele et al. 2014).
 struct counter_random {
     std::uint64_t state;
 
     WARPAGG_HD counter_random(std::uint64_t seed, std::uint64_t step, std::uint64_t index)
         : state(mix(mix(mix(seed) ^ step) ^ index)) {}
 
-    WARPAGG_HD float uniform() {  ///< in (0, 1)
+    WARPAGG_HD float uniform() {  ///< Returns the next uniform number in (0, 1)
         state += 0x9e3779b97f4a7c15u;
         return (static_cast<float>(mix(state) >> 41) + 0.5f) * 0x1p-23f;
     }
-    /// Three standard normal deviates (Box and Muller 1958).
+    /// Returns three independent standard normal numbers. Source: Box and Muller 1958.
     WARPAGG_HD glm::vec3 normal3() {
         const float r = warpagg::math::sqrt(-2 * glm::log(uniform())), a = 6.2831853f * uniform();
         const float s = warpagg::math::sqrt(-2 * glm::log(uniform())), b = 6.2831853f * uniform();

@@ -8,8 +8,8 @@
 
 namespace gs {
 
-/// Makes text from a file fit for a message: cuts it after 255 bytes, and replaces control
-/// characters, which could end the line or steer a terminal, by question marks.
+/// Makes text from a file safe for messages. Cuts the text after 255 bytes and replaces control
+/// characters, which could end the line or control a terminal, with question marks.
 inline std::string sanitize_for_message(std::string_view text) {
     constexpr std::size_t longest = 255;
     std::string shown(text.substr(0, longest));

@@ -18,66 +18,67 @@
 
 namespace gs::train {
 
-/// A model on a device, and the steps that train it. The engine has state and does single steps; when they
-/// happen is up to `training`. Results come back to the host only where a function returns them.
+/// A model in training on a device, with its optimizer state. The engine does single steps; `training`
+/// decides when. Results reach the host only as return values of these functions.
 class engine {
   public:
     virtual ~engine() = default;
 
-    /// The views to train on and the held-out views. Every training view is also kept at `downscales` smaller
-    /// sizes, each half of the one before.
+    /// Sets the training views and the held-out views. Also stores each training view at `downscales` smaller
+    /// sizes; each size halves the previous one.
     virtual void set_views(const std::vector<view>& train, const std::vector<view>& test,
                            int downscales = 0) = 0;
-    /// Replaces the model; Adam's moments become zero. Features keep what they have learned besides the
-    /// model, such as exposures.
+    /// Replaces the model and sets Adam's moments to zero. Features keep their learned values, such as
+    /// exposures.
     virtual void set_model(const gaussians& model) = 0;
     virtual gaussians get_model() = 0;
 
-    /// Prepares for a training run: creates the loss and the densification strategy, and gives the features
-    /// that are on the values that they begin from. Precondition: views and a model are set.
+    /// Prepares a training run: creates the loss and the densification strategy, and sets the initial values
+    /// of the features that are on. Precondition: views and a model are set.
     virtual void begin(const training_setup& setup) = 0;
-    /// Sizes the tile lists for the training views, downsampled by two `downscales` times, and for their
-    /// growth. Later steps use views of that size. Call it when the number of Gaussians has changed, and now
-    /// and then. Waits for the device.
+    /// Reserves memory for the tile lists of the training views at size level `downscales`, with a reserve
+    /// for growth. Later steps use views of that size. Call this after each change of the number of
+    /// Gaussians, and at intervals. Waits for the device.
     virtual void reserve(int downscales = 0) = 0;
-    /// One training step. It changes no parameter if the tile lists do not fit.
+    /// Does one training step. A step whose tile lists exceed the capacity changes no parameter.
     virtual void step(const step_plan& plan) = 0;
-    /// `strategy::run`. Returns the number of Gaussians that were rendered and received no gradient.
+    /// Calls `strategy::run`. Returns the number of Gaussians that were drawn but received no gradient.
     virtual std::uint64_t densify(int iteration) = 0;
-    /// `strategy::adjust`.
+    /// Calls `strategy::adjust`.
     virtual void adjust(int iteration) = 0;
-    /// What the steps since the last call came to. Waits for the device.
+    /// Returns the report on the steps since the last call. Waits for the device.
     virtual step_report take_report() = 0;
 
-    /// The state of a feature. Precondition: a feature of this name has a part on the device.
+    /// Returns the state of a feature. Precondition: a feature of this name has state on the device.
     virtual feature_state& feature(std::string_view name) = 0;
 
-    /// Three planes, not clamped, with SH bands up to a degree.
+    /// Renders the model with SH coefficients up to a degree. Returns three planes, red, green and blue, of
+    /// the camera's size. The values are not clamped.
     virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
                                       int sh_degree = 3) = 0;
-    /// Compares a held-out view with its photo, both clamped to [0, 1]. If `render` is not null, it receives
-    /// the render, not clamped.
+    /// Compares the render of a held-out view with its target, both clamped to [0, 1]. If `render` is not
+    /// null, it receives the render, which is not clamped.
     virtual image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
                                   std::vector<float>* render = nullptr) = 0;
 
     std::size_t count() const { return count_; }
-    /// When the strategy of `begin` acts.
+    /// Returns the timetable of the densification strategy. Precondition: `begin` was called.
     const train::timetable& timetable() const { return *timetable_; }
     device::profiler& profile() { return *profiler_; }
 
   protected:
-    std::size_t count_ = 0;  ///< Gaussians
+    std::size_t count_ = 0;  ///< number of Gaussians
     const train::timetable* timetable_ = nullptr;
     device::profiler* profiler_ = nullptr;
 };
 
-/// The CPU's engines, compiled for each instruction set that this machine can run; the best is last.
+/// Returns a factory of CPU engines for each instruction set that this machine can run, the best one last.
 std::vector<std::unique_ptr<engine> (*)()> cpu_engines();
-/// The last of these.
+/// Creates a CPU engine for the best instruction set.
 std::unique_ptr<engine> make_cpu_engine();
-/// Throws `error` if there is no GPU.
+/// Creates a GPU engine. Throws `error` if no GPU can be used.
 std::unique_ptr<engine> make_cuda_engine();
-/// Whether a GPU can be used; if not, `reason` becomes why.
+/// Returns whether a GPU can be used. If not, sets `reason` to the reason.
 bool cuda_is_available(std::string& reason);
 
 }  // namespace gs::train

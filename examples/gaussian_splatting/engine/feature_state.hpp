@@ -11,13 +11,13 @@ class feature_state {
   public:
     virtual ~feature_state() = default;
 
-    /// What the feature begins from. Its gradients' moments become zero.
+    /// Sets the initial values of the feature, and Adam's moments to zero.
     virtual void set_values(const std::vector<float>&) {}
-    /// What it has learned. Waits for the device.
+    /// Returns the learned values. Waits for the device.
     virtual std::vector<float> values() const { return {}; }
-    /// What held-out views are shown with; an empty list means as they are rendered.
+    /// Sets the values for held-out views. An empty list leaves their renders unchanged.
     virtual void set_held_out_values(const std::vector<float>&) {}
-    /// Removes what the values and the scene can exchange without changing any render.
+    /// Removes the ambiguity between the values and the model, without changing any render.
     virtual void normalize() {}
 };
 

@@ -8,17 +8,18 @@
 
 namespace gs::train {
 
-/// View-dependent color on the device, as `engine::feature("direction")` returns it. It decides about the
-/// layout of the model's parameters.
+/// The state of view-dependent color on the device, which `engine::feature("direction")` returns. It
+/// determines the memory layout of the model's parameters.
 class sh_degree_state : public feature_state {
   public:
-    /// From now on colors depend on direction up to this degree. Higher bands are freed; new ones are zero.
+    /// Sets the SH degree. Frees the coefficients of higher degrees; coefficients of new degrees are zero.
     virtual void set_degree(int degree) = 0;
-    /// Frees the bands of Gaussians whose colors hardly depend on direction and gives these Gaussians their
-    /// mean color over the training views: of as many as change those views by a root mean square of at most
-    /// `change`, as estimated by `sh_error`; of none if they are less than a tenth. Gaussians change their
-    /// places. All have bands again after the next densification. Draws the training views at the smallest
-    /// size. Returns how many Gaussians keep their bands.
+    /// Frees the SH coefficients above degree 0 of Gaussians whose colors hardly depend on direction, and
+    /// gives these Gaussians their mean color over the training views. Chooses as many Gaussians as change
+    /// those views by a root mean square of at most `change`, as estimated by `sh_error`. Chooses none if
+    /// they are less than a tenth of all. Reorders the Gaussians. The next densification gives all of them
+    /// coefficients again. Cost: renders the training views at the smallest size. Returns the number of
+    /// Gaussians that keep their coefficients.
     virtual std::size_t prune(double change) = 0;
 };
 

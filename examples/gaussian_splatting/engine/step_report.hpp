@@ -10,11 +10,11 @@
 
 namespace gs::train {
 
-/// What the training steps since the last report came to.
+/// The results of the training steps since the last report.
 struct step_report {
     loss_report loss;           ///< means over these steps
-    std::uint64_t skipped = 0;  ///< steps that changed nothing because their tile lists did not fit
-    fault_reports faults;       ///< what was not finite; no parameter ever is: see `adam`
+    std::uint64_t skipped = 0;  ///< steps without an effect, because their tile lists exceeded the capacity
+    fault_reports faults;       ///< values that were not finite; parameters always are finite: see `adam`
 };
 
 }  // namespace gs::train

@@ -16,12 +16,12 @@
 
 namespace gs::train {
 
-/// What stays the same for all steps of a training run.
+/// The settings that stay the same during a training run.
 struct training_setup {
     training_facts facts;
     strategy_settings densification;
     std::string loss = default_loss;
-    /// The features that are on, by name, with the values that they begin from.
+    /// The features that are on, by name, with their initial values.
     std::map<std::string, std::vector<float>, std::less<>> features;
 
     bool has(std::string_view feature) const { return features.contains(feature); }

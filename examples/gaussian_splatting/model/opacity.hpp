@@ -10,13 +10,14 @@
 
 namespace gs {
 
-/// An opacity from its logit.
+/// Returns the opacity with this logit.
 template <class Real>
 WARPAGG_HD Real sigmoid(Real logit) {
     return 1 / (1 + exponential(-logit));
 }
 
-/// The logit of an opacity in [0, 1]: always finite, since 0 and 1 count as the floats next to them.
+/// Returns the logit of an opacity in [0, 1]. The result is finite, because 0 and 1 are replaced by
+/// the smallest normal float and by 1 - 2^-24.
 inline float logit(float opacity) {
     constexpr double least = std::numeric_limits<float>::min(), most = 1 - 0x1p-24;
     const double p = std::clamp<double>(opacity, least, most);

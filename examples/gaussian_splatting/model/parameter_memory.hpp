@@ -13,13 +13,15 @@
 
 namespace gs {
 
-/// Arrays on a device with an element for each parameter of each Gaussian: see `aosoa_index`.
+/// Arrays in device memory, one per parameter, with an element for each component of each Gaussian. Their
+/// layout is AoSoA: see `aosoa_index`.
 template <device::device Device>
 class parameter_memory {
   public:
     using buffer = typename Device::template buffer<float>;
 
-    /// Loses the contents. Bands above the degree have no memory.
+    /// Sets the number of Gaussians and the SH degree. Loses the contents. SH coefficients above the degree
+    /// have no memory.
     void resize(std::size_t count, int sh_degree) {
         for (std::size_t p = 0; p < parameter_count; ++p)
             arrays_[p].resize(has_parameter(p, sh_degree)
@@ -27,8 +29,8 @@ class parameter_memory {
                                   : 0);
         gaussians_with_sh_ = count;
     }
-    /// Keeps the contents, but for bands above the degree `to`, which have no memory from now on. Those above
-    /// `from` are zero.
+    /// Changes the SH degree and keeps the contents. Frees the coefficients above degree `to`; new
+    /// coefficients above degree `from` are zero.
     void change_sh_degree(Device& device, int from, int to) {
         for (std::size_t p = 0; p < parameter_count; ++p) {
             if (has_parameter(p, from) == has_parameter(p, to)) continue;
@@ -39,7 +41,7 @@ class parameter_memory {
         }
     }
     buffer& operator[](std::size_t p) { return arrays_[p]; }
-    /// See `parameter_arrays::gaussians_with_sh`. Whoever resizes the arrays sets it.
+    /// Gets or sets `parameter_arrays::gaussians_with_sh`. Set it when you resize the arrays.
     /// @{
     std::size_t gaussians_with_sh() const { return gaussians_with_sh_; }
     void set_gaussians_with_sh(std::size_t count) { gaussians_with_sh_ = count; }
@@ -51,7 +53,7 @@ class parameter_memory {
     void zero(Device& device) {
         for (auto& a : arrays_) device.zero(a.data(), a.size());
     }
-    /// Waits for the device.
+    /// Resizes the arrays and copies the model to them. Waits for the device.
     void upload(Device& device, const gaussians& model) {
         resize(model.count(), model.sh_degree);
         for_each_part(
@@ -62,7 +64,8 @@ class parameter_memory {
                 device.wait();
             });
     }
-    /// Bands that a Gaussian does not have are zero.
+    /// Returns the first `count` Gaussians as a model. SH coefficients that a Gaussian does not have are
+    /// zero. Waits for the device.
     gaussians download(Device& device, std::size_t count, int sh_degree) const {
         gaussians model;
         model.sh_degree = sh_degree;
@@ -84,8 +87,8 @@ class parameter_memory {
     }
 
   private:
-    /// Calls f(parameter, values, stride, first) for each parameter of a model: of each row of `stride`
-    /// values it is those from `first` on.
+    /// Calls f(parameter, values, stride, first) for each parameter of a model. The parameter begins at index
+    /// `first` of each row of `stride` values.
     template <class Model, class F>
     static void for_each_part(Model& model, const F& f) {
         f(parameter::mean, model.mean, 3, 0);

@@ -9,12 +9,12 @@
 
 namespace gs {
 
-/// The parameters of a Gaussian as the device holds them, each an array of its own. Every SH band is one, so
-/// that a band that is not in use is neither stored, read nor updated.
+/// The parameters of a Gaussian. Each has its own array in device memory. Each SH degree is a separate
+/// parameter, so that unused degrees are not stored, read or updated.
 enum class parameter { mean, log_scale, quaternion, opacity, sh0, sh1, sh2, sh3, count };
 inline constexpr std::size_t parameter_count = static_cast<std::size_t>(parameter::count);
 
-/// Values per Gaussian.
+/// Number of values per Gaussian, by parameter.
 inline constexpr std::array<int, parameter_count> parameter_width{3, 3, 4, 1, 3, 9, 15, 21};
 
 inline constexpr std::array<const char*, parameter_count> parameter_names{
@@ -27,24 +27,25 @@ WARPAGG_HD constexpr parameter sh_band(int band) {
     return static_cast<parameter>(static_cast<int>(parameter::sh0) + band);
 }
 
-/// Whether a model of this SH degree has the parameter.
+/// Returns whether a model of this SH degree has the parameter.
 constexpr bool has_parameter(std::size_t p, int sh_degree) {
     return static_cast<int>(p) - static_cast<int>(parameter::sh0) <= sh_degree;
 }
 
-/// Whether the parameter belongs to SH bands 1 to 3, which not every Gaussian has.
+/// Returns whether the parameter belongs to SH degrees 1 to 3, which some Gaussians lack.
 constexpr bool is_view_dependent(std::size_t p) { return p > static_cast<std::size_t>(parameter::sh0); }
 
-/// Where the arrays lie, each in blocks: see `aosoa_index`. Values, gradients and moments have this form.
+/// Pointers to the arrays of all parameters, in AoSoA layout: see `aosoa_index`. Values, gradients and
+/// moments use it.
 template <class Real>
 struct parameter_arrays {
     Real* mean = nullptr;
     Real* log_scale = nullptr;
     Real* quaternion = nullptr;  ///< w x y z
     Real* opacity = nullptr;     ///< logit
-    Real* sh[4] = {};            ///< bands 0 to 3, coefficient-major, RGB within
-    /// Number of Gaussians, the first ones, that have SH bands 1 to 3: whole blocks, or all. The others have
-    /// the same color in all directions.
+    Real* sh[4] = {};            ///< by SH degree: RGB of each coefficient
+    /// The number of Gaussians with SH coefficients above degree 0, which precede all others. It is a
+    /// multiple of the block length, or all. The others have the same color in all directions.
     std::size_t gaussians_with_sh = std::numeric_limits<std::size_t>::max();
 
     WARPAGG_HD constexpr Real* operator[](parameter p) const {
