@@ -18,7 +18,7 @@ from markdown_tables import markdown
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "reference" / "benchmarks.md"
 README = ROOT / "README.md"
-README_TABLE = re.compile(r"(<!-- benchmarks -->\n).*?(<!-- end of benchmarks -->)", re.DOTALL)
+README_TABLE = re.compile(r"(<!-- benchmarks -->\n\n?).*?(\n?<!-- end of benchmarks -->)", re.DOTALL)
 PROFILES = {"h200": "On a GPU", "cpu": "On a CPU"}
 
 # A number with the unit of something that was measured.
@@ -88,7 +88,8 @@ def readme_table(results):
         rows += training_rows(results["h200"], "training", gpu, "7,000 iterations (the default)", "7,000 iterations", photos)
         rows += training_rows(results["h200"], "training", gpu, "30,000 iterations", "30,000 iterations", photos)
     if "cpu" in results:
-        rows += training_rows(results["cpu"], "training_cpu", "two CPU cores", "1,500 iterations (the demo)", "1,500 iterations",
+        cores = re.search(r"(\d+) processors", results["cpu"]["about"]["processor"]).group(1)
+        rows += training_rows(results["cpu"], "training_cpu", f"CPU, {cores} cores", "1,500 iterations (the demo)", "1,500 iterations",
                               {"synthetic:spheres": "spheres, the demo"})
     return markdown(["scene", "schedule", "device", "held-out PSNR, dB", "seconds", "Gaussians"], rows)
 

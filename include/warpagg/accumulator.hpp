@@ -4,7 +4,7 @@
 
 /// @file
 /// Accumulators: how a sum of floats is kept, in the warp and in memory. The tags differ in their
-/// error bounds, in determinism and in cost; docs/policies.md lists the costs. In the bounds, n is
+/// error bounds, in determinism and in cost; docs/reference/policies.md lists the costs. In the bounds, n is
 /// the number of additions to a sum S, k = sum|x| / |S| is its condition number, and u = 2^-24.
 
 #include "core/axis.hpp"

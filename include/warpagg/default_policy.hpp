@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// The defaults of a policy, which come from measurements. docs/policies.md lists them.
+/// The defaults of a policy, which come from measurements. docs/reference/policies.md lists them.
 
 #include "policy.hpp"
 

@@ -128,7 +128,7 @@ TEST_CASE("tag objects spell the same types") {
     CHECK(std::is_empty_v<written>);
 }
 
-TEST_CASE("the default for floats, as docs/policies.md has it") {
+TEST_CASE("the default for floats, as docs/reference/policies.md has it") {
     CHECK(chooses<warpagg::default_policy<float, 1>, reduce::shfl_down, commit::scalar, idle::skip,
                   gate::always>);
     CHECK(scatters<float, 2, gate::at_least<3, 5>>);

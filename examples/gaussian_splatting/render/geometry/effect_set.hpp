@@ -5,7 +5,7 @@
 namespace gs {
 
 /// What the projection of Gaussians, or its gradient, simulates on demand. Kernels have it as a template
-/// parameter: what is off is not compiled in. See docs/effects.md.
+/// parameter: what is off is not compiled in. See docs/explanation/how_effects_are_chosen.md.
 struct effect_set {
     bool antialiasing = false;  ///< a Gaussian that a pixel's filter widens becomes fainter by as much
     bool fisheye = false;       ///< the camera has such a lens

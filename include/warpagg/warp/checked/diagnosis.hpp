@@ -11,7 +11,7 @@
 
 namespace warpagg::emulator {
 
-/// The rule that a kernel violated; docs/unit_testing.md shows an example of each.
+/// The rule that a kernel violated; docs/reference/diagnoses.md shows an example of each.
 enum class diagnosis {
     none,                     ///< no rule was violated
     lane_not_in_mask,         ///< a lane calls a masked operation with a mask that lacks its own bit

@@ -15,7 +15,7 @@ namespace warpagg::emulator {
 /// The checked model of `warp`, as one lane sees it. Each lane is a fiber that runs the kernel by
 /// itself. Kernels are therefore ordinary scalar code (`if`, loops, early returns), and
 /// `value_t<checked, T>` is `T`. The model diagnoses violations of the rules. `try_launch` creates
-/// the lanes; docs/unit_testing.md shows how to use it.
+/// the lanes; docs/tutorials/first_unit_test.md shows how to use it.
 ///
 /// All lanes must call the collectives of the concept, `sync()` and `barrier()`; it is an error if
 /// a lane has returned. The operations that end in `_sync`, and `sync(mask)`, work as CUDA's: the
