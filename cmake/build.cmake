@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
-# How this project builds its own examples and tests; nothing here reaches who includes the library.
+# How this project builds its own examples and tests. Nothing here affects projects that include the library.
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     set(CMAKE_BUILD_TYPE Release)
 endif()
@@ -36,18 +36,17 @@ else()
 endif()
 message(STATUS "warpagg: CUDA ${warpagg_with_cuda}")
 
-find_package(OpenMP REQUIRED COMPONENTS CXX)
-
-# Options of all that is built here; `warpagg_build` says for which CPU, too.
+# Options of everything that is built here; `warpagg_build` adds those for a CPU.
 add_library(warpagg_options INTERFACE)
-target_link_libraries(warpagg_options INTERFACE warpagg::warpagg OpenMP::OpenMP_CXX)
+target_link_libraries(warpagg_options INTERFACE warpagg::warpagg)
 target_compile_options(warpagg_options INTERFACE
-    $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror>
-    # GCC 12 sees overlaps in std::string's operator+ that cannot be (its bug 105651).
+    $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>
+    $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${WARPAGG_WERROR}>>:-Werror>
+    # GCC 12 reports overlaps in std::string's operator+ that cannot occur (its bug 105651).
     $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict>
-    # Rounding is part of what is tested: only an explicit fma contracts.
+    # Tests compare bits, so only an explicit fma may contract.
     $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
-    # 20012 is GLM's, about its defaulted constructors.
+    # Warning 20012 is about GLM's defaulted constructors.
     $<$<COMPILE_LANGUAGE:CUDA>:-diag-suppress=20012 -Xcompiler=-Wall,-Wextra>)
 add_library(warpagg_build INTERFACE)
 target_link_libraries(warpagg_build INTERFACE warpagg_options)
