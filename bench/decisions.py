@@ -60,7 +60,7 @@ def mixtures(count, seed, noises):
 
 
 def inspect(program, scene):
-    """By effect, whether it is called for (None: no telling) and the evidence; and the seconds of the whole process."""
+    """By effect, whether it is called for (None: undecided) and the evidence; and the seconds of the whole process."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "effects.json"
         start = time.monotonic()
@@ -117,11 +117,11 @@ def share(part, whole):
 
 
 def said(one, effect):
-    return {True: "yes", False: "no", None: "no telling"}[one["effects"][effect]["recommended"]]
+    return {True: "yes", False: "no", None: "undecided"}[one["effects"][effect]["recommended"]]
 
 
 def evidence(one, effect):
-    return one["effects"][effect]["evidence"].removeprefix("no telling: ")
+    return one["effects"][effect]["evidence"].removeprefix("cannot decide: ")
 
 
 def tables(result):
@@ -135,7 +135,7 @@ def tables(result):
             rows.append([effect, f"{noise:g}", share(both, both + only_said), share(both, both + only_true), str(both),
                          str(only_said), str(only_true)])
     head = ["effect", "noise", "precision", "recall", "true positives", "false positives", "false negatives"]
-    text = [f"{len(mixed)} scenes, random mixtures of effects by seed {result['seed']}, each with each noise; no telling "
+    text = [f"{len(mixed)} scenes, random mixtures of effects by seed {result['seed']}, each with each noise; undecided "
             "counts as not called for:\n", markdown(head, rows)]
 
     verdict = lambda one, effect: "**wrong**" if effect in wrong(one) else "right"

@@ -2,16 +2,16 @@
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
 #
-# Installs what building and testing needs on Debian 12. Asks nothing, and does nothing where all is there.
+# Installs the packages that building and testing need, on Debian 12 and Ubuntu 24.04. It asks no
+# questions, and does nothing if all packages are installed.
 #   scripts/setup.sh [further packages]
 set -euo pipefail
 
-packages=(cmake ninja-build g++ git libglm-dev libcli11-dev nlohmann-json3-dev doctest-dev
-    libpng-dev libjpeg62-turbo-dev libnanoflann-dev "$@")
-
 distribution=$(. /etc/os-release 2>/dev/null && echo "${ID:-unknown}" || echo unknown)
-if [[ $distribution != debian ]] || ! command -v apt-get >/dev/null; then
-    echo "This script knows Debian only: install what your distribution calls ${packages[*]}." >&2
+packages=(cmake ninja-build g++ git libglm-dev libcli11-dev nlohmann-json3-dev doctest-dev
+    libpng-dev libjpeg-dev libnanoflann-dev "$@")
+if [[ $distribution != @(debian|ubuntu) ]] || ! command -v apt-get >/dev/null; then
+    echo "error: this script installs packages on Debian and Ubuntu only; install the equivalents of ${packages[*]}" >&2
     exit 1
 fi
 

@@ -14,13 +14,14 @@ namespace {
 using options::alternatives;
 
 constexpr std::size_t line_width = 100;
+constexpr std::size_t name_column = 32;  ///< width of the names in help texts
 
-/// Fills lines of at most `line_width` characters that begin with `indent`.
-std::string wrapped(const std::string& text, const std::string& indent) {
+/// Fills lines of at most `width` characters that begin with `indent`.
+std::string wrapped(const std::string& text, const std::string& indent, std::size_t width = line_width) {
     std::istringstream words(text);
     std::string all, line;
     for (std::string word; words >> word;) {
-        if (!line.empty() && indent.size() + line.size() + 1 + word.size() > line_width) {
+        if (!line.empty() && indent.size() + line.size() + 1 + word.size() > width) {
             all += indent + line + "\n";
             line.clear();
         }
@@ -72,6 +73,28 @@ std::string names_with_type(const option& row) {
     return row.value.is_flag() ? text : text + " " + row.value.type;
 }
 
+/// The first short and the first long name; the reference has the others.
+std::string main_names(const option& row) {
+    const std::vector<std::string> names = row.all_names();
+    const auto short_name =
+        std::ranges::find_if(names, [](const std::string& n) { return n.size() == 2 && n[0] == '-'; });
+    return (short_name == names.end() ? "" : *short_name + ", ") + row.name() +
+           (row.value.is_flag() ? "" : " " + row.value.type);
+}
+
+/// The description, range and default in one line or few, beside the names.
+std::string help_line(const option& row, bool required) {
+    std::string facts = required ? "required" : row.value.range;
+    if (!facts.empty() && !required && !row.unit.empty()) facts += " " + row.unit;
+    const std::string by_default = required ? "" : default_of(row);
+    if (!by_default.empty()) facts += (facts.empty() ? "" : "; ") + ("default: " + by_default);
+    const std::string text = row.help + (facts.empty() ? "" : " [" + facts + "]");
+    const std::string names = "  " + main_names(row);
+    std::string lines = wrapped(text, std::string(name_column, ' '), line_width + 10);
+    if (names.size() + 2 > name_column) return names + "\n" + lines;
+    return lines.replace(0, names.size(), names);
+}
+
 std::string commands_of(const option& row) {
     std::string text;
     for (const command c : row.commands)
@@ -96,7 +119,8 @@ std::string overview() {
            "\nOptions instead of a command:\n"
            "  --help\n      Prints this text; after a command, prints the options of the command\n"
            "  --version\n      Prints the version\n"
-           "  --print-reference\n      Prints the options of all commands as Markdown\n";
+           "  --print-reference\n      Prints the options of all commands as Markdown\n"
+           "  --print-man-page\n      Prints the manual page\n";
 }
 
 std::string help_text(command c, const std::vector<option>& rows) {
@@ -104,11 +128,9 @@ std::string help_text(command c, const std::vector<option>& rows) {
     for (const std::string& group : groups_of(rows)) {
         text += "\n" + group + ":\n";
         for (const option& row : rows)
-            if (row.group == group)
-                text += "  " + names_with_type(row) + (row.is_required_by(c) ? "  (required)" : "") + "\n" +
-                        wrapped(description_of(row, row.is_required_by(c)), "      ");
+            if (row.group == group) text += help_line(row, row.is_required_by(c));
     }
-    return text + "\nExplicit options override those of --quality. In names, _ and - are equal.\n";
+    return text + "\nDetails, and other names of options: man gaussian_splatting, or docs/reference/cli.md\n";
 }
 
 std::string reference_page() {
@@ -141,6 +163,34 @@ std::string reference_page() {
                         wrapped(description_of(row, row.required == row.commands), "  ");
     }
     return text;
+}
+
+std::string man_page() {
+    settings defaults;
+    const std::vector<option> table = option_table(defaults);
+    const auto escaped = [](const std::string& text) {
+        std::string safe;
+        for (const char c : text) safe += c == '\\' ? "\\e" : c == '-' ? "\\-" : std::string(1, c);
+        return safe.starts_with('.') || safe.starts_with('\'') ? "\\&" + safe : safe;
+    };
+    std::string text = ".TH GAUSSIAN_SPLATTING 1 \"\" \"warpagg " WARPAGG_VERSION
+                       "\"\n.SH NAME\ngaussian_splatting \\- train 3D Gaussian splatting models from photos\n"
+                       ".SH SYNOPSIS\n";
+    for (const command c : all_values<command>)
+        text += ".B " + escaped(usage_of(c, rows_of(c, table))) + "\n.br\n";
+    text += ".SH COMMANDS\n";
+    for (const command c : all_values<command>)
+        text += ".TP\n.B " + name_of(c) + "\n" + escaped(purpose_of(c)) + ".\n";
+    text += ".SH OPTIONS\nIn names of options, _ and \\- are equal.\n";
+    for (const std::string& group : groups_of(table)) {
+        text += ".SS " + group + "\n";
+        for (const option& row : table)
+            if (row.group == group)
+                text += ".TP\n.B " + escaped(names_with_type(row)) + "\n" +
+                        escaped(description_of(row, row.required == row.commands)) +
+                        "\n.br\nCommands: " + commands_of(row) + ".\n";
+    }
+    return text + ".SH EXIT STATUS\n0 on success, 2 after an error, which is printed as one sentence.\n";
 }
 
 }  // namespace gs::cli

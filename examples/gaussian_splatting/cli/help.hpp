@@ -18,4 +18,7 @@ std::string help_text(command c, const std::vector<option>& rows);
 /// The text of docs/reference/cli.md.
 std::string reference_page();
 
+/// The manual page, in the format of man.
+std::string man_page();
+
 }  // namespace gs::cli

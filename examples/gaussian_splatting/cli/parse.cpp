@@ -47,6 +47,7 @@ command command_named(const words& given) {
     if (first == "--help" || first == "-h") print_and_exit(overview());
     if (first == "--version") print_and_exit(WARPAGG_VERSION "\n");
     if (first == "--print-reference") print_and_exit(reference_page());
+    if (first == "--print-man-page") print_and_exit(man_page());
     const auto found = std::ranges::find(names, first);
     if (found == names.end())
         throw error("the command comes first, and '" + first + "' is none: give " + known + " (see --help)");

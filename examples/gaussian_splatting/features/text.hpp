@@ -20,7 +20,7 @@ std::string text(const char* format, Values... values) {
 inline constexpr std::size_t enough_points = 50;
 
 inline std::string too_few_points(std::size_t points, const char* where) {
-    return text("no telling: %zu points lie %s of 5 photos or more", points, where);
+    return text("cannot decide: only %zu points are %s in 5 or more photos", points, where);
 }
 
 }  // namespace gs::features

@@ -34,7 +34,7 @@ def mixtures(*pairs):
 class Arithmetic(unittest.TestCase):
     def row(self, runs, noise="0"):
         """Precision, recall, and the counts of color."""
-        pure = [told(decisions.synthetic("pure", "alpha", {}), recommended=None, evidence="no telling: 7 points")]
+        pure = [told(decisions.synthetic("pure", "alpha", {}), recommended=None, evidence="cannot decide: 7 points")]
         real = [{**pure[0], "kind": "real", "scene": "lego", "truth": None}]
         result = {"runs": [*pure, *runs, *real], "seed": 3, "processor": " a CPU", "compiler": "c++", "commit": "none"}
         self.text = decisions.tables(result)
@@ -43,7 +43,7 @@ class Arithmetic(unittest.TestCase):
 
     def test_precision_and_recall(self):
         given = mixtures((True, True), (True, True), (True, True), (True, False), (True, None), (False, True), (False, False))
-        self.assertEqual(self.row(given), ["75 %", "60 %", "3", "1", "2"])  # no telling is a miss
+        self.assertEqual(self.row(given), ["75 %", "60 %", "3", "1", "2"])  # undecided is a miss
         self.assertEqual(decisions.counts(given, COLOUR), (3, 1, 2))
 
     def test_without_positives_there_is_no_share(self):
@@ -59,10 +59,10 @@ class Arithmetic(unittest.TestCase):
 
     def test_misses_have_their_evidence(self):
         glossy = decisions.synthetic("mixture", "spheres", {"gloss": 0.4})
-        self.row([told(glossy, recommended=None, evidence="no telling: 9 points")])
-        self.assertIn("| `alpha` | right: no telling | right: no | right: no | right: no | right: no | right: no | right: no | right: yes |", self.text)
-        self.assertIn(f"| `spheres,gloss=0.4` | {COLOUR} | no telling | 9 points |", self.text)
-        self.assertIn("| lego | no telling: 7 points | no: seen | no: seen | no: seen | no: seen | no: seen | no: seen | yes: seen | 0.50 |", self.text)
+        self.row([told(glossy, recommended=None, evidence="cannot decide: 9 points")])
+        self.assertIn("| `alpha` | right: undecided | right: no | right: no | right: no | right: no | right: no | right: no | right: yes |", self.text)
+        self.assertIn(f"| `spheres,gloss=0.4` | {COLOUR} | undecided | 9 points |", self.text)
+        self.assertIn("| lego | undecided: 7 points | no: seen | no: seen | no: seen | no: seen | no: seen | no: seen | yes: seen | 0.50 |", self.text)
 
 
 class Mixtures(unittest.TestCase):

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -228,14 +229,41 @@ TEST_CASE("the reference of the command line is up to date") {
     CHECK(gs_test::read_file(file) == reference_page());
 }
 
-TEST_CASE("the help of a command has all its options") {
+TEST_CASE("help: each option of a command appears under its group, with its description") {
     for_each_option([](command c, const option& row) {
         settings defaults;
         std::vector<option> rows;
         for (const option& other : option_table(defaults))
             if (other.belongs_to(c)) rows.push_back(other);
         const std::string text = help_text(c, rows);
-        CHECK(says(text, {row.group + ":\n", "  " + row.all_names().front()}));
-        for (const std::string& name : row.all_names()) CHECK(says(text, {name}));
+        const std::string first_words = row.help.substr(0, row.help.find(' ', 20));
+        CHECK(says(text, {row.group + ":\n", row.name() + (row.value.is_flag() ? "" : " " + row.value.type),
+                          first_words}));
+    });
+}
+
+TEST_CASE("help: no command needs more than two screens of 60 lines, or lines of more than 110 characters") {
+    for (const command c : all_values<command>) {
+        CAPTURE(name_of(c));
+        settings defaults;
+        std::vector<option> rows;
+        for (const option& row : option_table(defaults))
+            if (row.belongs_to(c)) rows.push_back(row);
+        std::istringstream text(help_text(c, rows));
+        int lines = 0;
+        for (std::string line; std::getline(text, line); ++lines) CHECK(line.size() <= 110);
+        CHECK(lines <= 120);
+    }
+}
+
+TEST_CASE("the manual page has every name of every option") {
+    const std::string page = man_page();
+    for_each_option([&](command, const option& row) {
+        for (std::string name : row.all_names()) {
+            for (std::size_t at = 0; (at = name.find('-', at)) != std::string::npos; at += 2)
+                name.insert(at, 1, '\\');
+            CAPTURE(name);
+            CHECK(says(page, {name}));
+        }
     });
 }

@@ -111,7 +111,7 @@ TEST_CASE("long: training simulates the recommended effects, or those that --eff
         CHECK(matte.all()[i].name == name);
         CHECK_FALSE(matte.all()[i++].on);
     }
-    CHECK(outcome(matte, 1).reason.find("brighter or darker") != std::string::npos);
+    CHECK(outcome(matte, 1).reason.find("the brightness of the same points differs") != std::string::npos);
 
     const feature_set much = simulated(glossy, "auto,-exposure,+antialiasing");
     CHECK(sh_degree_of(much) > 0);
@@ -150,7 +150,7 @@ TEST_CASE("long: training simulates the recommended effects, or those that --eff
     CHECK(simulated(spheres, "all").values_if_on("sky") == std::vector<float>(gs::sky_width, 0.0f));
     CHECK(simulated(made("alpha"), "all").values_if_on("sky").empty());
     CHECK(outcome(simulated(made("alpha"), "all"), 3).reason == "photos have transparent parts");
-    CHECK(outcome(simulated(spheres, "all"), 4).reason == "no mask leaves anything out of a training photo");
+    CHECK(outcome(simulated(spheres, "all"), 4).reason == "no training photo has masked pixels");
     const feature_set masked = simulated(made("spheres,passers=0.1"), "auto");
     CHECK(outcome(masked, 4).on);
     CHECK(outcome(masked, 4).reason.starts_with("48 of 48 photos have masks, which leave out "));

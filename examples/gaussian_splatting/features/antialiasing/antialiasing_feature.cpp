@@ -18,7 +18,7 @@ finding antialiasing_feature::analyze(const scene_statistics& statistics) const 
         const auto [least, most] = std::ranges::minmax(seen, {}, &observation::footprint);
         ratios.push_back(most.footprint / least.footprint);
     }
-    if (ratios.size() < enough_points) return {{}, too_few_points(ratios.size(), "in sight"), "off"};
+    if (ratios.size() < enough_points) return {{}, too_few_points(ratios.size(), "visible"), "off"};
     const double ratio = median(ratios);
     const bool spreads = ratio >= least_ratio;
     return {spreads, text("the median point is %.1f times as large in one photo as in another", ratio),

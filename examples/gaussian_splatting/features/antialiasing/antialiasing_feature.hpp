@@ -12,8 +12,8 @@ class antialiasing_feature final : public feature {
   public:
     std::string_view name() const override { return "antialiasing"; }
     std::string_view costs_and_gains() const override {
-        return "it improves views from distances that no photo has, and costs a little quality if all photos "
-               "are taken from alike distances";
+        return "improves views from other distances than those of the photos; lowers quality slightly if all "
+               "photos have the same distance";
     }
     finding analyze(const scene_statistics& statistics) const override;
     void prepare(const selected_feature&, scene&, gaussians&) const override;

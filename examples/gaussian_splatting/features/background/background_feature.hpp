@@ -11,7 +11,7 @@ namespace gs::features {
 class background_feature final : public feature {
   public:
     std::string_view name() const override { return "background"; }
-    std::string_view costs_and_gains() const override { return "it costs nothing"; }
+    std::string_view costs_and_gains() const override { return "has no cost"; }
     bool is_selectable() const override { return false; }
     finding analyze(const scene_statistics& statistics) const override {
         const bool alpha = statistics.scene().has_alpha;

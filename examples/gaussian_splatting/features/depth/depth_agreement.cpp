@@ -106,7 +106,7 @@ std::string say(const depth_agreement& found) {
     if (found.with_map == 0) return "no training photo has a depth map";
     if (found.told == 0)
         std::snprintf(line, sizeof line,
-                      "no telling: %zu of %zu photos have depth maps, and none knows those of %zu points",
+                      "cannot decide: %zu of %zu photos have depth maps, but no map covers %zu points",
                       found.with_map, found.photos, least_points);
     else
         std::snprintf(line, sizeof line,

@@ -16,8 +16,7 @@ class depth_feature final : public feature {
 
     std::string_view name() const override { return "depth"; }
     std::string_view costs_and_gains() const override {
-        return "it helps where photos and points are few, and a step with a depth map takes up to twice the "
-               "time";
+        return "helps if photos and points are few; an iteration with a depth map takes up to twice the time";
     }
     finding analyze(const scene_statistics& statistics) const override;
     std::vector<float> neutral_values(const scene& scene) const override;

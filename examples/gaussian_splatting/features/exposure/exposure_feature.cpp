@@ -43,7 +43,7 @@ finding exposure_feature::analyze(const scene_statistics& statistics) const {
     const photo_brightness& brightness = statistics.brightness();
     std::vector<float> values = values_of(brightness, photos);
     if (points < enough_points)
-        return {{}, too_few_points(points, "in smooth parts"), "off", std::move(values)};
+        return {{}, too_few_points(points, "in smooth areas"), "off", std::move(values)};
     std::vector<double> errors;
     double square = 0;
     for (std::size_t v = 0; v < photos; ++v) {
@@ -55,10 +55,11 @@ finding exposure_feature::analyze(const scene_statistics& statistics) const {
     const double error = median(errors);
     const bool varies = spread >= least_spread && spread >= least_errors * error;
     const auto percent = [](double log2) { return 100 * (std::exp2(log2) - 1); };
-    return {varies,
-            text("photos have the same points %.1f %% brighter or darker, measured to %.1f %%",
-                 percent(spread), percent(error)),
-            varies ? "on" : "off", std::move(values)};
+    return {
+        varies,
+        text("the brightness of the same points differs by %.1f %% between photos (standard error %.1f %%)",
+             percent(spread), percent(error)),
+        varies ? "on" : "off", std::move(values)};
 }
 
 std::vector<float> exposure_feature::neutral_values(const scene& scene) const {

@@ -16,8 +16,8 @@ class exposure_feature final : public feature {
 
     std::string_view name() const override { return "exposure"; }
     std::string_view costs_and_gains() const override {
-        return "it helps where the same points are brighter in some photos than in others, and costs up to a "
-               "tenth of a step";
+        return "helps if the same points are brighter in some photos than in others; iterations are slightly "
+               "slower";
     }
     finding analyze(const scene_statistics& statistics) const override;
     bool begins_from_photos() const override { return true; }

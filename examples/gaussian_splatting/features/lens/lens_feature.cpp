@@ -24,9 +24,9 @@ finding lens_feature::analyze(const scene_statistics& statistics) const {
     if (photos == 0)
         return {false, "all cameras are pinhole cameras, or their photos were undistorted", "pinhole"};
     return {true,
-            text("fisheye lenses took %zu of %zu photos, up to %.0f degrees from corner to corner", photos,
+            text("%zu of %zu photos have fisheye lenses with diagonals of up to %.0f degrees", photos,
                  statistics.scene().train.size(), widest),
-            "drawn in place"};
+            "fisheye"};
 }
 
 }  // namespace gs::features

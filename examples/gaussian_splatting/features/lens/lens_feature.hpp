@@ -11,7 +11,7 @@ class lens_feature final : public feature {
   public:
     std::string_view name() const override { return "lens"; }
     std::string_view costs_and_gains() const override {
-        return "it makes photos as wide as a hemisphere usable, and costs a little time";
+        return "makes very wide photos usable; iterations are slightly slower";
     }
     bool is_selectable() const override { return false; }
     finding analyze(const scene_statistics& statistics) const override;

@@ -9,7 +9,7 @@
 namespace gs::features {
 namespace {
 
-constexpr const char* no_masks = "no mask leaves anything out of a training photo";
+constexpr const char* no_masks = "no training photo has masked pixels";
 
 }  // namespace
 
@@ -24,7 +24,7 @@ finding masks_feature::analyze(const scene_statistics& statistics) const {
     }
     if (photos == 0) return {false, no_masks, "off"};
     return {true,
-            text("%zu of %zu photos have masks, which leave out %.1f %% of all pixels", photos,
+            text("%zu of %zu photos have masks, which exclude %.1f %% of all pixels", photos,
                  statistics.scene().train.size(),
                  100 * static_cast<double>(masked_pixels) / static_cast<double>(all_pixels)),
             "on"};

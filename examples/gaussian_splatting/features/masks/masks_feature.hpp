@@ -11,7 +11,7 @@ class masks_feature final : public feature {
   public:
     std::string_view name() const override { return "masks"; }
     std::string_view costs_and_gains() const override {
-        return "they keep what moved between the photos out of the scene, and cost no time";
+        return "keep moving objects out of the scene; have no cost";
     }
     finding analyze(const scene_statistics& statistics) const override;
     std::string obstacle(const scene& scene, const std::vector<float>&) const override;

@@ -43,15 +43,17 @@ finding sh_degree_feature::analyze(const scene_statistics& statistics) const {
     std::vector<float> values{static_cast<float>(degree), 1};
     if (!found.is_known())
         return {{},
-                too_few_points(found.points, "about as large in smooth parts"),
+                too_few_points(found.points, "of similar size in smooth areas"),
                 choice,
                 std::move(values),
                 degree > 0};
     const auto up_to = static_cast<std::size_t>(degree == 0 ? 3 : degree);
-    return {degree > 0,
-            text("degree %zu brings what photos of a point differ by from %.2f %% down to %.2f %%", up_to,
-                 100 * std::sqrt(found.unexplained[0]), 100 * std::sqrt(found.unexplained[up_to])),
-            choice, std::move(values)};
+    return {
+        degree > 0,
+        text(
+            "degree %zu reduces the unexplained difference between photos of a point from %.2f %% to %.2f %%",
+            up_to, 100 * std::sqrt(found.unexplained[0]), 100 * std::sqrt(found.unexplained[up_to])),
+        choice, std::move(values)};
 }
 
 void sh_degree_feature::prepare(const selected_feature& selected, scene&, gaussians& model) const {

@@ -15,8 +15,9 @@ class sh_degree_feature final : public feature {
   public:
     std::string_view name() const override { return "direction"; }
     std::string_view costs_and_gains() const override {
-        return "it helps on glossy scenes, can overfit on noisy matte ones, and a Gaussian of degree 3 takes "
-               "four times the memory of one without";
+        return "helps with glossy surfaces; can overfit noisy photos of matte ones; degree 3 takes four "
+               "times "
+               "the memory of degree 0";
     }
     finding analyze(const scene_statistics& statistics) const override;
     std::vector<float> neutral_values(const scene&) const override { return {3, 0}; }

@@ -30,13 +30,13 @@ sky_fit best_fit(const scene_statistics& statistics) {
 finding sky_feature::analyze(const scene_statistics& statistics) const {
     sky_fit s = best_fit(statistics);
     s.coefficients.resize(sky_width);
-    if (!s.has_points) return {{}, "no telling: the scene has no points", "off", s.coefficients};
+    if (!s.has_points) return {{}, "cannot decide: the scene has no points", "off", s.coefficients};
     if (statistics.scene().has_alpha) return {false, has_alpha, "off"};
     const bool exists =
         s.share >= least_share && s.share >= least_of_empty * s.empty && s.brightness >= least_brightness;
     return {exists,
-            text("%.1f %% of the photos' area is smooth and without points; of that, other photos tell "
-                 "%.0f %%, %.0f %% bright, by direction",
+            text("%.1f %% of the pixels are smooth and without points; the direction alone predicts %.0f %% "
+                 "of them, with a brightness of %.0f %%",
                  100 * s.empty, s.empty > 0 ? 100 * s.share / s.empty : 0.0, 100 * s.brightness),
             exists ? "on" : "off", std::move(s.coefficients)};
 }

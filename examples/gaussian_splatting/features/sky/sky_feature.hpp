@@ -16,7 +16,7 @@ class sky_feature final : public feature {
 
     std::string_view name() const override { return "sky"; }
     std::string_view costs_and_gains() const override {
-        return "it removes floaters in front of a sky, and costs up to a sixth of a step";
+        return "removes floaters in front of a sky; iterations are slower";
     }
     finding analyze(const scene_statistics& statistics) const override;
     bool begins_from_photos() const override { return true; }
