@@ -15,28 +15,28 @@
 
 namespace gs::train {
 
-/// How a Gaussian of the new generation came to be. Copies and halves begin with moments of zero, the others
-/// keep the moments of their origin.
+/// The way in which a Gaussian of the new generation came from its origin. Copies and halves begin with
+/// moments of zero; the others keep the moments of their origin.
 enum class birth : std::uint32_t {
     kept,      ///< the only successor of its origin
-    original,  ///< its origin, of which there is a copy
+    original,  ///< the origin itself, which also has a copy
     copy,
     half  ///< one half of a split
 };
 
-/// Clears the flags of the Gaussians with the first ranks. One index for each rank.
+/// Clears the flags of the Gaussians with the first ranks. One index per rank.
 struct clear_ranked {
-    const std::uint32_t* gaussian_of;  ///< by rank
+    const std::uint32_t* gaussian_of;  ///< index of the Gaussian with a rank
     std::uint32_t* flags;
 
     WARPAGG_HD void operator()(std::size_t rank) const { flags[gaussian_of[rank]] = 0; }
 };
 
-/// Gathers values and moments of one parameter for the new generation, in whole blocks. One index for each
-/// new value.
+/// Gathers values and moments of one parameter for the new generation, in whole blocks. One index per new
+/// value.
 struct gather_parameters {
-    std::size_t count;   ///< the first new Gaussians, which have the parameter
-    std::size_t before;  ///< the first old Gaussians, which have it; for all others it is zero
+    std::size_t count;   ///< number of new Gaussians with the parameter, which come first
+    std::size_t before;  ///< number of old Gaussians with it, which come first; for others it is zero
     const std::uint32_t* origin;
     const birth* births;
     std::size_t width;
@@ -55,7 +55,7 @@ struct gather_parameters {
     }
 };
 
-/// Gives each new Gaussian the last step of its origin. One index for each new Gaussian.
+/// Gives each new Gaussian the last step of its origin. One index per new Gaussian.
 struct gather_last_steps {
     const std::uint32_t* origin;
     const std::uint32_t* from;
@@ -64,8 +64,8 @@ struct gather_last_steps {
     WARPAGG_HD void operator()(std::size_t i) const { to[i] = from[origin[i]]; }
 };
 
-/// Moves all parameters of the Gaussians, with the state of Adam, to a new generation: a reordering, with
-/// Gaussians removed or repeated. Owns the memory that this takes.
+/// Moves all parameters of the Gaussians, with the state of Adam, to a new generation, which reorders,
+/// removes or repeats Gaussians. Owns the memory for this.
 template <device::device Device>
 class parameter_gather {
     template <class T>
@@ -74,19 +74,19 @@ class parameter_gather {
   public:
     explicit parameter_gather(Device& device) : device_(device) {}
 
-    /// Makes room to describe up to `most` new Gaussians by `origins` and `births`, which lose their
-    /// contents.
+    /// Sets the capacity of `origins` and `births` to `most` new Gaussians. Both lose their contents.
     void reserve(std::size_t most) {
         origin_.resize(most);
         births_.resize(most);
     }
-    /// For each new Gaussian, the index of the old one that it comes from. To be filled before `run`.
+    /// Returns the array with the index of each new Gaussian's origin. Fill it before `run`.
     std::uint32_t* origins() const { return origin_.data(); }
-    /// For each new Gaussian, how it comes from its origin. To be filled before `run`.
+    /// Returns the array with the birth of each new Gaussian. Fill it before `run`.
     birth* births() const { return births_.data(); }
 
-    /// Replaces the Gaussians by `count` new ones, of which the first `with_sh` have the coefficients of SH
-    /// bands 1 to `sh_degree`: whole blocks, or all. These are zero where the origin has none. Does not wait.
+    /// Replaces the Gaussians with `count` new ones. The first `with_sh` of them, a multiple of the block
+    /// length or all, have SH coefficients of degrees 1 to `sh_degree`, which are zero if the origin has
+    /// none. Does not wait for the device.
     void run(trained_parameters<Device>& all, std::size_t count, std::size_t with_sh, int sh_degree) {
         for (std::size_t p = 0; p < parameter_count; ++p)
             if (has_parameter(p, sh_degree)) gather(all, p, is_view_dependent(p) ? with_sh : count);
@@ -98,7 +98,7 @@ class parameter_gather {
         device_.copy(all.last_step.data(), spare_steps_.data(), count);
     }
 
-    /// Gives back the memory of copies, for a caller that is unlikely to be followed by another one.
+    /// Frees temporary memory. Call it if another `run` is unlikely.
     void release() {
         for (auto& s : spare_) s = buffer<float>();
     }
@@ -118,7 +118,7 @@ class parameter_gather {
                                  {arrays[0]->data(), arrays[1]->data(), arrays[2]->data()},
                                  {spare_[0].data(), spare_[1].data(), spare_[2].data()}});
         for (std::size_t k = 0; k < arrays.size(); ++k) {
-            if (n < arrays[k]->size()) *arrays[k] = buffer<float>();  // gives memory back
+            if (n < arrays[k]->size()) *arrays[k] = buffer<float>();  // frees memory
             arrays[k]->resize(n);
             device_.copy(arrays[k]->data(), spare_[k].data(), n);
         }

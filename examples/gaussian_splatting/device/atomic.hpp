@@ -7,7 +7,8 @@
 
 namespace gs::device {
 
-/// What rare events are counted with, from kernels over an index: no warp is there to add up first.
+/// Updates a counter of rare events from index kernels, which have no warp to reduce first. Relaxed. Cost:
+/// one atomic per call.
 /// @{
 WARPAGG_HD void atomic_add(unsigned long long* to, unsigned long long value) {
 #if defined(__CUDA_ARCH__)
@@ -27,7 +28,7 @@ WARPAGG_HD void atomic_min(unsigned long long* to, unsigned long long value) {
 }
 /// @}
 
-/// Returns what was there before.
+/// Adds `value` atomically and returns the previous value.
 WARPAGG_HD std::uint32_t atomic_add(std::uint32_t* to, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)
     return atomicAdd(to, value);

@@ -3,11 +3,11 @@
 #pragma once
 
 /// @file
-/// The `device` concept: everything that the trainer asks of a machine that stores its data and
-/// runs its kernels. Only the models, `cpu` and `cuda`, know OpenMP and CUDA.
+/// The concept `device`: the requirements of the trainer on a device, which stores its data and runs its
+/// kernels. Only its models, `cpu` and `cuda`, use OpenMP and CUDA.
 ///
 /// Kernels are function objects whose members are values and pointers to device memory. They run in
-/// the order of their launches. No member waits for the device unless the table says so.
+/// the order of their launches. Only members whose description mentions it wait for the device.
 
 #include <concepts>
 #include <cstddef>
@@ -20,7 +20,7 @@
 
 namespace gs::device {
 
-/// What the concept calls the members of a device with.
+/// Argument types with which the concept checks the members of a device.
 namespace archetype {
 
 struct index_kernel {
@@ -76,7 +76,7 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 /// - `iteration(key, f)`: runs `f()`, which launches one training iteration. `f` does not wait,
 ///   and allocates only in the first iteration with this key. From the second one on, a device may
 ///   capture the launches and submit them as one graph.
-/// - `wait()`: returns when everything launched so far has run.
+/// - `wait()`: returns when all earlier launches and copies have finished.
 ///
 /// Copies of n values
 /// - `zero(p, n)`: sets them to zero.

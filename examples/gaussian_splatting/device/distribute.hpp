@@ -8,14 +8,14 @@
 
 namespace gs::device {
 
-/// The bucket of a candidate that goes nowhere.
+/// The bucket of a candidate that goes to no list.
 inline constexpr std::uint32_t no_bucket = 0xffffffffu;
 
-/// Items that each go to any number of buckets: the input of `distribute`, see `device`. Of item i,
-/// `all(i)`:
+/// Items, each of which goes to any number of buckets: the input of `distribute`, see `device`. Item i
+/// is `all(i)`, with the members:
 /// - `size()`: number of its candidates.
-/// - `bucket(k)`: bucket of candidate k, or `no_bucket`. Depends on nothing but i and k; no two
-///   candidates of an item have the same bucket.
+/// - `bucket(k)`: bucket of candidate k, or `no_bucket`. Depends only on i and k. The candidates of
+///   an item have different buckets.
 /// - `value`: represents the item in the lists.
 template <class T>
 concept items = requires(const T& all, std::size_t i, std::uint32_t k) {

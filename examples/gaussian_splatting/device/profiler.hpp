@@ -10,20 +10,20 @@
 
 namespace gs::device {
 
-/// What a device can tell about the work it does.
+/// Measurements of the work that a device does.
 class profiler {
   public:
     virtual ~profiler() = default;
 
     virtual std::string device_name() const = 0;
-    /// Times every n-th step from now on. By default, the steps that cost nothing to time: all on the CPU,
-    /// every 50th on a GPU.
+    /// Times every n-th step after this call. By default a CPU times each step and a GPU every 50th step,
+    /// which costs little.
     virtual void sample_times(int every) = 0;
-    virtual stage_times times() = 0;  ///< since `sample_times`, or since the start
-    /// Pairs of pixel and Gaussian that steps have evaluated in the forward pass.
+    virtual stage_times times() = 0;  ///< Returns the sums since `sample_times`, or since the start
+    /// Returns the number of pairs of a pixel and a Gaussian that forward passes have evaluated.
     virtual std::uint64_t pairs() = 0;
-    virtual std::size_t peak_device_bytes() const = 0;  ///< zero if the device uses the host's memory
-    /// Waits until the device has done all its work.
+    virtual std::size_t peak_device_bytes() const = 0;  ///< Returns zero if the device uses host memory
+    /// Waits until the device has finished all work.
     virtual void wait() = 0;
 };
 

@@ -4,8 +4,8 @@
 
 namespace gs::device {
 
-/// Whether a warp kernel asks for memory that the lanes of its warp share while it runs. Such a
-/// kernel names the type, `scratch<Warp>`, and gets an uninitialized object of it as its last
+/// Is satisfied by warp kernels that need scratch memory, which the lanes of the warp share. Such a
+/// kernel has a member type `scratch<Warp>`, and receives an uninitialized object of it as its last
 /// argument. On a GPU the object is in shared memory.
 template <class F, class Warp>
 concept has_scratch = requires {

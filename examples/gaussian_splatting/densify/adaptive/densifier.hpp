@@ -11,7 +11,7 @@
 
 namespace gs::train {
 
-/// Replaces the Gaussians in training by a new generation, by their statistics.
+/// Replaces the Gaussians in training with a new generation, based on the statistics of their gradients.
 template <device::device Device>
 class densifier {
     template <class T>
@@ -21,7 +21,7 @@ class densifier {
   public:
     explicit densifier(Device& device) : device_(device) { tally_.resize(1); }
 
-    /// Copies, splits and removes Gaussians as `config` specifies. Waits for the device once.
+    /// Clones, splits and removes Gaussians as `config` specifies. Waits for the device once.
     densify_tally densify(const context& c, const densify_config& config) {
         begin(c, std::min(2 * c.count, std::max<std::size_t>(c.count, config.cap)));
         device_.for_each_index(
@@ -58,7 +58,7 @@ class densifier {
         device_.zero(tally_.data(), 1);
     }
 
-    /// Makes `copies_[i]` successors of Gaussian i.
+    /// Starts a new generation with `copies_[i]` successors of Gaussian i.
     densify_tally renew(const context& c) {
         device_.prefix_sum(copies_, first_copy_, c.count);
         device_.for_each_index(c.count, place_copies{copies_.data(), large_.data(), first_copy_.data(),

@@ -17,21 +17,21 @@ namespace gs::train {
 
 /// Counts of one densification.
 struct densify_tally {
-    std::uint64_t count;                  ///< Gaussians of the new generation
-    unsigned long long without_gradient;  ///< old ones that were drawn, but received no gradient
+    std::uint64_t count;                  ///< number of Gaussians in the new generation
+    unsigned long long without_gradient;  ///< old Gaussians that were drawn but received no gradient
 };
 
-/// Classifies each Gaussian: whether it stays, whether it is large, and how urgently it is to grow. One index
-/// for each Gaussian.
+/// Classifies each Gaussian: whether it stays, whether it is large, and how urgently it should grow. One
+/// index per Gaussian.
 struct classify {
     parameter_arrays<const float> gaussians;
     const raster::visibility* seen;
     densify_config config;
     std::uint32_t* stays;    ///< 1 or 0
-    std::uint32_t* large;    ///< 1 or 0: grows by a split
-    std::uint32_t* urgency;  ///< sort key: the more urgent the smaller; all bits set: it does not grow
+    std::uint32_t* large;    ///< 1 if it grows by a split, otherwise 0
+    std::uint32_t* urgency;  ///< sort key, smaller if more urgent; all bits are set if it does not grow
     std::uint32_t* identities;
-    unsigned long long* without_gradient;  ///< counter of those that were drawn, but received no gradient
+    unsigned long long* without_gradient;  ///< counter of Gaussians that were drawn but received no gradient
 
     WARPAGG_HD void operator()(std::size_t index) const {
         const auto i = static_cast<unsigned>(index);
@@ -49,7 +49,8 @@ struct classify {
     }
 };
 
-/// Lets the most urgent Gaussians become two, as far as cap and `most_births` allow. One index for each rank.
+/// Selects the most urgent Gaussians for growth, as many as `cap` and `most_births` allow: each becomes two.
+/// One index per rank.
 struct select_growth {
     const std::uint32_t* urgency;
     const std::uint32_t* gaussian_of;
@@ -64,21 +65,21 @@ struct select_growth {
     }
 };
 
-/// Rates Gaussians by the sum of their gradients; all stay for now. One index for each Gaussian.
+/// Rates Gaussians by the sum of their gradients, and marks all of them to stay. One index per Gaussian.
 struct rate_by_gradient {
     const raster::visibility* seen;
     std::uint32_t* stays;
-    std::uint32_t* rating;  ///< sort key: the smaller the gradient the smaller
+    std::uint32_t* rating;  ///< sort key, which increases with the gradient
     std::uint32_t* identities;
 
     WARPAGG_HD void operator()(std::size_t i) const {
         stays[i] = 1;
-        rating[i] = raster::bits_of(seen[i].gradient);  // not negative: has the order of its bits
+        rating[i] = raster::bits_of(seen[i].gradient);  // the bits of non-negative floats have their order
         identities[i] = static_cast<std::uint32_t>(i);
     }
 };
 
-/// Writes where each new Gaussian comes from. One index for each old Gaussian.
+/// Writes the origin and birth of each new Gaussian. One index per old Gaussian.
 struct place_copies {
     const std::uint32_t* copies;
     const std::uint32_t* large;
@@ -97,8 +98,8 @@ struct place_copies {
     }
 };
 
-/// Both halves of a split draw a position from the distribution of their origin and become 1.6 times smaller.
-/// One index for each new Gaussian.
+/// Gives both halves of a split a random position from the distribution of their origin, and divides their
+/// scale by 1.6. One index per new Gaussian.
 struct split {
     const birth* births;
     std::uint64_t seed;
@@ -119,21 +120,22 @@ struct split {
     }
 };
 
-/// Gives a copied Gaussian and its copy the opacity with which both together are as opaque as it was alone.
-/// One index for each new Gaussian.
+/// Gives a cloned Gaussian and its clone the opacity with which both together are as opaque as the Gaussian
+/// was. One index per new Gaussian.
 struct revise_opacity {
     const birth* births;
     float* opacity;
 
     WARPAGG_HD void operator()(std::size_t i) const {
         if (births[i] != birth::original && births[i] != birth::copy) return;
-        // The logit of 1 - sqrt(1 - o): with e = o / (1 - o), log(sqrt(1 + e) - 1) without its cancellation.
+        // The logit of 1 - sqrt(1 - o) is log(sqrt(1 + e) - 1) with e = o / (1 - o). This form avoids the
+        // cancellation.
         const float e = glm::exp(warpagg::math::min(opacity[i], 80.0f));
         opacity[i] -= glm::log(1 + warpagg::math::sqrt(1 + e));
     }
 };
 
-/// Lowers each opacity to at most `most`, a logit, and clears its moments. One index for each Gaussian.
+/// Lowers each opacity to at most `most`, a logit, and clears its moments. One index per Gaussian.
 struct lower_opacity {
     float* opacity;
     float* first;
@@ -148,14 +150,13 @@ struct lower_opacity {
 };
 
 /// Hides Gaussians that are closer to a training camera than its near plane. That camera cannot see them, so
-/// its image does not remove them, and they would appear as floaters in other views. One index for each
-/// Gaussian.
+/// its image does not remove them, and they would appear as floaters in other views. One index per Gaussian.
 struct hide_near_camera {
     const glm::vec3* cameras;
     std::size_t camera_count;
     const float* mean;
     float* opacity;
-    float hidden;  ///< a logit
+    float hidden;  ///< logit of the largest opacity of a hidden Gaussian
 
     WARPAGG_HD void operator()(std::size_t index) const {
         const auto i = static_cast<unsigned>(index);

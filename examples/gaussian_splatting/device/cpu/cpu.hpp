@@ -26,7 +26,7 @@
 
 namespace gs::device {
 
-/// The instruction set that this file is compiled for, as part of the device's name.
+/// The instruction set that this header is compiled for, as part of the device's name.
 #if defined(__AVX512VL__)
 inline constexpr const char* instruction_set = ", AVX-512";
 #elif defined(__AVX2__)
@@ -35,14 +35,14 @@ inline constexpr const char* instruction_set = ", AVX2";
 inline constexpr const char* instruction_set = "";
 #endif
 
-/// Models `device` on the CPU: OpenMP threads share the indices or warps of a launch, and device
-/// memory is host memory. Every member returns when its work is done. `Warp` is the model that warp
-/// kernels run on.
+/// The model of `device` for the CPU. OpenMP threads share the indices or warps of a launch, and device
+/// memory is host memory. Each member returns when its work is done. `Warp` is the model of `warp` that
+/// warp kernels run on.
 template <class Warp>
 class basic_cpu {
   public:
     using warp = Warp;
-    /// With 32 lanes, kernels over Gaussians would need more values than there are registers.
+    /// A narrow warp, because kernels over Gaussians with 32 lanes need more values than registers exist.
     using narrow_warp = std::conditional_t<Warp::size == 32, warpagg::emulator::narrow_lanes<8>, Warp>;
 
     template <class T>
@@ -151,7 +151,7 @@ class basic_cpu {
         };
         zero(places_.data(), slices * buckets);
         for_each_slice([&](std::vector<instance>& kept, std::uint64_t* counts, std::size_t s) {
-            auto found = std::move(kept);  // on this thread's stack: its size shares no cache line
+            auto found = std::move(kept);  // a local copy, whose size shares no cache line with other threads
             found.clear();
             for (std::size_t i = n * s / slices; i < n * (s + 1) / slices; ++i) {
                 const auto item = all(i);
@@ -268,7 +268,7 @@ class basic_cpu {
 
     buffer<std::uint32_t> other_keys_, other_values_;
     std::vector<std::size_t> histograms_, starts_;
-    // Of `distribute`.
+    // Memory of `distribute`.
     struct instance {
         std::uint32_t bucket, value;
     };
@@ -282,7 +282,8 @@ class basic_cpu {
     clock::time_point since_;
 };
 
-/// With warps of 8 lanes, a value of which fits in one AVX register: see `emulator::basic_lanes`.
+/// The CPU with warps of 8 lanes. A SIMD value of 8 floats fits in one AVX register: see
+/// `emulator::basic_lanes`.
 using cpu = basic_cpu<warpagg::emulator::narrow_lanes<8>>;
 static_assert(device<cpu>);
 

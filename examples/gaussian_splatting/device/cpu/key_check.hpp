@@ -12,12 +12,12 @@
 
 namespace gs::device {
 
-/// Checks the promise of a graph key: iterations with equal keys launch the same kernels over the same
-/// ranges, and only the first of them allocates memory. A GPU captures all but the first as graphs, during
-/// which nothing can be allocated; here a broken promise is an error. Cost: a few comparisons per launch.
+/// Checks graph keys on the CPU: iterations with equal keys must launch the same kernels over the same
+/// ranges, and only the first of them may allocate memory. A GPU captures all but the first as graphs, and
+/// cannot allocate during a capture. A violation is an error. Cost: a few comparisons per launch.
 class key_check {
   public:
-    /// Every type of kernel has its own address.
+    /// Returns an address that is unique to a type of kernel.
     template <class Kernel>
     static const void* id() {
         static constexpr char address = 0;
@@ -42,13 +42,13 @@ class key_check {
         if (next_ != expected_->size()) fail("made fewer launches");
     }
 
-    /// Notes a launch over `n` elements if an iteration runs.
+    /// Checks a launch over `n` elements if an iteration is running.
     template <class Kernel>
     static void launched(std::size_t n) {
         if (current_ != nullptr) current_->compare({id<Kernel>(), n});
     }
 
-    /// Notes that memory was allocated.
+    /// Checks that an allocation is allowed. Call it when memory is allocated.
     static void allocated() {
         if (current_ != nullptr && !current_->is_new_) current_->fail("allocated memory");
     }

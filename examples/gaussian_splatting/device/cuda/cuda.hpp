@@ -34,7 +34,7 @@ struct wide_sum {
     __device__ std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
 };
 
-/// The first n numbers, followed by a zero.
+/// A sequence of the first n numbers, followed by zeros.
 template <class Numbers>
 struct and_a_zero {
     Numbers numbers;
@@ -54,8 +54,8 @@ __global__ void for_each_index(std::size_t n, F f) {
     if (i < n) f(i);
 }
 
-/// A kernel can specify how many of its warps an SM must be able to hold at once, `warps_at_once`.
-/// The compiler then limits its registers.
+/// The minimum number of blocks per SM. A kernel may specify in `warps_at_once` how many of its warps an
+/// SM must hold at the same time. The compiler then limits the kernel's registers.
 template <class F>
 constexpr int least_blocks = 1;
 template <class F>
@@ -77,8 +77,8 @@ __global__ void __launch_bounds__(block_size, least_blocks<F>) for_each_warp(uns
 
 }  // namespace detail
 
-/// Models `device` on an NVIDIA GPU: the current CUDA device and one stream on it. Throws `error`
-/// when the GPU is out of memory.
+/// The model of `device` for an NVIDIA GPU: the current CUDA device and one stream on it. Throws `error`
+/// if the GPU is out of memory.
 class cuda {
   public:
     using warp = warpagg::cuda_warp;
@@ -172,15 +172,15 @@ class cuda {
                count, sort_memory_.data());
         std::uint32_t *from[] = {keys.data(), values.data()},
                       *to[] = {other_keys_.data(), other_values_.data()};
-        static_assert(digits_a_key % 2 == 0);  // so that the result is in `keys` and `values`
+        static_assert(digits_a_key % 2 == 0);  // leaves the result in `keys` and `values`
         for (unsigned digit = 0; digit < digits_a_key; ++digit, std::swap(from, to))  // knob: radix_passes
             launch(sort_by_digit<std::uint32_t, std::uint32_t>, tiles, sorting_threads, 0, from[0], from[1],
                    count, digit * digit_bits, sort_memory(sort_memory_.data(), tiles, digit), to[0], to[1]);
     }
 
-    /// Iterations of the same key need the same memory. From the second one on, their launches are captured
-    /// and submitted as one graph, because nothing can be allocated during a capture. Timed iterations are
-    /// not captured.
+    /// Runs an iteration. Iterations with equal keys need the same memory, which the first one allocates. The
+    /// launches of later ones are captured and submitted as one graph, because a capture cannot allocate.
+    /// Timed iterations are not captured.
     template <class F>
     void iteration(const graph_key& key, const F& f) {
         const bool is_new = keys_.insert(key).second;
@@ -201,7 +201,7 @@ class cuda {
     void wait() { check(cudaStreamSynchronize(stream_)); }
 
   private:
-    /// A stream that is destroyed after the members that use it.
+    /// A stream with an owner, so that it is destroyed after the members that use it.
     struct owned_stream {
         cudaStream_t stream{};
         owned_stream() { check(cudaStreamCreate(&stream)); }
@@ -215,7 +215,8 @@ class cuda {
         return static_cast<unsigned>((n + each - 1) / each);
     }
 
-    /// Launches a kernel, one that begins with `await_kernel_before`, unless it has no blocks.
+    /// Launches a kernel, or does nothing if `blocks` is 0. Precondition: the kernel begins with
+    /// `await_kernel_before`.
     template <class... Parameters>
     void launch(void (*kernel)(Parameters...), unsigned blocks, unsigned threads, std::size_t shared_bytes,
                 const std::type_identity_t<Parameters>&... arguments) {
@@ -251,12 +252,12 @@ class cuda {
     owned_stream stream_;
     cuda_times times_;
     cuda_graph graph_;
-    std::set<graph_key> keys_;    ///< of the iterations so far
-    bool kernels_await_ = false;  ///< the GPU launches a kernel before its predecessor ends
+    std::set<graph_key> keys_;    ///< graph keys of the iterations so far
+    bool kernels_await_ = false;  ///< whether the GPU launches a kernel before its predecessor ends
     std::size_t resident_warps_ = 0;
     buffer<std::uint32_t> other_keys_, other_values_, sort_memory_;
     buffer<char> scratch_;
-    buffer<std::uint64_t> first_candidate_;  // of `distribute`
+    buffer<std::uint64_t> first_candidate_;  // memory of `distribute`, with the next two
     buffer<std::uint32_t> table_;
     buffer<unsigned> slices_done_;
 };

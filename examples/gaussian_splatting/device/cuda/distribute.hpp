@@ -10,22 +10,23 @@
 #include "../distribute.hpp"
 #include "kernel.hpp"
 
-/// The kernels of `cuda::distribute`. The candidates of all items, one item's after the other's, are cut into
-/// `slices` of equal length, whatever the items' sizes. Each slice has a row of a table, with an entry for
-/// each bucket: first how many of its candidates go there, then where in the bucket's list they begin.
+/// The kernels of `cuda::distribute`. The candidates of all items, in the order of the items, are cut into
+/// `slices` of equal length, so that slices do not depend on the sizes of items. A table has a row per slice
+/// and a column per bucket. First it holds how many of the slice's candidates go to the bucket, then the
+/// place in the bucket's list where they begin.
 namespace gs::device::detail {
 
 inline constexpr unsigned slices = 1024;
-inline constexpr unsigned counting_warps = 4;  ///< a slice
+inline constexpr unsigned counting_warps = 4;  ///< number of warps per slice
 
-/// Buckets that a row may have to lie in shared memory.
+/// The largest number of buckets for which a row fits in shared memory.
 inline constexpr std::size_t shared_buckets = 48 * 1024 / sizeof(std::uint32_t);
 
-/// The item that holds this candidate: the last with first[item] <= candidate. All lanes call together, and
-/// get the same.
+/// Returns the item that has this candidate: the last one with first[item] <= candidate. All lanes of the
+/// warp call this with equal arguments. The result is uniform.
 __device__ inline std::size_t item_of(const std::uint64_t* first, std::size_t items,
                                       std::uint64_t candidate) {
-    std::size_t low = 0, high = items;  // it is in [low, high)
+    std::size_t low = 0, high = items;  // the item is in [low, high)
     while (high - low > 1) {
         const std::size_t step = (high - low + warp_size - 1) / warp_size;
         const std::size_t probe = low + step * lane_of_warp();
@@ -36,14 +37,14 @@ __device__ inline std::size_t item_of(const std::uint64_t* first, std::size_t it
     return low;
 }
 
-/// Hands the candidates [from, to) out to the lanes of a warp, `Rounds` times 32 together: an item of many
-/// takes many lanes, many of few share a round. Calls f(buckets, values), `Rounds` of each; a lane without
-/// candidate gets `no_bucket`.
+/// Distributes the candidates [from, to) over the lanes of a warp, 32 `Rounds` at a time. An item with many
+/// candidates takes many lanes, and items with few candidates share a round. Calls f(buckets, values) with
+/// `Rounds` elements of each per lane. A lane without a candidate gets `no_bucket`.
 template <unsigned Rounds, class Items, class F>
 __device__ void for_each_candidate(const Items& items, const std::uint64_t* first, std::size_t count,
                                    std::uint64_t from, std::uint64_t to, const F& f) {
     if (from >= to) return;
-    // Each lane knows where one of 32 items ends, all counted from `from`.
+    // Each lane holds the end of one of 32 items, relative to `from`.
     for (std::size_t item = item_of(first, count, from), begin = 0; begin < to - from; item += warp_size) {
         const std::size_t mine = item + lane_of_warp() < count ? item + lane_of_warp() + 1 : count;
         const std::uint64_t end_of_mine = first[mine] < to ? first[mine] : to;
@@ -71,7 +72,7 @@ __device__ void for_each_candidate(const Items& items, const std::uint64_t* firs
     }
 }
 
-/// The candidates that part `part` of `parts` of a slice has.
+/// The range [from, to) of candidates in part `part` of the `parts` of a slice.
 struct slice_of_candidates {
     std::uint64_t from, to;
 
@@ -84,7 +85,7 @@ struct slice_of_candidates {
     }
 };
 
-/// Counts: one block a slice.
+/// Counts a slice's candidates by bucket. One block per slice.
 template <bool Shared, class Items>
 __global__ void __launch_bounds__(counting_warps* warp_size)
     count_slice(Items items, const std::uint64_t* first, std::size_t count, unsigned buckets,
@@ -106,9 +107,10 @@ __global__ void __launch_bounds__(counting_warps* warp_size)
 
 inline constexpr unsigned placing_warps = 32;
 
-/// From counts to places within each bucket's list, and to the lists' ranges: one block for 32 buckets, which
-/// the lanes stand for, and a part of the slices for each of its warps. The block that is done last, as
-/// `done` tells it, goes on to the ranges: until then they hold the lists' lengths.
+/// Turns counts into places within each bucket's list, and computes the ranges of the lists. One block
+/// handles 32 buckets: each lane handles a bucket, and each warp a part of the slices. The block that
+/// finishes last, which the counter `done` determines, computes the ranges. Before that, `ranges[b].end`
+/// holds the length of list b.
 template <class Range>
 __global__ void __launch_bounds__(placing_warps* warp_size)
     place_buckets(unsigned buckets, std::uint32_t* table, std::uint64_t capacity, Range* ranges,
@@ -129,7 +131,7 @@ __global__ void __launch_bounds__(placing_warps* warp_size)
     }
     sums[warp][lane] = sum;
     __syncthreads();
-    // Across the warps: each takes the sums of one bucket.
+    // Scans across warps: each warp scans the sums of one bucket.
     const std::uint32_t own = sums[lane][warp], through = sum_to_lane(own);
     sums[lane][warp] = through - own;
     if (const unsigned b = blockIdx.x * warp_size + warp; lane == warp_size - 1 && b < buckets)
@@ -168,7 +170,8 @@ __global__ void __launch_bounds__(placing_warps* warp_size)
     }
 }
 
-/// Writes the lists: one warp a slice, as the order within a slice is the order of the list.
+/// Writes the lists. One warp per slice, because the order of candidates in a slice is the order of the
+/// lists.
 template <bool Shared, class Items, class Range>
 __global__ void __launch_bounds__(warp_size)
     append_slice(Items items, const std::uint64_t* first, std::size_t count, unsigned buckets,

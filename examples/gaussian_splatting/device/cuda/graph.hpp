@@ -6,7 +6,7 @@
 
 namespace gs::device {
 
-/// Work that is launched as one graph. What was made for one iteration is brought up to date for the next.
+/// Launches work as one CUDA graph. Later launches update the executable graph of earlier ones if possible.
 class cuda_graph {
   public:
     cuda_graph() = default;
@@ -16,8 +16,8 @@ class cuda_graph {
         if (graph_ != nullptr) cudaGraphExecDestroy(graph_);
     }
 
-    /// Launches on the stream what f does to it. f may launch, copy and zero there, but neither allocate nor
-    /// wait.
+    /// Captures the work that f submits to the stream, and launches it as a graph. f may launch kernels, copy
+    /// and zero memory, but must not allocate or wait.
     template <class F>
     void launch(cudaStream_t stream, const F& f) {
         check(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal));
@@ -39,7 +39,7 @@ class cuda_graph {
     void update(cudaGraph_t to) {
         cudaGraphExecUpdateResultInfo info;
         if (graph_ != nullptr && cudaGraphExecUpdate(graph_, to, &info) == cudaSuccess) return;
-        // It is the first, or has other launches than the one before.
+        // This graph is the first, or has other launches than the previous one.
         cudaGetLastError();
         if (graph_ != nullptr) cudaGraphExecDestroy(graph_);
         check(cudaGraphInstantiate(&graph_, to, 0));

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// What the kernels of `cuda` share.
+/// Functions that the kernels of `cuda` share.
 namespace gs::device::detail {
 
-/// The first thing that every kernel does. Its blocks may have been sent to the processors as soon as those
-/// of the kernel before it had all begun, so that they are there when it ends: here they wait for its end.
+/// Waits until the previous kernel has ended. Each kernel calls this first. On compute capability 9.0 and
+/// later, its blocks may be launched as soon as all blocks of the previous kernel have begun, which hides the
+/// latency of launches.
 __device__ inline void await_kernel_before() {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
     asm volatile("griddepcontrol.launch_dependents;");
@@ -17,14 +18,14 @@ __device__ inline void await_kernel_before() {
 inline constexpr unsigned warp_size = 32, every_lane = 0xffffffffu;
 
 __device__ inline unsigned lane_of_warp() { return threadIdx.x % warp_size; }
-/// How many of these lanes come before this one.
+/// Returns how many of these lanes precede the calling lane.
 __device__ inline unsigned lanes_before(unsigned lanes) {
     return static_cast<unsigned>(__popc(lanes & ((1u << lane_of_warp()) - 1)));
 }
-/// Whether this one is the last of them.
+/// Returns whether the calling lane is the last of these lanes.
 __device__ inline bool is_last_of(unsigned lanes) { return lanes >> lane_of_warp() == 1; }
 
-/// The sum over the lanes up to and with this one.
+/// Returns the sum of x over the lanes up to and including the calling lane.
 template <class T>
 __device__ T sum_to_lane(T x) {
     for (unsigned d = 1; d < warp_size; d *= 2) {
@@ -34,8 +35,8 @@ __device__ T sum_to_lane(T x) {
     return x;
 }
 
-/// The sum over the threads of a block up to and with this one. `sums`: shared, one a warp, not used by
-/// anyone since the last barrier. All threads call together.
+/// Returns the sum of x over the threads of a block up to and including the calling thread. All threads call
+/// this. `sums` is shared memory for one value per warp, which no thread has accessed since the last barrier.
 template <unsigned Warps, class T>
 __device__ T sum_to_thread(T x, T* sums) {
     static_assert(Warps <= warp_size);

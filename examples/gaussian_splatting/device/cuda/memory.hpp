@@ -20,7 +20,7 @@ inline void check(cudaError_t status) {
     if (status != cudaSuccess) throw std::runtime_error(std::string("CUDA: ") + cudaGetErrorString(status));
 }
 
-/// The pool that memory comes from. It keeps what is given back to it, so that nobody waits for the driver.
+/// The pool of device memory. It keeps released memory, so that allocations rarely call the driver.
 class cuda_pool {
   public:
     cuda_pool() {
@@ -28,7 +28,7 @@ class cuda_pool {
         std::uint64_t all = UINT64_MAX;
         check(cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &all));
     }
-    /// The most that was ever in use.
+    /// Returns the largest number of bytes in use so far.
     std::size_t peak_bytes() const {
         std::uint64_t bytes = 0;
         check(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrUsedMemHigh, &bytes));
@@ -39,7 +39,7 @@ class cuda_pool {
     cudaMemPool_t pool_{};
 };
 
-/// Memory of the device. Growing it loses the contents.
+/// An array in device memory: see `buffer_of`. Growing it loses the contents.
 template <class T>
 class cuda_buffer {
   public:
@@ -63,7 +63,7 @@ class cuda_buffer {
     std::size_t size() const { return size_; }
 
   private:
-    /// Comes after what any stream was given before, and before what it is given later.
+    /// Returns a stream whose work is ordered after earlier work and before later work of other streams.
     static cudaStream_t in_order() { return cudaStreamLegacy; }
 
     void release() {

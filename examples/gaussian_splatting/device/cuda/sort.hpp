@@ -9,9 +9,9 @@
 
 #include "kernel.hpp"
 
-/// The kernels of `cuda::sort_pairs`: a stable radix sort, digit by digit from the lowest, with one launch a
-/// digit (Adinolfi and Merrill, "Onesweep", 2022). CUB's is made for tens of millions of keys; this one has
-/// smaller tiles, which keep a whole GPU busy at a hundred thousand, and half as many launches.
+/// The kernels of `cuda::sort_pairs`: a stable radix sort, from the lowest digit on, with one launch per
+/// digit (Adinolfi and Merrill, "Onesweep", 2022). CUB's sort is made for tens of millions of keys. This one
+/// has half as many launches, and smaller tiles, which keep a GPU busy with a hundred thousand keys.
 namespace gs::device::detail {
 
 inline constexpr unsigned digit_bits = 8, digits = 1u << digit_bits;
@@ -23,9 +23,9 @@ __device__ inline std::uint32_t digit_of(std::uint32_t key, unsigned shift) {
     return key >> shift & (digits - 1);
 }
 
-/// What the launches of a sort share, zero before: how often each digit has each value, how many tiles have
-/// begun, and, `digits` for each tile, how many keys of each value the tiles have. Of the last the highest
-/// two bits say whether they are known, and of which tiles.
+/// The memory that the launches of a sort share, zero at first. For one digit it has the histogram of all
+/// keys, the number of tiles that have begun, and a histogram of `digits` values per tile. The highest two
+/// bits of a tile's values tell whether they are known, and whether they count this tile or all tiles so far.
 struct sort_memory {
     std::uint32_t* histograms;
     std::uint32_t* begun;
@@ -61,7 +61,7 @@ __global__ void __launch_bounds__(sorting_threads)
             atomicAdd(histograms + d * digits + threadIdx.x, count);
 }
 
-/// How many keys the tiles before this one have, of the value that this thread stands for.
+/// Returns how many keys of all previous tiles have the digit whose value is the thread's index.
 __device__ inline std::uint32_t count_before(const std::uint32_t* known, unsigned tile) {
     const auto look = [&](unsigned t) {
         return cuda::atomic_ref<const std::uint32_t, cuda::thread_scope_device>(
@@ -84,8 +84,8 @@ __device__ inline std::uint32_t count_before(const std::uint32_t* known, unsigne
     }
 }
 
-/// Ranks each key among the keys of its warp with the same digit, and adds these to the warp's counts. All
-/// lanes of the warp call it together.
+/// Ranks each key among the keys of its warp with the same digit, and adds the keys to the warp's counts. All
+/// lanes of the warp call this together.
 template <class Key>
 __device__ __forceinline__ void rank_in_warp(const Key (&key)[keys_a_thread], unsigned shift,
                                              std::uint32_t (&counts)[digits],
@@ -107,8 +107,9 @@ __device__ __forceinline__ void rank_in_warp(const Key (&key)[keys_a_thread], un
     }
 }
 
-/// Writes the sorted pairs of a tile, the first of which is number `first` of n, to their places. `moved`
-/// has, by digit, how far a pair moves. All threads of the block call it together.
+/// Writes the sorted pairs of a tile to their places. The tile begins at pair `first` of n. `moved` has, for
+/// each digit, the distance from a pair's place in the tile to its place in the result. All threads of the
+/// block call this together.
 template <class Key, class Value>
 __device__ __forceinline__ void write_sorted(const Key* sorted_keys, const Value* sorted_values,
                                              const std::uint32_t* moved, unsigned shift, unsigned first,
@@ -123,7 +124,7 @@ __device__ __forceinline__ void write_sorted(const Key* sorted_keys, const Value
     }
 }
 
-/// Moves the pairs to where they are once sorted by one digit: one block for a tile of them.
+/// Sorts the pairs by one digit. One block per tile of pairs.
 template <class Key, class Value>
 __global__ void __launch_bounds__(sorting_threads)
     sort_by_digit(const Key* keys, const Value* values, unsigned n, unsigned shift, sort_memory memory,
@@ -135,16 +136,16 @@ __global__ void __launch_bounds__(sorting_threads)
     __shared__ std::uint64_t sums[sorting_warps];
     __shared__ Key sorted_keys[keys_a_tile];
     __shared__ Value sorted_values[keys_a_tile];
-    // In the order in which blocks begin, so that none waits for one that has not.
+    // Tiles are numbered in the order in which blocks begin, so that no block waits for one not yet begun.
     if (threadIdx.x == 0) my_tile = atomicAdd(memory.begun, 1u);
     for (auto& count : counts) count[threadIdx.x] = 0;
     __syncthreads();
 
     const unsigned tile = my_tile, first = tile * keys_a_tile, warp = threadIdx.x / warp_size;
     const unsigned mine = first + warp * keys_a_thread * warp_size + lane_of_warp();
-    // Past the end stand keys that come last; they are not moved.
+    // The tile is padded with the largest key, which sorts last and is not written.
     Key key[keys_a_thread];
-    std::uint32_t rank[keys_a_thread];  // among the warp's of the same digit
+    std::uint32_t rank[keys_a_thread];  // rank among the warp's keys with the same digit
 #pragma unroll
     for (unsigned k = 0; k < keys_a_thread; ++k) {
         const unsigned i = mine + k * warp_size;
@@ -153,7 +154,7 @@ __global__ void __launch_bounds__(sorting_threads)
     rank_in_warp(key, shift, counts[warp], rank);
     __syncthreads();
 
-    // From here on a thread stands for a value of the digit.
+    // From here on, each thread handles one value of the digit.
     std::uint32_t count = 0;
     for (auto& of_warp : counts) {
         const std::uint32_t own = of_warp[threadIdx.x];

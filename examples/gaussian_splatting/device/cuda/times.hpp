@@ -11,8 +11,8 @@
 
 namespace gs::device {
 
-/// Times the stages of iterations: every n-th of them by events, since those of every one would cost more
-/// than they tell. Profilers see the stages of all as ranges (NVTX).
+/// Times the stages of every n-th iteration by events; timing every iteration would slow down training.
+/// Profilers see the stages of all iterations as NVTX ranges.
 class cuda_times {
   public:
     explicit cuda_times(cudaStream_t stream) : stream_(stream) {
@@ -31,7 +31,7 @@ class cuda_times {
         times_ = {};
     }
     void pause(bool paused) { paused_ = paused; }
-    /// Whether the iteration that runs is one of those that are timed.
+    /// Returns whether the running iteration is timed.
     bool is_sampled() const { return iteration_ % sampling_ == 0; }
 
     void begin(stage s) {
@@ -55,7 +55,7 @@ class cuda_times {
     }
 
   private:
-    /// The times of the last sampled iteration, long done when the next one is.
+    /// Adds the times of the last timed iteration. Waits until it has ended.
     void collect() {
         std::size_t from = marks_.size();
         for (std::size_t s = 0; s < marks_.size(); ++s) {
