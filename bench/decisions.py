@@ -144,7 +144,7 @@ def tables(result):
 
     rows = [[name(r), effect, said(r, effect), evidence(r, effect)]
             for r in [*kinds["pure"], *mixed] for effect in wrong(r)]
-    text += ["What is decided wrong:\n", markdown(["scene", "effect", "called for", "evidence"], rows)]
+    text += ["Wrong decisions:\n", markdown(["scene", "effect", "called for", "evidence"], rows)]
 
     rows = [[r["scene"], *(f"{said(r, effect)}: {evidence(r, effect)}" for effect in EFFECTS), f"{r['seconds']:.2f}"]
             for r in kinds.get("real", [])]

@@ -11,6 +11,7 @@ import json
 import pathlib
 import re
 import sys
+import textwrap
 import tomllib
 
 from markdown_tables import markdown
@@ -31,8 +32,8 @@ INTRODUCTION = """# Benchmarks
 <!-- Written by bench/report.py from bench/results. Do not edit. -->
 
 This page is for readers who want to know how fast and how accurate warpagg is, and who want to
-repeat a measurement. All figures of a section come from one run of `bench/run.py` on one machine, at
-one commit. [How we measure](../contributing/how_we_measure.md) explains the method, and
+repeat a measurement. All figures of a section come from one run of `bench/run.py` on one machine,
+at one commit. [How we measure](../contributing/how_we_measure.md) explains the method, and
 [bench/suite.toml](../../bench/suite.toml) lists the commands.
 
 """
@@ -53,8 +54,12 @@ def machine(profile, about):
     return markdown(["", ""], [[name, about[key].strip()] for name, key in named if about.get(key)])
 
 
+def filled(text):
+    return textwrap.fill(" ".join(text.split()), 98, break_long_words=False, break_on_hyphens=False) + "\n\n"
+
+
 def titled(table):
-    return (f"{table['title']}:\n\n" if table["title"] else "") + markdown(table["columns"], table["rows"])
+    return (filled(table["title"] + ":") if table["title"] else "") + markdown(table["columns"], table["rows"])
 
 
 def page(results):
@@ -65,7 +70,7 @@ def page(results):
             found = result["measurements"].get(measurement["name"])
             if profile in measurement["profiles"] and found:
                 tables = "\n".join(titled(t) for t in found["tables"])
-                text += f"### {measurement['title']}\n\n{measurement['reading'].strip()}\n\n{tables}\n"
+                text += f"### {measurement['title']}\n\n{filled(measurement['reading'])}{tables}\n"
     return text.rstrip() + "\n"
 
 

@@ -66,9 +66,9 @@ def ratios(first, other):
             "dB": middle(other, lambda r: r["psnr"]) - middle(first, lambda r: r["psnr"])}
 
 
-def show(result):
+def show(result, title=None):
     runs = result["runs"]
-    print(f"\n{runs[0]['scene']}, {where(result)}\n")
+    print(f"\n{title or runs[0]['scene'] + ', ' + where(result)}\n")
     print_tables("options", runs)
     sets = by("options", runs)
     first = next(iter(sets))
@@ -114,7 +114,8 @@ def main():
     add_run(commands, run).add_argument("--data", required=True, help="the scene")
     shower = commands.add_parser("table")
     shower.add_argument("file")
-    shower.set_defaults(action=lambda arguments: show(json.loads(pathlib.Path(arguments.file).read_text())))
+    shower.add_argument("--title", help="line above the table (default: scene, machine, commit and seeds)")
+    shower.set_defaults(action=lambda arguments: show(json.loads(pathlib.Path(arguments.file).read_text()), arguments.title))
     plotter = commands.add_parser("plot")
     plotter.add_argument("file")
     plotter.add_argument("plot")

@@ -8,6 +8,6 @@
 /// A component of the version number: major, minor or patch.
 /// @{
 #define WARPAGG_VERSION_MAJOR 0
-#define WARPAGG_VERSION_MINOR 1
+#define WARPAGG_VERSION_MINOR 2
 #define WARPAGG_VERSION_PATCH 0
 /// @}

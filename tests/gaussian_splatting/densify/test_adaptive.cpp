@@ -174,8 +174,8 @@ TEST_CASE("adaptive: a split leaves two Gaussians 1.6 times smaller, near their 
         std::size_t halves = 0;
         for (std::size_t i = 0, parent = 0; i < grown.count(); ++parent) {
             REQUIRE(parent < model.count());
-            const float shrunk = model.log_scale[3 * parent] - std::log(1.6f);
-            const bool is_split = std::abs(grown.log_scale[3 * i] - shrunk) < 1e-5f;
+            const float smaller = model.log_scale[3 * parent] - std::log(1.6f);
+            const bool is_split = std::abs(grown.log_scale[3 * i] - smaller) < 1e-5f;
             for (std::size_t half = 0; half < (is_split ? 2 : 1); ++half, ++i) {
                 float distance = 0;
                 for (std::size_t k = 0; k < 3; ++k)
@@ -183,7 +183,7 @@ TEST_CASE("adaptive: a split leaves two Gaussians 1.6 times smaller, near their 
                         std::max(distance, std::abs(grown.mean[3 * i + k] - model.mean[3 * parent + k]));
                 if (is_split) {
                     ++halves;
-                    CHECK(grown.log_scale[3 * i] == doctest::Approx(shrunk));
+                    CHECK(grown.log_scale[3 * i] == doctest::Approx(smaller));
                     CHECK(distance > 0);
                     CHECK(distance < 6 * std::exp(model.log_scale[3 * parent]));
                 } else {
