@@ -15,14 +15,14 @@
 
 namespace gs::train {
 
-/// Strategies on a device, one for each settings type of `strategy_settings`.
+/// The densification strategies on a device, one for each settings type of `strategy_settings`.
 template <device::device Device, class... Strategy>
 struct strategy_list {
     static_assert(sizeof...(Strategy) == std::tuple_size_v<strategy_settings::configs>,
                   "each strategy has settings in strategy_settings.hpp, and each settings a strategy");
 
-    /// Creates the strategy that `settings` name. The device must outlive it. Throws `error`, which lists the
-    /// names, if there is none.
+    /// Creates the strategy named in `settings`. The device must outlive it. Throws `error`, which lists the
+    /// known names, if the name is unknown.
     static std::unique_ptr<strategy<Device>> make(Device& device, const strategy_settings& settings,
                                                   const training_facts& facts) {
         std::unique_ptr<strategy<Device>> made;
@@ -38,7 +38,7 @@ struct strategy_list {
     }
 };
 
-/// All strategies. A new one is an entry here; its settings are an entry of `strategy_settings::configs`.
+/// All strategies. To add one, add it here and add its settings to `strategy_settings::configs`.
 template <device::device Device>
 using strategies = strategy_list<Device, adaptive<Device>>;
 

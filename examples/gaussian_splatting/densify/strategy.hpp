@@ -25,25 +25,26 @@ struct trained_gaussians {
     trained_parameters<Device>& parameters;
     std::size_t count;
     int sh_degree;
-    const glm::vec3* cameras;  ///< centers of the training cameras, in memory of the device
+    const glm::vec3* cameras;  ///< centers of the training cameras, in device memory
     std::size_t camera_count;
 };
 
-/// What `strategy::after_step` works on.
+/// The argument of `strategy::after_step`.
 template <device::device Device>
 struct step_context : trained_gaussians<Device> {
     std::array<float, parameter_count> rates;  ///< learning rates of this step
-    /// A step is void if its tile lists did not fit. Kernels must change nothing if `capacity.exceeded()`.
+    /// The capacity of the tile lists. If `capacity.exceeded()`, the step is skipped and kernels must change
+    /// nothing.
     raster::list_capacity capacity;
 };
 
-/// What `strategy::run` works on.
+/// The argument of `strategy::run`.
 template <device::device Device>
 struct run_context : trained_gaussians<Device> {
-    /// For each Gaussian, what the steps since the last `run` collected.
+    /// The statistics of each Gaussian from the steps since the last `run`.
     const raster::visibility* statistics;
     parameter_gather<Device>& gather;  ///< moves Gaussians to their new places
-    score_views& views;                ///< draws training views, to score pixels
+    score_views& views;                ///< renders training views, to score pixels
 };
 
 /// A densification strategy decides which Gaussians to add, move and remove. The engine creates one for each
@@ -52,29 +53,29 @@ struct run_context : trained_gaussians<Device> {
 ///     (the training step, which collects statistics if `wants`)
 ///     after_step  at the end of the step
 ///     run         if `due`
-///     adjust      after everything else that changes the model between two steps
+///     adjust      after all other changes of the model between two steps
 ///
-/// The same calls with the same statistics must have the same result: random numbers come from
+/// Equal calls with equal statistics must have equal results, so use only random numbers from
 /// `counter_random` with `training_facts::seed`.
 template <device::device Device>
 class strategy : public timetable {
   public:
-    /// Names of the gradient columns that the strategy needs in addition to `raster::visibility`. Creating
-    /// the strategy fails if the backward pass does not sum one of them.
+    /// Returns the names of the gradient columns that the strategy needs in addition to `raster::visibility`.
+    /// Its creation fails if the backward pass does not sum one of them.
     virtual std::vector<std::string> gradient_columns() const { return {}; }
 
-    /// Work of each step, such as noise or penalties on parameters. A GPU captures it as part of the step's
-    /// graph: it may launch kernels, but neither wait nor read a result.
+    /// Does the work of each step, such as noise or penalties on parameters. A GPU captures it as part of the
+    /// step's graph: it may launch kernels, but must not wait or read a result.
     virtual void after_step(int /*iteration*/, const step_context<Device>& /*context*/) {}
-    /// Part of the step's graph key: see `device_feature::memory_key`. `after_step` may allocate memory only
-    /// in the first step with a new key. The number of Gaussians is part of the key already.
+    /// Returns a part of the step's graph key: see `device_feature::memory_key`. `after_step` may allocate
+    /// memory only in the first step with a new key. The key already has the number of Gaussians.
     virtual std::size_t memory_key(int /*iteration*/) const { return 0; }
 
-    /// Adds, moves and removes Gaussians, and may wait for the device. Afterwards the statistics are zero.
+    /// Adds, moves and removes Gaussians. May wait for the device. Afterwards the statistics are zero.
     virtual densify_report run(int iteration, const run_context<Device>& context) = 0;
 
-    /// Changes parameters between two steps, such as opacity resets. Keeps number and order of the Gaussians,
-    /// and does not wait.
+    /// Changes parameters between two steps, for example in an opacity reset. Must keep the number and order
+    /// of the Gaussians, and must not wait for the device.
     virtual void adjust(int /*iteration*/, const trained_gaussians<Device>& /*gaussians*/) {}
 };
 

@@ -19,27 +19,26 @@ struct option;
 
 namespace gs::train {
 
-/// The settings of a densification strategy, and what the program needs to know of a strategy without a
-/// device.
+/// The settings of a densification strategy, with the properties that the program reads on the host.
 template <class T>
 concept strategy_config = std::copyable<T> && requires(T config, const T& set, const training_facts& facts) {
-    /// What --strategy calls the strategy.
+    /// The name of the strategy in --strategy.
     { T::name } -> std::convertible_to<std::string_view>;
-    /// The options that set members of `config`, which must outlive them. `commands`, `group` and
-    /// `strategy` of a row may be left empty.
+    /// Returns the options that set members of `config`, which must outlive them. `commands`, `group` and
+    /// `strategy` of a row may stay empty.
     { config.options() } -> std::same_as<std::vector<options::option>>;
-    /// Throws `error` if values contradict each other or the training, of which only `iterations` and
+    /// Throws `error` if values contradict each other or the training. Of `facts`, only `iterations` and
     /// `seed` are known, and `max_gaussians` if --max-cap is given (otherwise it is 0).
     { set.check(facts) } -> std::same_as<void>;
-    /// The settings with the values that dependent defaults come to, for settings.json.
+    /// Returns the settings with the values of dependent defaults, for settings.json.
     { set.resolved(facts) } -> std::same_as<T>;
-    /// The number of Gaussians that the user asks for; none if the strategy decides.
+    /// Returns the number of Gaussians that the user asks for, or nothing if the strategy decides.
     { set.target_count() } -> std::same_as<std::optional<std::size_t>>;
 };
 
-/// The name of a densification strategy and the settings of each one.
+/// The name of the selected densification strategy, and the settings of all strategies.
 struct strategy_settings {
-    /// A new strategy is an entry here.
+    /// The settings types of all strategies. Add those of a new strategy here.
     using configs = std::tuple<adaptive_config>;
 
     std::string name = "adaptive";
@@ -59,7 +58,7 @@ struct strategy_settings {
         std::apply([&](auto&... config) { (visit(config), ...); }, all);
     }
 
-    /// Of the strategy that `name` names, see `strategy_config`.
+    /// Calls this member of the settings of the strategy called `name`: see `strategy_config`.
     /// @{
     void check(const training_facts& facts) const {
         if_chosen([&](const auto& config) { config.check(facts); });

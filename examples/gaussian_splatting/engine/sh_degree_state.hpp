@@ -17,9 +17,9 @@ class sh_degree_state : public feature_state {
     /// Frees the SH coefficients above degree 0 of Gaussians whose colors hardly depend on direction, and
     /// gives these Gaussians their mean color over the training views. Chooses as many Gaussians as change
     /// those views by a root mean square of at most `change`, as estimated by `sh_error`. Chooses none if
-    /// they are less than a tenth of all. Reorders the Gaussians. The next densification gives all of them
-    /// coefficients again. Cost: renders the training views at the smallest size. Returns the number of
-    /// Gaussians that keep their coefficients.
+    /// they are less than a tenth of those with coefficients. Reorders the Gaussians. The next densification
+    /// gives all of them coefficients again. Cost: renders each training view at the smallest size. Returns
+    /// the number of Gaussians that keep their coefficients.
     virtual std::size_t prune(double change) = 0;
 };
 

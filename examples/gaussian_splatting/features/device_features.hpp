@@ -17,7 +17,7 @@
 
 namespace gs::features {
 
-/// The parts of all features on a device. Calls each hook of `device_feature` for all of them.
+/// The device parts of all features. Each hook of `device_feature` is called for all of them.
 template <class Renderer>
 class device_features {
   public:
@@ -65,7 +65,7 @@ class device_features {
     void before_blend(const step& s) {
         for (auto& [name, f] : parts_) f->before_blend(s);
     }
-    /// That of the first feature that has one, or null.
+    /// Returns the background of the first feature that has one, or null.
     const float* background(const camera& camera) {
         for (auto& [name, f] : parts_)
             if (const float* planes = f->background(camera)) return planes;

@@ -20,13 +20,13 @@ class training;
 
 namespace gs::features {
 
-/// What the training photos say about a feature.
+/// The conclusion from the scene statistics about a feature.
 struct finding {
-    std::optional<bool> recommended;  ///< empty if the photos do not tell
+    std::optional<bool> recommended;  ///< empty if the photos do not allow a decision
     std::string evidence;             ///< the reason, with its figures
-    std::string choice;               ///< what training does then, as `inspect` prints it
-    std::vector<float> values{};      ///< what the feature begins from if it is on
-    bool if_unknown = false;          ///< whether to simulate it if the photos do not tell
+    std::string choice;               ///< the consequence for training, as `inspect` prints it
+    std::vector<float> values{};      ///< initial values of the feature if it is on
+    bool if_unknown = false;          ///< whether to simulate it if `recommended` is empty
 };
 
 /// A feature in one training run.
@@ -34,51 +34,51 @@ struct selected_feature {
     std::string name;
     bool on = false;
     std::string reason;
-    std::vector<float> values{};  ///< what it begins from if it is on; each feature defines its own
+    std::vector<float> values{};  ///< initial values if it is on; each feature defines their meaning
 };
 
-/// Changes the render of a training view: see `feature::show_on_host`.
+/// A function that changes the render of a training view: see `feature::show_on_host`.
 using show_function = std::function<void(std::size_t view, std::vector<float>& render)>;
 
-/// An effect that training simulates if the scene calls for it. This is the host's side: how the effect is
-/// detected, what it begins from, when it acts, and what it writes. `device_feature.hpp` is the side that
-/// takes part in a step. One object serves all runs, so a feature keeps no state here.
+/// An effect that training can simulate. This class is the host part of a feature: its detection, initial
+/// values, schedule and output files. `device_feature` is the part that runs in each step. One object serves
+/// all runs, so it must not keep state.
 class feature {
   public:
     virtual ~feature() = default;
 
-    /// The name in `--effects`, `inspect` and metrics.json.
+    /// Returns the name in `--effects`, `inspect` and metrics.json.
     virtual std::string_view name() const = 0;
-    /// When the effect helps and what it costs, in one sentence.
+    /// Returns one sentence on when the effect helps and what it costs.
     virtual std::string_view costs_and_gains() const = 0;
-    /// False for an effect that follows from the files and that `--effects` cannot name.
+    /// Returns false for an effect that follows from the files, so that `--effects` cannot name it.
     virtual bool is_selectable() const { return true; }
 
-    /// Looks at the photos. Cost: up to a second per thousand photos.
+    /// Returns the finding for a scene. Cost: up to a second per thousand photos.
     virtual finding analyze(const scene_statistics& statistics) const = 0;
-    /// Whether to `analyze` for the values to begin from even if the user has switched the effect on.
+    /// Returns whether the initial values come from `analyze` even if the user has turned the effect on.
     virtual bool begins_from_photos() const { return false; }
-    /// What the effect begins from if nobody looks at the photos.
+    /// Returns the initial values if `analyze` is not called.
     virtual std::vector<float> neutral_values(const scene&) const { return {}; }
-    /// Why this scene cannot be trained with the effect on, or an empty string.
+    /// Returns the reason why this scene cannot be trained with the effect on, or an empty string.
     virtual std::string obstacle(const scene&, const std::vector<float>& /*values*/) const { return {}; }
 
     /// Changes scene and model before training begins. Called whether the effect is on or off.
     virtual void prepare(const selected_feature&, scene&, gaussians&) const {}
     /// Adds its actions to the training loop. Called whether the effect is on or off.
     virtual void schedule(const selected_feature&, train::training&) const {}
-    /// How the effect changes the render of a training view: a function of the view's index and of three
-    /// planes of its size, which several threads may call. Empty if it does not change renders. Called
-    /// during training, if the effect is on.
+    /// Returns a function that applies the effect to the render of a training view, or an empty function if
+    /// it changes no renders. The function takes the view's index and three planes of its size; several
+    /// threads may call it. Called during training if the effect is on.
     virtual show_function show_on_host(train::engine&, const scene&) const { return {}; }
-    /// Sets what held-out views are shown with. Called before they are measured, if the effect is on.
+    /// Sets the effect's values for held-out views. Called before they are measured, if the effect is on.
     virtual void before_evaluation(train::engine&, const scene&) const {}
-    /// Writes files of its own into the output folder, or removes those of an earlier run if it is off.
+    /// Writes the effect's files to the output folder. If it is off, removes those of an earlier run.
     virtual void write_results(const selected_feature&, train::engine&, const scene&,
                                const std::filesystem::path& /*folder*/) const {}
 };
 
-/// All features in the order in which `inspect` prints them; table.hpp lists them.
+/// Returns all features of table.hpp, in the order in which `inspect` prints them.
 const std::vector<std::unique_ptr<const feature>>& all_features();
 
 }  // namespace gs::features

@@ -12,10 +12,10 @@
 
 namespace gs::features {
 
-/// What `--effects` specifies.
+/// The value of `--effects`.
 struct selection {
     enum class base {
-        recommended,  ///< what the scene calls for
+        recommended,  ///< the features that the scene statistics recommend
         all,
         none
     };
@@ -24,12 +24,12 @@ struct selection {
     std::map<std::string, bool, std::less<>> explicit_choices;
 
     std::optional<bool> explicit_choice(std::string_view name) const;
-    /// Whether a feature is not ruled out. Decides whether masks or depth maps are read.
+    /// Returns whether the feature may be on. Masks and depth maps are read only if this is true for them.
     bool allows(std::string_view name) const;
 };
 
 /// Parses "auto", "all", "none", a list of features, or any of the first three followed by features to add or
-/// remove: "auto,+exposure,-direction", or "+exposure" for short. Throws `error` for anything else.
+/// remove: "auto,+exposure,-direction", or "+exposure" for short. Throws `error` for all other texts.
 selection parse_selection(const std::string& text);
 
 /// The features of one training run.
@@ -40,18 +40,18 @@ class feature_set {
 
     const std::vector<selected_feature>& all() const { return all_; }
     bool is_on(std::string_view name) const;
-    /// Its values; an empty list if it is off.
+    /// Returns the values of a feature, or an empty list if it is off.
     std::vector<float> values_if_on(std::string_view name) const;
 
-    /// Turns a feature off for a reason. A feature that is off keeps its own reason.
+    /// Turns a feature off and records the reason. A feature that is already off keeps its reason.
     void turn_off(std::string_view name, const std::string& reason);
 
-    /// Calls the hooks of every feature.
+    /// Calls this hook of all features.
     /// @{
     void prepare(scene& scene, gaussians& model) const;
     void schedule(train::training& training) const;
     void before_evaluation(train::engine& engine, const scene& scene) const;
-    /// What all features that are on do to the render of a training view.
+    /// Returns a function that applies all features that are on to the render of a training view.
     show_function show_on_host(train::engine& engine, const scene& scene) const;
     void write_results(train::engine& engine, const scene& scene, const std::filesystem::path& folder) const;
     /// @}
@@ -60,9 +60,9 @@ class feature_set {
     std::vector<selected_feature> all_;
 };
 
-/// Decides which selectable features a training simulates. `scene` has masks and depth maps if the selection
-/// allows them. `explicit_features` replace the decision about those features, as --sh-degree does. Looks at
-/// the photos only for features that depend on them.
+/// Decides which selectable features a training simulates. Precondition: `scene` has masks and depth maps if
+/// the selection allows them. `explicit_features` overrides the decision for those features, as --sh-degree
+/// does. Analyzes the photos only if a decision or initial values depend on them.
 feature_set resolve(const scene& scene, const selection& selection,
                     const std::vector<selected_feature>& explicit_features = {});
 

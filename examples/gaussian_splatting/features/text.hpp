@@ -8,7 +8,7 @@
 
 namespace gs::features {
 
-/// A line of evidence, as printf formats it.
+/// Returns a line of evidence, formatted as printf does, of at most 239 characters.
 template <class... Values>
 std::string text(const char* format, Values... values) {
     char line[240];
@@ -16,7 +16,7 @@ std::string text(const char* format, Values... values) {
     return line;
 }
 
-/// Fewer points than this say nothing about a scene.
+/// The smallest number of points from which conclusions about a scene are drawn.
 inline constexpr std::size_t enough_points = 50;
 
 inline std::string too_few_points(std::size_t points, const char* where) {

@@ -6,8 +6,8 @@
 
 namespace gs::features {
 
-/// The 2D Mip filter with opacity compensation. Its kernels are in antialiasing.hpp; the model's flag
-/// `gaussians::antialiased` switches them on.
+/// The 2D Mip filter: a splat that the pixel filter widens becomes fainter. The formulas are in
+/// antialiasing.hpp; the model's flag `gaussians::antialiased` enables them.
 class antialiasing_feature final : public feature {
   public:
     std::string_view name() const override { return "antialiasing"; }

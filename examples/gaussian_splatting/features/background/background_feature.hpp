@@ -6,7 +6,7 @@
 
 namespace gs::features {
 
-/// The color behind the scene: white for photos with transparent parts, otherwise black. `--background`
+/// The constant background: white for photos with transparent parts, otherwise black. `--background`
 /// overrides it.
 class background_feature final : public feature {
   public:

@@ -10,31 +10,32 @@
 
 namespace gs::features {
 
-/// How well the training photos' depth maps agree with the scene's points.
+/// The agreement of the training photos' depth maps with the scene's points.
 struct depth_agreement {
     std::size_t photos = 0, with_map = 0;
-    std::size_t told = 0;         ///< maps that know the depths of 10 points in sight or more
-    std::size_t agreeing = 0;     ///< of these: what is nearer has more, with a correlation of 0.5 or more
-    double correlation = 0;       ///< the median over those that are told of
-    std::vector<depth_fit> fits;  ///< by photo, to the unit of cameras and points; no scale for the others
+    std::size_t told = 0;         ///< number of maps with values at 10 visible points or more
+    std::size_t agreeing = 0;     ///< number of these whose correlation with inverse depths is 0.5 or more
+    double correlation = 0;       ///< median correlation of the `told` maps
+    std::vector<depth_fit> fits;  ///< by photo, from values to inverse depths; scale 0 if not agreeing
 };
+/// Compares the depth maps of all training photos with the scene's points.
 depth_agreement compare_depths(const scene& of);
-/// In words, with its numbers.
+/// Returns a sentence about the agreement, with its figures.
 std::string say(const depth_agreement& found);
 
-/// Inverse depths of points beside the values that a map has there.
+/// A depth map's value at a visible point, and the inverse depth of the point.
 struct depth_pair {
     double value, inverse_depth;
 };
-/// The rising line that fits best, and how well.
+/// An increasing line from values to inverse depths.
 struct depth_line {
     double scale = 0, offset = 0;
-    double correlation = 0;  ///< of what is no outlier; 0, and no scale, where no line rises
+    double correlation = 0;  ///< correlation without outliers; 0, with scale 0, if no line increases
 };
-/// Begins with medians, as Kerbl et al. 2024 (hierarchical 3D Gaussians) find a scale, and goes on with least
-/// squares over what lies within 3 standard deviations of the line, 10 times. What is off are the values:
-/// points are where several photos agree, and noise of values would make a line through inverse depths too
-/// flat. Precondition: there is a pair.
+/// Fits a line to pairs. Begins with medians, as Kerbl et al. 2024 (hierarchical 3D Gaussians) find a scale.
+/// Then repeats 10 times a least-squares fit over the pairs within 3 standard deviations of the line. The fit
+/// minimizes errors of the values, because the points are accurate; noise in the values would otherwise make
+/// the line too flat. Precondition: `pairs` is not empty.
 depth_line fit_line(const std::vector<depth_pair>& pairs);
 
 }  // namespace gs::features

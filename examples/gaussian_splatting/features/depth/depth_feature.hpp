@@ -7,8 +7,8 @@
 
 namespace gs::features {
 
-/// Depth maps of the photos as a second target. Values: scale and offset of each training photo's map, from
-/// its values to inverse depths; a scale of zero means that the photo's map is not used.
+/// Training with the depth maps of photos as a second target. Values: for each training photo, the scale and
+/// offset from the map's values to inverse depths. A map with scale zero is not used.
 class depth_feature final : public feature {
   public:
     template <class Device>

@@ -25,7 +25,7 @@ class exposure_feature final : public feature {
     void schedule(const selected_feature& selected, train::training& training) const override;
     show_function show_on_host(train::engine& engine, const scene& scene) const override;
     void before_evaluation(train::engine& engine, const scene& scene) const override;
-    /// exposures.json: three rows of four numbers per photo, as the reference implementation writes them.
+    /// Writes exposures.json: three rows of four numbers per photo, as the reference implementation does.
     void write_results(const selected_feature& selected, train::engine& engine, const scene& scene,
                        const std::filesystem::path& folder) const override;
 };

@@ -12,17 +12,17 @@
 
 namespace gs::features {
 
-/// A photo's exposure: its colors are `A c + b` of those that the scene has. Three rows of A and b, as in
-/// Kerbl et al. 2024 (hierarchical 3D Gaussians).
+/// The number of values of an exposure, which maps a rendered color c to `A c + b`. It has three rows, each
+/// with three elements of A and one of b, as in Kerbl et al. 2024 (hierarchical 3D Gaussians).
 inline constexpr unsigned exposure_width = 12;
 
-/// Where row `channel` has its factor of channel k, and at 3 its b.
+/// Returns the index of element k of row `channel` of A, or of its element of b for k = 3.
 WARPAGG_HD constexpr unsigned exposure_at(unsigned channel, unsigned k) { return 4 * channel + k; }
 
 using exposure = std::array<float, exposure_width>;
 inline constexpr exposure identity_exposure{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-/// Exposures as the values of the feature, and back.
+/// Converts exposures to the values of the feature, or back.
 /// @{
 inline std::vector<float> flattened(const std::vector<exposure>& all) {
     std::vector<float> values;
@@ -37,9 +37,9 @@ inline std::vector<exposure> exposures_from(const std::vector<float>& values) {
 }
 /// @}
 
-/// An image as its photo's exposure shows it: one index a pixel.
+/// Applies an exposure to a render. One index per pixel.
 struct expose {
-    const float* render;  ///< three planes, as `exposed`
+    const float* render;  ///< three planes, like `exposed`
     const float* exposure;
     std::size_t pixels;
     float* exposed;
@@ -54,17 +54,17 @@ struct expose {
     }
 };
 
-/// The gradients by the image and by the exposure, from that by the exposed image. A warp for as many
-/// pixels as its lanes have, `rounds` times.
+/// Computes the gradients with respect to the render and the exposure, from the gradient with respect to the
+/// exposed render. One warp handles `rounds` pixels per lane.
 struct expose_backward {
     static constexpr unsigned rounds = 8;
 
-    const float* render;  ///< three planes, as all here
+    const float* render;  ///< three planes, like all images here
     const float* exposure;
     const float* by_exposed;
     std::size_t pixels;
     float* by_render;
-    train::ordered_sums sums;  ///< of `warps(pixels)`
+    train::ordered_sums sums;  ///< sums over `warps(pixels)` warps
 
     template <class W>
     static std::size_t warps(std::size_t pixels) {
@@ -107,8 +107,8 @@ struct expose_backward {
     }
 };
 
-/// Moves all exposures by the same, so that their mean changes nothing: else the scene could be darker and
-/// all of them brighter. One index a number.
+/// Shifts all exposures by the same amount, so that their mean is the identity. Otherwise all exposures could
+/// become brighter and the scene darker. One index per value of an exposure.
 struct normalize_exposures {
     float* exposures;
     std::size_t views;

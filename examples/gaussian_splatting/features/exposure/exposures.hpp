@@ -10,7 +10,7 @@
 
 namespace gs::features {
 
-/// The exposures of a list of views, on the device. Adam trains each in the steps that show its view.
+/// The exposures of a list of views on the device. Adam trains each exposure in the steps that use its view.
 template <device::device Device>
 class exposures {
     template <class T>
@@ -20,21 +20,21 @@ class exposures {
   public:
     explicit exposures(Device& device) : device_(device), numbers_(device) {}
 
-    /// Replaces all exposures; Adam's moments become zero. `exposure_width` values per view.
+    /// Replaces all exposures, `exposure_width` values per view, and sets Adam's moments to zero.
     void set(const std::vector<float>& values) { numbers_.set(values); }
     std::vector<float> get() const { return numbers_.get(); }
 
     std::size_t count() const { return numbers_.rows(); }
 
-    /// The render with the exposure of a view applied: three planes on the device, valid until the next call.
+    /// Returns the render with the exposure of a view: three planes on the device, valid until the next call.
     const float* show(std::size_t view, const float* render, std::size_t pixels) {
         exposed_.resize(3 * pixels);
         device_.for_each_index(pixels, expose{render, numbers_.row(view), pixels, exposed_.data()});
         return exposed_.data();
     }
 
-    /// The gradient with respect to the render, from the gradient with respect to the result of `show`. Also
-    /// trains the exposure.
+    /// Returns the gradient with respect to the render, from the gradient with respect to the result of
+    /// `show`. Also trains the exposure.
     const float* learn(std::size_t view, const float* render, const float* by_exposed, std::size_t pixels,
                        float rate, const raster::list_capacity& capacity) {
         by_render_.resize(3 * pixels);
@@ -45,7 +45,7 @@ class exposures {
         return by_render_.data();
     }
 
-    /// See `normalize_exposures`.
+    /// Makes the mean of all exposures the identity: see `normalize_exposures`.
     void normalize() {
         device_.for_each_index(exposure_width, normalize_exposures{numbers_.row(0), count()});
     }

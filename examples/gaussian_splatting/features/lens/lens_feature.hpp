@@ -6,7 +6,7 @@
 
 namespace gs::features {
 
-/// Fisheye lenses, which the renderer draws in place. The cameras say which views have one.
+/// Fisheye lenses, which the renderer simulates. The cameras determine which views have one.
 class lens_feature final : public feature {
   public:
     std::string_view name() const override { return "lens"; }

@@ -6,7 +6,7 @@
 
 namespace gs::features {
 
-/// Pixels that a mask leaves out of a photo. The readers apply masks and the losses skip such pixels.
+/// Masked pixels. The readers apply masks to photos, and the losses skip masked pixels.
 class masks_feature final : public feature {
   public:
     std::string_view name() const override { return "masks"; }

@@ -9,27 +9,28 @@
 
 namespace gs::features {
 
-/// How much the colors of surface points depend on the direction from which they are seen.
+/// Statistics on how the colors of surface points depend on the viewing direction.
 struct direction_statistics {
-    bool has_points = false;  ///< the scene has points
-    std::size_t points = 0;   ///< points that tell
-    /// By SH degree d: the mean square, in [0, 1] units, of an observation minus its prediction from the
-    /// other observations of its point by spherical harmonics of degree d. Zeros if no point tells.
+    bool has_points = false;  ///< whether the scene has points
+    std::size_t points = 0;   ///< number of points with enough observations
+    /// For each SH degree d, the mean square of an observation minus its prediction from the other
+    /// observations of its point by spherical harmonics of degree d. Colors are in [0, 1]. Zeros if `points`
+    /// is 0.
     std::array<double, 4> unexplained{};
 
-    /// Whether enough points tell.
+    /// Returns whether `points` is large enough for a decision.
     bool is_known() const;
-    /// The SH degree that colors need: 0 to 3. Where too few points tell, 3; but 0 where next to no point
-    /// tells, because then the photos are too few or too far apart to separate view-dependent color from
-    /// everything else.
+    /// Returns the SH degree that colors need, 0 to 3. If `points` is too small for a decision, this is 3. If
+    /// it is almost zero although the scene has points, this is 0: the photos are then too few or too far
+    /// apart to separate view-dependent color from other effects.
     int degree() const;
 };
 
-/// Ridge regression per point on what exposure does not explain; each observation is left out of its own
-/// prediction.
+/// Computes the statistics by ridge regression for each point, after differences of exposure are removed. The
+/// prediction of an observation does not use that observation.
 direction_statistics measure_direction(const scene_statistics& statistics);
 
-/// The regression's part of `measure_direction`.
+/// Computes `direction_statistics::unexplained` by ridge regression.
 std::array<double, 4> unexplained_by_direction(const observed_points& points);
 
 }  // namespace gs::features

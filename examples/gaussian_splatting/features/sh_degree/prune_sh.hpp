@@ -15,11 +15,12 @@
 
 namespace gs::train {
 
-/// Rates Gaussians by their `sh_error`; all keep their SH coefficients for now. One index for each Gaussian.
+/// Rates Gaussians by their `sh_error`, and marks all of them to keep their SH coefficients. One index per
+/// Gaussian.
 struct rate_by_sh_error {
     const sh_error* errors;
     std::uint32_t* keeps;
-    std::uint32_t* rating;  ///< sort key: the smaller the error the smaller
+    std::uint32_t* rating;  ///< sort key, which increases with the error
     std::uint32_t* identities;
 
     WARPAGG_HD void operator()(std::size_t i) const {
@@ -29,8 +30,7 @@ struct rate_by_sh_error {
     }
 };
 
-/// Gives a Gaussian that loses its SH coefficients its mean color, if it was seen. One index for each
-/// Gaussian.
+/// Gives a Gaussian that loses its SH coefficients its mean color, if it was seen. One index per Gaussian.
 struct take_mean_color {
     const sh_error* errors;
     const std::uint32_t* keeps;
@@ -42,12 +42,12 @@ struct take_mean_color {
     }
 };
 
-/// Places Gaussians that keep their SH coefficients before the others; both keep their order. One index for
-/// each Gaussian.
+/// Places Gaussians that keep their SH coefficients before the others. Both groups keep their order. One
+/// index per Gaussian.
 struct place_sh_first {
     std::size_t count;
     const std::uint32_t* keeps;
-    const std::uint64_t* first;  ///< number of Gaussians before it that keep them
+    const std::uint64_t* first;  ///< number of previous Gaussians that keep them
     std::uint32_t* origin;
     birth* births;
 
@@ -58,7 +58,7 @@ struct place_sh_first {
     }
 };
 
-/// Removes SH coefficients, with their memory, from Gaussians whose color hardly depends on the direction.
+/// Removes the SH coefficients of Gaussians whose color hardly depends on direction, and frees their memory.
 template <device::device Device>
 class sh_pruner {
     template <class T>
@@ -67,8 +67,8 @@ class sh_pruner {
   public:
     sh_pruner(Device& device, parameter_gather<Device>& gather) : device_(device), gather_(gather) {}
 
-    /// Measures the `sh_error` of `count` Gaussians over all views, and prunes as many as change the renders
-    /// by a root mean square of at most `change`. Draws each view once.
+    /// Measures the `sh_error` of `count` Gaussians over all views. Prunes as many Gaussians as change the
+    /// renders by a root mean square of at most `change`. Cost: renders each view once.
     void run(trained_parameters<Device>& all, std::size_t count, int sh_degree, score_views& views,
              double change) {
         buffer<sh_error> errors;
@@ -89,9 +89,9 @@ class sh_pruner {
         prune(all, count, sh_degree, errors.data(), change * change * static_cast<double>(values));
     }
 
-    /// Prunes as many of `count` Gaussians as have errors whose `squares` sum to at most `squares`. They take
-    /// their mean color and come last. Prunes none if it were less than a tenth of those with SH
-    /// coefficients. Waits for the device once.
+    /// Prunes as many of `count` Gaussians as possible, so that the `sh_error::squares` of all pruned ones
+    /// sum to at most `squares`. Pruned Gaussians take their mean color and come last. Prunes none if they
+    /// are less than a tenth of those with SH coefficients. Waits for the device once.
     void prune(trained_parameters<Device>& all, std::size_t count, int sh_degree, const sh_error* errors,
                double squares) {
         for (auto* b : {&keeps_, &rating_, &gaussian_of_}) b->resize(count);

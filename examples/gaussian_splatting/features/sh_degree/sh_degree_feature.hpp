@@ -9,8 +9,8 @@
 
 namespace gs::features {
 
-/// View-dependent color by spherical harmonics. Values: the degree to begin with, and 1 if training revises
-/// it half-way.
+/// View-dependent color by spherical harmonics. Values: the initial SH degree, and 1 if training revises it
+/// after half of the iterations.
 class sh_degree_feature final : public feature {
   public:
     std::string_view name() const override { return "direction"; }
@@ -25,15 +25,15 @@ class sh_degree_feature final : public feature {
     void schedule(const selected_feature& selected, train::training& training) const override;
 };
 
-/// What `--sh-degree` specifies.
+/// Returns the feature as `--sh-degree` specifies it.
 selected_feature explicit_sh_degree(int degree);
 
-/// The degree that training begins with, from the values of the feature; 0 if they are empty.
+/// Returns the initial SH degree from the values of the feature, or 0 if they are empty.
 int first_sh_degree(const std::vector<float>& values);
 
-/// Calls `revise` once, half-way, with the degree so far; colors have the degree that it returns from then
-/// on. If `prune_change` is set, frees the bands of Gaussians that hardly need them once the number of
-/// Gaussians is final: see `sh_degree_state::prune`.
+/// Calls `revise` once, after half of the iterations, with the current SH degree, and sets the degree that it
+/// returns. If `prune_change` is set, also prunes SH coefficients when the number of Gaussians is final: see
+/// `sh_degree_state::prune`.
 void schedule_revision(train::training& training, std::function<int(int sh_degree)> revise,
                        std::optional<double> prune_change);
 

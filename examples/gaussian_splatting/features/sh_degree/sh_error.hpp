@@ -10,10 +10,10 @@
 
 namespace gs::train {
 
-/// How much the color of a Gaussian varies between views. Each pixel counts with the weight w that the
-/// Gaussian has in it (alpha times transmittance). This bounds the error of giving it its mean color
-/// everywhere: where Gaussians i change by d_i, a pixel changes by the sum of w_i d_i. All w_i of a pixel sum
-/// to at most 1, so the square of that change is at most the sum of w_i d_i^2 (Jensen's inequality). Thus the
+/// The variation of a Gaussian's color between views. Each pixel counts with the Gaussian's weight w in it,
+/// alpha times transmittance. The variation bounds the error if the Gaussian takes its mean color: if the
+/// colors of Gaussians i change by d_i, a pixel changes by the sum of w_i d_i. All w_i of a pixel sum to at
+/// most 1, so the square of that change is at most the sum of w_i d_i^2 (Jensen's inequality). Therefore the
 /// squared changes of all pixels sum to at most the sum of the Gaussians' `squares`.
 struct sh_error {
     float weight;   ///< sum of w over pixels and views
@@ -21,7 +21,7 @@ struct sh_error {
     float squares;  ///< sum of w (color - mean)^2 over pixels, views and channels
 };
 
-/// Adds a view to the errors (algorithm of West 1979). One index for each Gaussian.
+/// Adds a view to the errors. Source: the algorithm of West 1979. One index per Gaussian.
 struct add_sh_error {
     const raster::splat<float>* splats;
     const std::uint32_t* tiles;
@@ -43,7 +43,7 @@ struct add_sh_error {
     }
 };
 
-/// Sets values to 1. One index for each value.
+/// Sets values to 1. One index per value.
 struct make_one {
     float* values;
     WARPAGG_HD void operator()(std::size_t i) const { values[i] = 1; }

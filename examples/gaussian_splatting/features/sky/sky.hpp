@@ -20,12 +20,12 @@ class sky {
   public:
     explicit sky(Device& device) : device_(device), numbers_(device) {}
 
-    /// `sky_width` coefficients, or none for no sky.
+    /// Sets the `sky_width` coefficients. An empty list removes the learned background.
     void set(const std::vector<float>& coefficients) { numbers_.set(coefficients); }
     std::vector<float> get() const { return numbers_.get(); }
     bool exists() const { return numbers_.rows() > 0; }
 
-    /// The background of a camera: three planes on the device, or null if the model has no sky.
+    /// Draws the background of a camera. Returns three planes on the device, or null without a learned background.
     const float* draw(const camera& camera) {
         if (!exists()) return nullptr;
         raster::require_drawable(camera);
@@ -37,8 +37,8 @@ class sky {
         return planes_.data();
     }
 
-    /// Trains the sky by the gradient with respect to the render in front of what `draw` drew last.
-    /// `transmittance`: the share of the sky's light in each pixel.
+    /// Trains the coefficients from `by_render`, the gradient with respect to a render with this background.
+    /// `transmittance` is the share of the background's light in each pixel.
     void learn(const camera& camera, const float* transmittance, const float* by_render, float rate,
                const raster::list_capacity& capacity) {
         const train::ordered_sums sums = numbers_.sums(patches(camera));

@@ -12,19 +12,19 @@
 
 namespace gs::features {
 
-/// Of a sky. Its color in a direction is 0.5 + the sum of coefficients times harmonics, as a Gaussian's, but
-/// not held to any range.
+/// The number of SH coefficients per channel of a sky. Its color in a direction is 0.5 plus the sum of
+/// coefficients times harmonics, as for a Gaussian, but is not clamped.
 inline constexpr unsigned sky_coefficients = sh_coefficients(sky_degree);
 
-/// Pixels of an image for a warp: as many columns as it has lanes, of some rows. `Fisheye`: the camera has
-/// such a lens.
+/// The pixels of an image that one warp handles: one column per lane, `rows` rows. `Fisheye` tells whether
+/// the camera has a fisheye lens.
 template <class W, bool Fisheye>
 struct sky_patch {
     using real = warpagg::value_t<W, float>;
 
     unsigned left;              ///< the first column
-    int first, last;            ///< rows: [first, last)
-    warpagg::mask_t<W> inside;  ///< lanes whose column the image has
+    int first, last;            ///< range of rows, [first, last)
+    warpagg::mask_t<W> inside;  ///< lanes whose column lies in the image
 
     static constexpr int rows = 8;
 
@@ -40,7 +40,7 @@ struct sky_patch {
         inside = w.lane() < static_cast<unsigned>(width) - left;
     }
 
-    /// The harmonics in the directions of a row's pixels.
+    /// Computes the harmonics in the directions of a row's pixels.
     WARPAGG_HD void basis(const W& w, const raster::device_camera<real>& camera, int row,
                           real (&values)[sky_coefficients]) const {
         const real x = warpagg::math::convert<float>(w.lane() + left) + real(0.5f);
@@ -52,14 +52,14 @@ struct sky_patch {
     }
 };
 
-/// The sky behind an image.
+/// Draws the sky behind an image. One warp per patch.
 template <class W, bool Fisheye>
 struct draw_sky {
     using real = warpagg::value_t<W, float>;
 
     raster::device_camera<real> camera;
     const float* sky;
-    float* planes;  ///< three
+    float* planes;  ///< three planes of the result
 
     WARPAGG_EXEC_CHECK_DISABLE
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
@@ -81,8 +81,8 @@ struct draw_sky {
     }
 };
 
-/// The sums of the gradients by the sky's coefficients, from that by the image and what is left of light
-/// from behind it.
+/// Sums the gradient with respect to the sky's coefficients, from the gradient with respect to the render and
+/// the transmittance of each pixel. One warp per patch.
 template <class W, bool Fisheye>
 struct sky_backward {
     using real = warpagg::value_t<W, float>;
@@ -90,7 +90,7 @@ struct sky_backward {
     raster::device_camera<real> camera;
     const float* transmittance;
     const float* by_render;    ///< three planes
-    train::ordered_sums sums;  ///< of `sky_patch::count` warps
+    train::ordered_sums sums;  ///< sums over `sky_patch::count` warps
 
     WARPAGG_EXEC_CHECK_DISABLE
     WARPAGG_HD void operator()(const W& w, unsigned index) const {

@@ -29,7 +29,7 @@ class sky_on_device final : public device_feature<Renderer> {
     }
 
   private:
-    /// Adam's learning rate of the coefficients, which falls to a hundredth.
+    /// Returns Adam's learning rate of the coefficients, which decays to a hundredth.
     float rate_at(int iteration) const {
         return static_cast<float>(0.01 * std::pow(0.01, static_cast<double>(iteration) / iterations_));
     }
