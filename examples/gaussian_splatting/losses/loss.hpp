@@ -3,9 +3,9 @@
 #pragma once
 
 /// @file
-/// The interface of an image loss: a measure of the difference between a render and its target that
-/// training minimizes. To add a loss, implement `loss` in a folder of its own, with the device as a
-/// template parameter, and add it to the list in losses.hpp.
+/// The interface of an image loss, a measure of the difference between a render and its target that
+/// training minimizes. To add a loss, implement `loss` in a new folder, with the device as a template
+/// parameter, and add it to the list in losses.hpp.
 
 #include <cmath>
 #include <span>
@@ -23,12 +23,12 @@ struct loss_report {
     double loss = 0;
     double square_error = 0;  ///< mean over pixels and color channels
 
-    /// In decibels, for images with values in [0, 1].
+    /// Returns the PSNR in decibels, for images with values in [0, 1].
     double psnr() const { return -10 * std::log10(square_error); }
 };
 
-/// `Real` is float in training, and double where tests compare the gradient with finite
-/// differences.
+/// A loss on a device. `Real` is float in training, and double in tests that compare the gradient
+/// with finite differences.
 ///
 /// All pointers are to device memory. A GPU captures the launches of a step as a graph, so
 /// `set_target` and `gradient` must not wait for the device, and may allocate only when the size of
@@ -38,29 +38,28 @@ class loss {
   public:
     virtual ~loss() = default;
 
-    /// The target of the next calls of `gradient`. Pixels that a mask excludes must have a gradient
-    /// of zero.
+    /// Sets the target of the next calls of `gradient`. Masked pixels must have a gradient of zero.
     virtual void set_target(const target_image& target) = 0;
 
-    /// The gradient of the loss with respect to each value of the render: three planes, red, green
-    /// and blue, of the target's size, as is the render. The result is valid until the next call.
-    /// Also adds the loss and the square error to `sums()`, unless `capacity.exceeded()`: then the
-    /// render is incomplete and the step does not count.
+    /// Returns the gradient of the loss with respect to each value of the render. Both have three
+    /// planes, red, green and blue, of the target's size. The result is valid until the next call.
+    /// Also adds the loss and the square error to `sums()`, unless `capacity.exceeded()`: the render
+    /// is then incomplete, and the step is skipped.
     virtual const Real* gradient(const Real* render, const raster::list_capacity& capacity) = 0;
 
-    /// The largest magnitude of one value of the gradient for the current target, up to a small
-    /// factor: for a mean over n pixels of a function with slope s, about s / n. Deterministic
-    /// training derives the range of its fixed-point sums from it: they hold
-    /// `raster::gradient_sums::headroom` times this value. A scale that is much too large costs
-    /// precision. If it is too small, sums do not fit; they are left out, and training reports
-    /// `fault_kind::sum`.
+    /// Returns the largest magnitude of one value of the gradient for the current target, up to a
+    /// small factor: for a mean over n pixels of a function with slope s, about s / n. In
+    /// deterministic training, fixed-point sums can hold `raster::gradient_sums::headroom` times this
+    /// value. A scale that is much too large costs precision. If it is too small, values are out of
+    /// range: they are not added, and training reports `fault_kind::sum`.
     virtual float gradient_scale() const = 0;
 
-    /// The running sums from which `take` computes its means. Training stops with an error if one
-    /// of them is not finite.
+    /// Returns the running sums from which `take` computes its means. Training stops with an error if
+    /// one of them is not finite.
     virtual std::span<const double> sums() const = 0;
 
-    /// The means over the renders since the last call; sets the sums to zero. Waits for the device.
+    /// Returns the means over the renders since the last call, and sets the sums to zero. Waits for the
+    /// device.
     virtual loss_report take() = 0;
 };
 

@@ -7,7 +7,7 @@
 
 namespace gs::train {
 
-/// The names of all losses, in the order of the list in losses.hpp.
+/// Returns the names of all losses, in the order of the list in losses.hpp.
 std::vector<std::string> loss_names();
 
 }  // namespace gs::train

@@ -16,13 +16,13 @@
 
 namespace gs::train {
 
-/// Losses with distinct names on a device.
+/// A list of losses on a device, with different names.
 template <device::device Device, class... Loss>
 struct loss_list {
     static std::vector<std::string> names() { return {std::string(Loss::name)...}; }
 
     /// Creates the loss with this name. The device must outlive it. Throws `error`, which lists the
-    /// names, if there is none.
+    /// known names, if the name is unknown.
     static std::unique_ptr<loss<float>> make(Device& device, std::string_view name) {
         std::unique_ptr<loss<float>> made;
         const auto make_if_named = [&]<class One>(std::type_identity<One>) {
@@ -34,7 +34,7 @@ struct loss_list {
     }
 };
 
-/// All losses. A new one is an entry here.
+/// All losses. Add a new one here.
 template <device::device Device>
 using losses = loss_list<Device, l1_ssim<Device, float>>;
 

@@ -8,14 +8,15 @@
 
 namespace gs::options {
 
-/// The word of the command line for a value of an enumeration. Beside the enumeration, a function
-/// `names_of(Enum)` returns the words of all values, in the order of the values, which count from 0.
+/// Returns the word of the command line for a value of an enumeration. Precondition: the namespace of the
+/// enumeration has a function `names_of(Enum)`, which returns the words of all values in order. Values count
+/// from 0.
 template <class Enum>
 std::string name_of(Enum value) {
     return std::string(names_of(value)[static_cast<std::size_t>(value)]);
 }
 
-/// All values of an enumeration, in their order.
+/// The values of an enumeration, in order.
 template <class Enum>
 inline constexpr auto all_values = [] {
     std::array<Enum, names_of(Enum{}).size()> values{};

@@ -12,27 +12,27 @@ namespace gs::options {
 
 /// A row of the option table: an option of the program, and the value that it sets.
 struct option {
-    std::string names;    ///< separated by commas; `!` marks a name that turns a flag off
+    std::string names;    ///< names, separated by commas; `!` marks a name that turns a flag off
     std::string group{};  ///< heading in help texts
     std::vector<command> commands{};
     option_value value;
     std::string help;  ///< a sentence without its period; begins with a noun or a verb
     std::string unit{};
-    std::string default_text{};        ///< if the default depends on other settings
-    std::vector<command> required{};   ///< the commands that do not run without it
-    std::vector<std::string> needs{};  ///< names of options that have to be given with it
+    std::string default_text{};        ///< the default in words, if it depends on other settings
+    std::vector<command> required{};   ///< the commands that require the option
+    std::vector<std::string> needs{};  ///< names of options that must be given with it
     std::vector<std::string> excludes{};
-    std::string strategy{};   ///< the densification strategy that has the option; empty: none in particular
-    bool is_recorded = true;  ///< in settings.json; false if another option records the same member
+    std::string strategy{};   ///< the densification strategy that has the option, or empty
+    bool is_recorded = true;  ///< whether settings.json has it; false if another option has the same member
 
     bool belongs_to(command c) const;
     bool is_required_by(command c) const;
     bool is_positional() const;
-    /// The names as users type them, in the order of `names`.
+    /// Returns the names as users type them, in the order of `names`.
     std::vector<std::string> all_names() const;
-    /// The first long name, such as "--sh-degree". Messages and other rows use this one.
+    /// Returns the first long name, such as "--sh-degree". Messages and other rows use it.
     std::string name() const;
-    /// The name in settings.json, such as "sh_degree".
+    /// Returns the name in settings.json, such as "sh_degree".
     std::string key() const;
 };
 

@@ -16,7 +16,8 @@
 
 namespace gs::options {
 
-/// An option does not accept a word. `what()` continues a sentence that begins with the option's name.
+/// The error that an option does not accept a word. `what()` continues a sentence that begins with the
+/// option's name.
 struct refused_word : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -24,27 +25,27 @@ struct refused_word : std::runtime_error {
 /// The member that an option sets, and the conversions between text, the member and JSON.
 struct option_value {
     std::string type;   ///< placeholder in help texts, such as "INTEGER"; empty for a flag
-    std::string range;  ///< the accepted values, such as "1 to 8"; empty if there is nothing to add
-    /// Sets the member from one word; flags get "true" or "false". Throws `refused_word`.
+    std::string range;  ///< the accepted values, such as "1 to 8", or empty
+    /// Sets the member from one word; flags receive "true" or "false". Throws `refused_word` for others.
     std::function<void(const std::string& word)> read;
-    std::function<nlohmann::ordered_json()> json;  ///< the member's value; null if it is unset
-    bool is_list = false;                          ///< takes several words; `read` adds one
+    std::function<nlohmann::ordered_json()> json;  ///< returns the member's value, or null if it is unset
+    bool is_list = false;                          ///< whether it takes several words; `read` adds one
 
     bool is_flag() const { return type.empty(); }
 };
 
 inline constexpr std::uint64_t most_iterations = 10'000'000;
 
-/// Numbers in words. Throw `refused_word` for everything that is not a number of that kind.
+/// Returns the number in a word. Throws `refused_word` if the word is not a number of this kind.
 /// @{
 std::uint64_t read_whole(const std::string& word, std::uint64_t least, std::uint64_t most);
 double read_positive(const std::string& word);
 double read_share(const std::string& word);
 /// @}
 
-/// The index of `word` in `names`. Throws `refused_word` that lists them if it is not there.
+/// Returns the index of `word` in `names`. Throws `refused_word`, which lists the names, for other words.
 std::size_t read_choice(const std::string& word, const std::vector<std::string>& names);
-/// "a, b or c"
+/// Returns a text such as "a, b or c".
 std::string alternatives(const std::vector<std::string>& names);
 
 template <class T>
@@ -64,13 +65,13 @@ T value_in(const std::optional<T>&);
 template <class Member>
 using value_type = decltype(value_in(std::declval<Member&>()));
 
-/// The kinds of values.
+/// Returns a value of this kind, which sets `member`. The member must outlive it.
 /// @{
 option_value text(std::string& member, const std::string& type);
 option_value flag(bool& member);
 /// Numbers of iterations.
 option_value iterations(std::set<int>& member);
-/// One of `names`, which are those of a door's table.
+/// One of `names`, such as the names of all losses.
 option_value word(std::string& member, std::vector<std::string> names);
 
 /// A flag that sets `member` to one value.

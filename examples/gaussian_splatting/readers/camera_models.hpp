@@ -8,20 +8,19 @@
 
 namespace gs {
 
-/// A camera model of COLMAP. Its parameters are: f or fx fy, cx, cy, and the distortion
-/// coefficients.
+/// A camera model of COLMAP. Its parameters are f or fx fy, cx, cy, and the distortion coefficients.
 struct camera_model {
-    int id;  ///< in COLMAP's binary files
+    int id;  ///< number in COLMAP's binary files
     const char* name;
     bool two_focal_lengths;
-    std::size_t distortion_count;  ///< of k1 k2 p1 p2, or k1 to k4 of a fisheye
+    std::size_t distortion_count;  ///< how many of k1 k2 p1 p2 it has, or of k1 to k4 for a fisheye
     bool is_fisheye = false;
 
     std::size_t parameter_count() const { return (two_focal_lengths ? 4U : 3U) + distortion_count; }
 };
 
-/// Both throw `error` beginning with `where`, and listing the supported models, for any other
-/// model.
+/// Returns a camera model by id or by name. Throws `error`, which begins with `where` and lists the
+/// supported models, for other models.
 const camera_model& camera_model_with_id(int id, const std::string& where);
 const camera_model& camera_model_named(std::string_view name, const std::string& where);
 

@@ -15,47 +15,47 @@
 
 namespace gs {
 
-/// Which scene to read, and how.
+/// The scene to read, and the options of reading it.
 struct load_options {
     std::string data;        ///< a path, or a name that a reader knows, such as "synthetic:spheres"
-    int resolution = 1;      ///< see `divides_size`; otherwise the longer side in pixels
-    bool eval = false;       ///< hold out the test images; otherwise they are training images, too
+    int resolution = 1;      ///< divisor of the size, see `divides_size`, or the longer side in pixels
+    bool eval = false;       ///< hold out the test images, which are training images by default
     bool masks = true;       ///< apply the scene's masks
     bool depths = true;      ///< load the scene's depth maps
     std::uint64_t seed = 0;  ///< for readers that draw random points
 
-    // Only some readers use the following, see `reader_option`.
+    // Only some readers use the following options: see `reader_option`.
     std::string images = "images";  ///< the folder of the images, relative to `data`
     int test_every = 8;             ///< hold out every n-th image, sorted by name, from the first
 };
 
-/// Whether a resolution divides the size of the images instead of being their longer side.
+/// Returns whether a resolution is a divisor of the images' size; if not, it is their longer side.
 constexpr bool divides_size(int resolution) {
     return resolution == 1 || resolution == 2 || resolution == 4 || resolution == 8;
 }
 
 /// An option that only some readers use. `load_scene` refuses it for scenes of all other readers.
 struct reader_option {
-    std::string_view name;                ///< on the command line
-    bool (*is_set)(const load_options&);  ///< whether it differs from its default
+    std::string_view name;                ///< name on the command line
+    bool (*is_set)(const load_options&);  ///< returns whether it differs from its default
 };
 inline constexpr reader_option images_option{
     "--images", [](const load_options& o) { return o.images != load_options().images; }};
 inline constexpr reader_option test_every_option{
     "--test-every", [](const load_options& o) { return o.test_every != load_options().test_every; }};
 
-/// One image of a scene as a reader describes it. It names its files, which `load_scene` loads
-/// later, or holds the pixels that a reader has made.
+/// The description of one image of a scene. It names files, which `load_scene` loads later, or holds
+/// pixels that the reader has made.
 struct image_record {
-    std::string name;       ///< unique within the scene; with '/' between folders
-    gs::camera camera;      ///< for images of the size for which it was calibrated; at least 1×1
-    bool held_out = false;  ///< a test image, if `load_options::eval` is set
+    std::string name;       ///< unique within the scene; '/' separates folders
+    gs::camera camera;      ///< calibrated for its own size, which is at least 1×1
+    bool held_out = false;  ///< whether it is held out if `load_options::eval` is set
 
     std::filesystem::path file;   ///< PNG or JPEG; may be a scaled copy
-    lens distortion;              ///< of the file; loading removes it
+    lens distortion;              ///< distortion of the file, which loading removes
     std::string camera_model;     ///< name of the model of `distortion`, for messages
-    std::filesystem::path mask;   ///< PNG, see `read_mask`; empty: no mask
-    std::filesystem::path depth;  ///< PNG, see `read_depth_map`; empty: no depth map
+    std::filesystem::path mask;   ///< PNG, see `read_mask`; empty without a mask
+    std::filesystem::path depth;  ///< PNG, see `read_depth_map`; empty without a depth map
 
     image pixels;            ///< instead of `file`: undistorted, at the final resolution
     depth_map depth_pixels;  ///< may accompany `pixels`, and has their size
@@ -75,23 +75,23 @@ struct reader {
     std::string_view name;     ///< in messages, as in "COLMAP scenes"
     std::string_view accepts;  ///< what `probe` looks for, as in "a COLMAP folder with sparse/0 or sparse"
 
-    /// Whether `load_options::data` is such a scene. Looks only at names: the first reader that
-    /// returns true reads the scene, and reports everything that is wrong with it.
+    /// Returns whether `load_options::data` is such a scene. Looks only at names. The first reader
+    /// that returns true reads the scene and reports all its errors.
     bool (*probe)(const std::string& data);
 
     /// Reads cameras and points. Opens images at most for their size, unless the reader makes the
     /// images. Throws `error` with the file, and the line or record, that is malformed.
     scene_description (*read)(const load_options& options, const log_function& log);
 
-    std::span<const reader_option> options{};  ///< those that `read` uses
+    std::span<const reader_option> options{};  ///< the options that `read` uses
 };
 
-/// All readers, in the order in which they are asked.
+/// Returns all readers, in the order in which `load_scene` calls their `probe`.
 std::span<const reader* const> all_readers();
 
-/// What readers accept, for messages: "A, B or C".
+/// Returns the scenes that readers accept, for messages: "A, B or C".
 std::string accepted_scenes(std::span<const reader* const> readers = all_readers());
-/// Names of the readers that use an option, for messages: "A and B".
+/// Returns the names of the readers that use an option, for messages: "A and B".
 std::string readers_with(std::string_view option, std::span<const reader* const> readers = all_readers());
 
 }  // namespace gs

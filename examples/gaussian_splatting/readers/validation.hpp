@@ -10,17 +10,18 @@
 
 namespace gs {
 
-/// Longer file names do not exist on Linux, and std::filesystem needs many times their size.
+/// The largest number of bytes in a file name. Linux has no longer ones, and std::filesystem needs many
+/// times their size.
 inline constexpr std::size_t longest_path = 4096;
 
-/// Whether the focal lengths lie between 1e-6 and 1e9 pixels and all other parameters are finite
-/// and at most 1e9 in magnitude, so that no change of the image's size can overflow.
+/// Returns whether the focal lengths lie between 1e-6 and 1e9 pixels, and all other parameters are
+/// finite and at most 1e9 in magnitude, so that no change of the image's size can overflow.
 bool has_valid_intrinsics(const camera& taken_with, const lens& distortion);
 inline constexpr const char* invalid_intrinsics =
     " has a focal length that is not between 1e-6 and 1e9, or a parameter that is not finite or beyond 1e9";
 
-/// Whether a position is finite and at most 1e30 along each axis, so that squared distances do not
-/// overflow.
+/// Returns whether a position is finite and at most 1e30 along each axis, so that squared distances do
+/// not overflow.
 bool is_valid_position(const glm::dvec3& position);
 inline constexpr const char* invalid_position = " is not finite, or beyond 1e30";
 

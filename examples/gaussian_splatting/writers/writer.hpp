@@ -11,7 +11,7 @@
 
 namespace gs {
 
-/// How to write a model. Each format honors what it can express.
+/// Options of writing a model. A format ignores options that it cannot express.
 struct write_options {
     int max_sh_degree = 3;  ///< 0 to 3; coefficients of higher degrees are dropped
 };
@@ -22,14 +22,14 @@ struct write_options {
 /// A model has the axes of the scene that it was trained on. A format that prescribes other axes
 /// converts in both functions.
 struct writer {
-    std::string_view name;  ///< in messages, as in "PLY files"
+    std::string_view name;  ///< name in messages, as in "PLY files"
 
     /// The endings of the files, in lower case. The longest ending that matches decides, so that
     /// one writer may have ".ply" and another ".compressed.ply".
     std::span<const std::string_view> endings;
 
-    /// Writes the file as a whole or not at all, see `atomic_file_write`. Throws `error` with the
-    /// file and the value that the format cannot hold, such as one that is not finite.
+    /// Writes the file as a whole or not at all: see `atomic_file_write`. Throws `error` with the file
+    /// and the value that the format cannot hold, such as one that is not finite.
     void (*write)(const std::filesystem::path& file, const gaussians& model, const write_options& options);
 
     /// Reads the file back; null for formats that can only be written. Throws `error` with the file
@@ -40,19 +40,20 @@ struct writer {
     int max_sh_degree = 3;  ///< the highest SH degree that its files hold
 };
 
-/// All writers.
+/// Returns all writers.
 std::span<const writer* const> all_writers();
 
-/// Endings of the formats that can be read, for messages: ".a, .b or .c" if `last_separator` is " or ".
+/// Returns the endings of formats that can be read, for messages: ".a, .b or .c" if `last_separator` is " or
+/// ".
 std::string readable_endings(std::span<const writer* const> writers, const char* last_separator);
 
-/// Writes a model in the format of the file's ending, in upper or lower case. Throws `error`
-/// listing the known endings for any other, and what `writer::write` throws.
+/// Writes a model in the format of the file's ending, in upper or lower case. Throws `error`, which lists
+/// the known endings, for other endings. Passes on the errors of `writer::write`.
 void write_model(const std::filesystem::path& file, const gaussians& model, const write_options& options = {},
                  std::span<const writer* const> writers = all_writers());
 
-/// Reads a model in the format of the file's ending. Throws `error` listing the endings of formats
-/// that can be read for any other, and what `writer::read` throws.
+/// Reads a model in the format of the file's ending. Throws `error`, which lists the endings of formats that
+/// can be read, for other endings. Passes on the errors of `writer::read`.
 gaussians read_model(const std::filesystem::path& file,
                      std::span<const writer* const> writers = all_writers());
 

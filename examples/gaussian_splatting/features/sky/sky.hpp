@@ -25,7 +25,8 @@ class sky {
     std::vector<float> get() const { return numbers_.get(); }
     bool exists() const { return numbers_.rows() > 0; }
 
-    /// Draws the background of a camera. Returns three planes on the device, or null without a learned background.
+    /// Draws the background of a camera. Returns three planes on the device, or null without a learned
+    /// background.
     const float* draw(const camera& camera) {
         if (!exists()) return nullptr;
         raster::require_drawable(camera);

@@ -10,20 +10,20 @@
 
 namespace gs::train {
 
-/// The gradient of `weight` times the sum over all pixels of |d - (scale m + offset)|, with respect
-/// to the rendered inverse depths d; m are the values of a depth map (Kerbl et al. 2024,
-/// hierarchical 3D Gaussians). It is zero where the map has no value. The largest magnitude of its
-/// values is `weight`. One index per pixel.
+/// Computes the gradient of `weight` times the sum over all pixels of |d - (scale m + offset)| with
+/// respect to the rendered inverse depths d; m are the values of a depth map. The gradient is zero at
+/// pixels without a value, and its magnitude is at most `weight`. One index per pixel. Source: Kerbl
+/// et al. 2024 (hierarchical 3D Gaussians).
 struct depth_gradient {
     const float* render;
-    const std::uint16_t* target;  ///< 0: the depth is unknown
+    const std::uint16_t* target;  ///< values of the depth map; 0 if the depth is unknown
     depth_fit fit;
     float weight;
     std::size_t pixels;
-    float* gradient;  ///< three planes, like the gradient of an image; the last two are zero
+    float* gradient;  ///< three planes, as for an image; the last two are zero
 
     WARPAGG_HD void operator()(std::size_t i) const {
-        // An inverse depth below zero would be farther than infinity.
+        // A negative inverse depth would lie beyond infinity.
         const float expected =
             warpagg::math::max(fit.scale * static_cast<float>(target[i]) + fit.offset, 0.0f);
         const float difference = render[i] - expected;

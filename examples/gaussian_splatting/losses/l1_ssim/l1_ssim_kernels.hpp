@@ -6,20 +6,20 @@
 
 namespace gs::train {
 
-/// The gradient with respect to the render x of
+/// Computes the gradient, with respect to the render x, of
 ///
 ///     (1 - ssim_weight) mean|x - y| + ssim_weight (1 - mean SSIM),
 ///
-/// or zero where the mask excludes a pixel. Reads the maps that the two passes of a comparison have
-/// written. One warp per strip.
+/// and zero at masked pixels. Reads the maps that the two passes of a comparison have written. One
+/// warp per strip.
 template <class Real, bool Masked>
 struct l1_ssim_gradient {
     const std::uint32_t* target;  ///< premultiplied RGBA bytes
     comparison_maps<Real> maps;
     ssim_window<Real> window;
-    int rows;  ///< per strip
+    int rows;  ///< rows per strip
     Real ssim_weight;
-    Real* gradient;  ///< three planes without a frame
+    Real* gradient;  ///< three planes without the frame of `framed_planes`
 
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>

@@ -17,11 +17,11 @@ struct colmap_camera {
     std::uint32_t id = 0;
     int width = 0, height = 0;
     bool is_fisheye = false;
-    const char* model = "";  ///< its name, for messages
+    const char* model = "";  ///< name of the camera model, for messages
     double fx = 0, fy = 0, cx = 0, cy = 0;
     std::array<double, 4> coefficients{};  ///< k1 k2 p1 p2 of `lens`, or k1 to k4 of `fisheye`
 
-    /// The camera in the origin, without distortion.
+    /// Returns the camera at the origin, without distortion.
     gs::camera camera() const {
         gs::camera c{width, height, fx, fy, cx, cy};
         if (is_fisheye) c.fisheye = fisheye(coefficients);
@@ -36,7 +36,7 @@ struct colmap_camera {
 
 struct colmap_image {
     std::uint32_t camera_id = 0;
-    std::size_t name_begins = 0;  ///< in `colmap_model::names`
+    std::size_t name_begins = 0;  ///< position of the name in `colmap_model::names`
     glm::dquat rotation{1, 0, 0, 0};
     glm::dvec3 translation{0};
 };
@@ -45,20 +45,20 @@ struct colmap_model {
     std::vector<colmap_camera> cameras;  ///< sorted by id
     std::vector<colmap_image> images;    ///< in the file's order
     std::vector<colored_point> points;
-    std::string names;                  ///< of the images, each with a terminating zero
+    std::string names;                  ///< names of the images, each with a terminating zero
     std::filesystem::path images_file;  ///< the file with the images, for messages
 
     const char* name(const colmap_image& image) const { return names.c_str() + image.name_begins; }
 };
 
-/// Reads cameras, images and points3D from a folder, each from its `.bin` or otherwise its `.txt`.
-/// The points may be missing. Throws `error` with the file, and the line or record, that is
-/// malformed. Never allocates more than four times the size of the files plus 64 KiB, whatever they
-/// contain.
+/// Reads cameras, images and points3D from a folder. Each file is a `.bin`, or a `.txt` if the `.bin`
+/// does not exist. The points may be missing. Throws `error` with the file, and the line or record,
+/// that is malformed. Allocates at most four times the size of the files plus 64 KiB, also for
+/// malformed files.
 colmap_model read_colmap_model(const std::filesystem::path& folder);
 
-/// A folder with a COLMAP model in sparse/0 or sparse, images, and possibly masks and depth maps.
-/// The images are sorted by name, and every `test_every`-th is held out.
+/// Reads a folder with a COLMAP model in sparse/0 or sparse, with images, and possibly with masks and
+/// depth maps. The images are sorted by name. Every `test_every`-th image is held out.
 extern const reader colmap_reader;
 
 }  // namespace gs

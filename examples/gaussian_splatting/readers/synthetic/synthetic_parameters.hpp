@@ -6,7 +6,7 @@
 
 namespace gs {
 
-/// The content of a synthetic scene, and how it was photographed. By default surfaces are matte,
+/// The content of a synthetic scene and the properties of its photos. By default surfaces are matte,
 /// and all photos have the same distance and exposure and no noise.
 struct synthetic_parameters {
     std::string world;
@@ -14,12 +14,12 @@ struct synthetic_parameters {
     double exposure = 0;   ///< standard deviation of log2 of the brightness of photos, 0 to 2
     double scales = 1;     ///< largest distance of a camera over the smallest, 1 to 16
     double distance = 1;   ///< factor of all camera distances, 0.25 to 16
-    double passers = 0;    ///< share of each photo that a disc hides, which is masked; 0 to 0.5
-    double depths = -1;    ///< relative noise of depth maps, 0 to 10; negative: none
-    double sky = 0;        ///< brightness of the sky, which depends on direction alone; 0 to 1
+    double passers = 0;    ///< share of each photo that a masked disc hides, 0 to 0.5
+    double depths = -1;    ///< relative noise of depth maps, 0 to 10; negative for no depth maps
+    double sky = 0;        ///< brightness of the sky, which depends only on direction, 0 to 1
     double points = 3000;  ///< number of points, 1 to 100000
     double views = 48;     ///< largest number of training images, 1 to 48
-    double fisheye = 0;    ///< degrees across a fisheye image, 0 to 190; 0: pinhole cameras
+    double fisheye = 0;    ///< degrees across a fisheye image, 0 to 190; 0 for pinhole cameras
     double noise = 0;      ///< standard deviation of the noise of colors in [0, 1], 0 to 0.5
 };
 

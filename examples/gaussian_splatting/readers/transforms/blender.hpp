@@ -6,8 +6,8 @@
 
 namespace gs {
 
-/// A folder like those of the NeRF-synthetic data set: `transforms_train.json` and, for the
-/// held-out images, `transforms_test.json` or otherwise `transforms_val.json`.
+/// Reads a folder like those of the NeRF-synthetic data set: `transforms_train.json`, and for the
+/// held-out images `transforms_test.json`, or `transforms_val.json` if that does not exist.
 extern const reader blender_reader;
 
 }  // namespace gs

@@ -21,8 +21,8 @@ enum class transforms_number { camera_angle_x, fl_x, fl_y, cx, cy, w, h, k1, k2,
 inline constexpr std::array<std::string_view, 13> transforms_number_names = {
     "camera_angle_x", "fl_x", "fl_y", "cx", "cy", "w", "h", "k1", "k2", "k3", "k4", "p1", "p2"};
 
-/// The camera_model of a frame or of the whole file: OpenCV's model without k3 and k4, which
-/// includes pinhole cameras, or its fisheye model.
+/// The `camera_model` of a frame or of the whole file: OpenCV's model without k3 and k4, which
+/// includes pinhole cameras, or OpenCV's fisheye model.
 enum class transforms_lens { unset, opencv, fisheye };
 
 /// A number in the file; NaN for a value of another type.
@@ -32,31 +32,31 @@ struct number_field {
 };
 
 struct transforms_frame {
-    std::string path;        ///< of its photo, possibly without the ending
-    std::string mask;        ///< path of its mask, or empty
-    glm::dmat3 rotation{1};  ///< of `camera`
+    std::string path;        ///< path of the photo, possibly without the ending
+    std::string mask;        ///< path of the mask, or empty
+    glm::dmat3 rotation{1};  ///< rotation of the camera pose: see `camera`
     glm::dvec3 translation{0};
     transforms_lens lens = transforms_lens::unset;
     std::vector<number_field> numbers;
 };
 
 struct transforms {
-    std::string where;  ///< the file, for messages
+    std::string where;  ///< name of the file, for messages
     std::deque<transforms_frame> frames;
     transforms_lens lens = transforms_lens::unset;
     std::vector<number_field> numbers;
 
-    /// "FILE frame INDEX (PATH)"
+    /// Returns "FILE frame INDEX (PATH)" for messages.
     std::string where_is(std::size_t index) const;
-    /// The number of a frame, or else of the file; none if neither has it. Throws `error` with the
-    /// frame if the value is not a number.
+    /// Returns the number of a frame, the file's number if the frame has none, or nothing if neither
+    /// has one. Throws `error` with the frame if the value is not a number.
     std::optional<double> number(std::size_t index, transforms_number which) const;
     bool is_fisheye(std::size_t index) const;
 };
 
-/// Reads a transforms file, and opens no photo. Throws `error` with the file, and the line or
-/// frame, that is malformed. Never allocates more than four times the size of the file plus 64 KiB,
-/// whatever it contains.
+/// Reads a transforms file without opening photos. Throws `error` with the file, and the line or
+/// frame, that is malformed. Allocates at most four times the size of the file plus 64 KiB, also for
+/// malformed files.
 transforms read_transforms(const std::filesystem::path& file);
 
 }  // namespace gs
