@@ -153,7 +153,7 @@ TEST_CASE("long: training simulates the recommended effects, or those that --eff
     CHECK(outcome(simulated(spheres, "all"), 4).reason == "no training photo has masked pixels");
     const feature_set masked = simulated(made("spheres,passers=0.1"), "auto");
     CHECK(outcome(masked, 4).on);
-    CHECK(outcome(masked, 4).reason.starts_with("48 of 48 photos have masks, which leave out "));
+    CHECK(outcome(masked, 4).reason.starts_with("48 of 48 photos have masks, which exclude "));
 
     CHECK(outcome(simulated(spheres, "all"), 5).reason == "no training photo has a depth map");
     CHECK(simulated(spheres, "all").values_if_on("depth").empty());
