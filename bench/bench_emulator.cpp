@@ -28,7 +28,7 @@ namespace {
 constexpr int values = 9;
 constexpr std::size_t warps = 1024, records = 256;
 
-/// What all warps of `size` lanes hold, and where it goes.
+/// The values of all warps of `size` lanes, and their destinations.
 template <std::size_t size>
 struct problem {
     std::vector<float> held = std::vector<float>(warps * values * size);  // [warp][value][lane]
@@ -111,7 +111,7 @@ double nanoseconds_a_warp(const F& f) {
     return taken.count() / (times * warps);
 }
 
-/// Whether both made the same sums.
+/// Returns whether both made the same sums.
 template <std::size_t size>
 bool compare() {
     const problem<size> p;
@@ -120,7 +120,7 @@ bool compare() {
     by_hand(p, written.data());
     const bool same = std::memcmp(emulated.data(), written.data(), emulated.size() * sizeof(float)) == 0;
 
-    double emulator = 1e30, hand = 1e30;  // the fastest: what else the machine did is no part of it
+    double emulator = 1e30, hand = 1e30;  // the fastest round, which other work disturbs least
     for (int round = 0; round < 200; ++round) {
         emulator = std::min(emulator, nanoseconds_a_warp([&] { by_emulator(p, emulated.data()); }));
         hand = std::min(hand, nanoseconds_a_warp([&] { by_hand(p, written.data()); }));

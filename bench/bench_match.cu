@@ -20,7 +20,7 @@ using warpagg::policy;
 constexpr unsigned blocks = 132 * 16, threads = 128, steps = 256, keys = 1u << 20, seed = 12345;
 constexpr int rounds = 3;
 
-/// How a lane's key is drawn.
+/// The distribution of a lane's key.
 enum class draw { own, rising, rising_far, among, skewed };
 
 template <class T, int N, class Policy>

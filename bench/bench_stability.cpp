@@ -133,7 +133,7 @@ void run(trial& t, gs::train::engine& engine, ordered_json& row) {
 
     const temporary_file file;
     gs::write_ply(file.path(), gs::to_world(scene.normalization, model));
-    const gs::gaussians saved = gs::read_ply(file.path());  // refuses what is not finite
+    const gs::gaussians saved = gs::read_ply(file.path());  // refuses values that are not finite
     row["ply_in_place"] = is_in_place(saved, t);
     engine.set_model(gs::to_internal(scene.normalization, saved));
     row["ply_training_psnr"] = mean_psnr(engine, 0, trained);

@@ -21,7 +21,7 @@ class stopwatch {
         check(cudaEventCreate(&from_));
         check(cudaEventCreate(&to_));
     }
-    /// How long the GPU takes for what `f` launches.
+    /// Returns the milliseconds that the GPU takes for the launches of `f`.
     template <class F>
     double milliseconds(const F& f) {
         check(cudaEventRecord(from_));

@@ -28,8 +28,8 @@ CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales"
 EFFECTS = [*CAUSES, BACKGROUND]
 PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"passers": 0.1}, {"depths": 0.05}, {"depths": 2}, {"fisheye": 60},
         {"noise": 0.03}]
-SKYLESS = "alpha"  # what no surface hides is transparent there
-RIGHT_DEPTHS = 0.05  # of what has more noise nobody can tell what is nearer
+SKYLESS = "alpha"  # pixels without a surface are transparent
+RIGHT_DEPTHS = 0.05  # more noise hides the order of depths
 MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "sky": (0.3, 1), "passers": (0.05, 0.2),
          "depths": (0.01, 0.02), "fisheye": (50, 70)}
 

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <string>
 
-/// The version of the GPU's driver, the first word with a dot in what it tells of itself; empty if there is
-/// none.
+/// Returns the version of the GPU's driver, the first word with a dot in its description, or an empty
+/// string without a driver.
 inline std::string driver_version() {
     std::ifstream about("/proc/driver/nvidia/version");
     std::string word;

@@ -22,7 +22,7 @@ from environment import environment, own_and_passed_on
 from markdown_tables import markdown
 from scenes import by, where
 
-# By effect, a scene that calls for it and one that does not.
+# For each effect, a scene that calls for it and one that does not.
 SCENES = {"direction": ("spheres,gloss=1,noise=0.01", "spheres,noise=0.03"),
           "exposure": ("spheres,exposure=0.3", "spheres"),
           "antialiasing": ("spheres,scales=4", "spheres"),
@@ -33,7 +33,7 @@ LITTLE = ["spheres,noise=0.03", "alpha,noise=0.03"]
 MUCH = ["spheres,gloss=0.7,exposure=0.3,scales=4,sky=0.7", "alpha,gloss=0.7,exposure=0.3,scales=4"]
 SELECTIONS = ["none", "auto", "all"]
 DISTANCES = [1, 0.5, 4]
-TAKEN = {"exposure", "scales", "passers", "depths", "points", "views", "noise"}  # what is of the photos, not of the world
+TAKEN = {"exposure", "scales", "passers", "depths", "points", "views", "noise"}  # parameters of the photos, not of the world
 SIDE = "256"
 
 

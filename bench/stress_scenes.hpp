@@ -22,7 +22,7 @@ struct trial {
     gs::train::adaptive_config adaptive;
     std::size_t cap = 0;
     std::uint64_t seed = 0;
-    std::size_t large_count = 0;  ///< of Gaussians, where many is what is hard
+    std::size_t large_count = 0;  ///< number of Gaussians, if many of them make the case hard
     int large_iterations = 0;
     glm::dvec3 offset{0};
     double scale = 1;

@@ -15,7 +15,7 @@ enum class way { native, f64, compensated, fixed, binned2, binned3, exact, order
 inline constexpr std::array<std::string_view, 8> way_names{
     "native", "f64", "compensated", "fixed, scaled to fit", "binned<2>", "binned<3>", "exact", "ordered"};
 
-/// What `way::fixed` is, for values up to `largest`.
+/// The accumulator of `way::fixed` for values up to `largest`.
 using fixed_way = warpagg::accumulate::fixed<20>;
 
 /// Adds up problems on a device.
@@ -23,11 +23,11 @@ class adder {
   public:
     virtual ~adder() = default;
     virtual std::string device() const = 0;
-    /// Of a warp.
+    /// Returns the number of lanes of a warp.
     virtual unsigned lanes() const = 0;
-    /// The sums of the last `put`'s values.
+    /// Returns the sums of the last `put`'s values.
     virtual std::vector<float> add_up(way how) = 0;
-    /// Nanoseconds of the last `add_up`, without zeroing and reading the sums.
+    /// Returns the nanoseconds of the last `add_up`, without zeroing and reading the sums.
     virtual double nanoseconds() const = 0;
     virtual void put(const problem& p) = 0;
 };

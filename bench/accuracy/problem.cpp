@@ -9,7 +9,7 @@ using namespace warpagg;
 
 namespace {
 
-/// Pairs that cancel but for a tenth of them, which have what is left: sum|x| / |sum x| is about k.
+/// Nine tenths of the values form pairs that cancel; the rest makes sum|x| / |sum x| about k.
 void add_conditioned(double k, std::size_t n, std::mt19937_64& random, std::vector<float>& values) {
     std::normal_distribution<float> normal;
     const std::size_t first = values.size(), pairs = n * 9 / 20;

@@ -31,12 +31,12 @@ std::map<std::string, generator> generators();
 problem draw(const generator& values_of, std::size_t n, std::uint32_t sums, bool zipf, double active,
              std::mt19937_64& random);
 
-/// What errors of a sum are relative to, and bounds are made of.
+/// The properties of a sum that errors and bounds refer to.
 struct sizes {
     double n = 0, magnitude = 0, largest = 0, sum = 0;
     warpagg::accumulator<warpagg::accumulate::exact> exact;
 
-    /// How far x is from the exact sum, rounded once.
+    /// The distance of x from the exact sum, rounded once.
     double minus(float x) const;
 };
 std::vector<sizes> sizes_of(const problem& p);

@@ -47,7 +47,7 @@ bool is_examined(int n) {
 
 double thousandths(double x) { return std::round(x * 1000) / 1000; }
 
-/// The variants of one question take turns, so that what the machine does meanwhile hits all of them.
+/// The variants of one question take turns, so that other work of the machine affects all of them.
 void measure(const std::vector<const variant*>& of, share s, void* memory,
              nlohmann::ordered_json& questions) {
     std::map<const variant*, std::vector<double>> ms;

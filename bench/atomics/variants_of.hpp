@@ -20,7 +20,7 @@ namespace reduce = warpagg::reduce;
 namespace commit = warpagg::commit;
 using warpagg::policy;
 
-/// No accumulation at all: what a step costs besides.
+/// Does not accumulate; measures the rest of a step.
 struct nothing {};
 
 __device__ inline std::uint32_t next(std::uint32_t& random) {
@@ -40,7 +40,7 @@ __global__ void add(T* memory, activity lanes) {
     } else {
         one.x = one.y = 1.0f;
     }
-    for (int i = 0; i < N; ++i) values[i] = memory[w.lane() + i];  // else the compiler finds them equal
+    for (int i = 0; i < N; ++i) values[i] = memory[w.lane() + i];  // otherwise the compiler finds them equal
     for (unsigned step = 0; step < steps_per_warp; ++step) {
         next(record);
         const bool active = next(lane) < chance;

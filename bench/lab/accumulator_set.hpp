@@ -7,8 +7,8 @@
 
 namespace gs::lab {
 
-/// One pixel per lane and one warp per patch, whatever the length of the tile's list. `SkipsIdle`: a warp
-/// whose lanes have no gradient computes no sums.
+/// Handles one pixel per lane with one warp per patch, which walks over the whole list of the tile.
+/// `SkipsIdle`: a warp whose lanes have no gradient computes no sums.
 template <class Policy, bool SkipsIdle>
 struct whole_lists {
     static constexpr bool supports_background_image = false;

@@ -36,7 +36,7 @@ inline constexpr std::array<named_accumulator, 5> ladder{{{"per-lane", per_lane}
                                                           {"scatter", scatter},
                                                           {"split", native}}};
 
-/// What memory keeps the default's sums in.
+/// The accumulators that memory can keep the default's sums in.
 inline constexpr std::array<named_accumulator, 6> accumulations{{{"native", native},
                                                                  {"f64", f64},
                                                                  {"compensated", compensated},

@@ -30,7 +30,7 @@ import ncu  # noqa: E402
 from scenes import by, train, train_into  # noqa: E402
 
 RUNGS = ["per-lane", "reduce", "reduce-skip", "split"]
-TIMED = ["per-lane", "reduce-skip", "split"]  # baseline and ours of the paper, and what is default here
+TIMED = ["per-lane", "reduce-skip", "split"]  # the paper's baseline, its own method, and our default
 WITHIN = 0.05
 MOST_ATTEMPTS = 8
 
@@ -60,7 +60,7 @@ def filling(seconds, first, run_of):
         run = runs[-1]
         runs.append(run_of(max(1, round(run["iterations"] * (seconds / run["seconds"]["train"]) ** (1 / power)))))
         (n, m), (t, u) = [(r["iterations"] for r in runs[-2:]), (r["seconds"]["train"] for r in runs[-2:])]
-        if abs(math.log(m / n)) > 0.1:  # else noise
+        if abs(math.log(m / n)) > 0.1:  # otherwise noise decides
             power = min(max(math.log(u / t) / math.log(m / n), 0.8), 1.6)
     return {**min(runs[1:], key=lambda r: off(r, seconds)), "attempts": len(runs) - 1}
 
@@ -112,7 +112,7 @@ def run(arguments):
     about = {"bench": "paper", "options": arguments.options, "iterations": arguments.iterations, "turns": arguments.turns,
              "seconds": arguments.seconds, "seed": arguments.seed, **environment(arguments.commit)}
     before = json.loads(output.read_text()) if output.exists() else {}
-    # What is written here makes a checkout dirty.
+    # Files written here make a checkout dirty.
     clean = lambda told: {**told, "scenes": None, "commit": (told.get("commit") or "").removesuffix("-dirty")}
     known = before.get("scenes", []) if clean(before) == clean(about) else []
     about["commit"] = before["commit"] if known else about["commit"]

@@ -33,7 +33,7 @@ from train import add_run, measure  # noqa: E402
 
 DEFAULT, AGAIN, HALF, DOUBLE = "default", "again", "half", "double"
 MOST_TOGETHER = 4
-# What the trainer refuses together, or the one brings with it.
+# Pairs of options that the trainer refuses, or of which one implies the other.
 EXCLUDES = {"--gradient": {"--accumulate", "--deterministic"}, "--deterministic": {"--accumulate"},
             "--budget": {"--densify-grad-threshold"}, "--quality": {"--sh-lr"}}
 

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 
-/// How long the blending takes, backward and forward, with each variant: milliseconds a frame, and times as
-/// fast as one atomic per lane. The rungs of the ladder lead from the original kernel to the trainer's; the
-/// contenders are what the trainer's was chosen from. The variants take turns, so that all see the same state
-/// of the machine, and the gradient of the image is random. A pair is a pixel and a Gaussian whose exponent
-/// was computed there: pixels of patches that a Gaussian reaches. The time of a pair is that of a core.
+/// Times the blending with each variant, backward and forward: milliseconds per view, and the ratio to one
+/// atomic per lane. The ladder leads from the original kernel to the trainer's in steps; the contenders are
+/// alternatives to the trainer's kernel. The variants take turns, so that all see the same state of the
+/// machine, and the gradient of the image is random. A pair is a pixel and a Gaussian whose exponent is
+/// computed there: a pixel of a patch that the Gaussian reaches. The time of a pair is that of one core.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -147,7 +147,7 @@ void bench(const options& o) {
     for (const standing& s : result.standings) {
         const double ms = median(s.backward), forward = median(s.forward);
         const auto [least, most] = std::ranges::minmax(s.backward);
-        // Of one core, as if all had been at it all the time.
+        // The time of one core, assuming that all cores were busy throughout.
         const auto a_pair = [&](double milliseconds) { return milliseconds * 1e6 * result.cores / s.pairs; };
         std::printf("%-47s %9.4f   %.4f to %.4f %6.2f %9.4f %9.2f %12.3f (%.3f) %8.1e %8.1e\n",
                     s.name.c_str(), ms, least, most, baseline / ms, forward, s.pairs / 1e6, a_pair(ms),

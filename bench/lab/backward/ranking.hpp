@@ -12,7 +12,7 @@
 
 namespace gs::lab {
 
-/// What the variants of the blending are timed on.
+/// The problem on which the variants of the blending are timed.
 struct ranking_setup {
     gs::gaussians model;
     std::vector<gs::camera> cameras;  ///< all of one size
@@ -27,19 +27,19 @@ struct ranking_setup {
 
 /// dL/dimage: three planes.
 std::vector<float> render_gradient(const ranking_setup& c);
-/// What goes to `ranking_setup::reference_fp64`, on the CPU.
+/// Computes `ranking_setup::reference_fp64` on the CPU.
 std::vector<std::vector<double>> sums_in_fp64(const ranking_setup& c);
 /// So many views are compared.
 std::size_t compared_views(const ranking_setup& c);
 
-/// How a variant did.
+/// The result of a variant.
 struct standing {
     std::string name;
     bool rung = false;                      ///< of the ladder; false for a contender
     std::vector<double> forward, backward;  ///< ms a frame, one a round
     double pairs = 0;                       ///< pixel-Gaussian pairs evaluated forward, a frame
     double apart = 0;  ///< |sums - sums of the first| / |sums of the first|, the worst frame
-    double error = 0;  ///< the same against sums in double; 0 where there are none
+    double error = 0;  ///< the same against sums in double; 0 without these
 };
 
 struct ranking {

@@ -43,7 +43,7 @@ struct splat_per_lane {
         const auto plane = static_cast<unsigned>(lists.width * lists.height);
         const unsigned x0 = tile % lists.tiles_across * tile_size, y0 = tile / lists.tiles_across * tile_size;
 
-        // As a splat on the stage: see `list_reader`.
+        // Like a splat on the stage: see `list_reader`.
         const float dx = static_cast<float>(x0) + 0.5f - s.x, dy = static_cast<float>(y0) + 0.5f - s.y;
         const staged_splat<float> staged{s.p,    s.p * dx,
                                          s.r,    warpagg::math::fma(s.q, dy, s.r * dx),

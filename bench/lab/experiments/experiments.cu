@@ -115,7 +115,7 @@ struct batched {
     }
 };
 
-/// Several steps with the same record are summed in registers before anything else; the best case there is.
+/// Sums several steps with the same record in registers first; the best possible case.
 template <int B>
 struct presummed {
     static constexpr int batch = B;

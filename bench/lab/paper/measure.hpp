@@ -12,7 +12,7 @@
 
 namespace gs::lab {
 
-/// What the kernels of the backward blending are measured on.
+/// The problem on which kernels of the backward blending are measured.
 struct paper_subject {
     gs::gaussians model;
     std::vector<gs::camera> cameras;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 
-/// Of a trained model, what the paper's Figures 5, 6 and 9 show of the gradient kernel: its time with one
-/// atomic a lane, with plain adds instead, and reduced in three ways; and how many lanes of a warp have
-/// something to add. bench/lab/paper.py runs it. The kernels take turns, so that all see the same state of
+/// Measures the gradient kernel on a trained model, as in the paper's Figures 5, 6 and 9: its time with one
+/// atomic per lane, with plain adds instead, and with three reductions; and the number of lanes of a warp
+/// that have something to add. bench/lab/paper.py runs it. The kernels take turns, so that all see the same state of
 /// the machine, and the gradient of the image is random.
 
 #include <CLI/CLI.hpp>

@@ -49,7 +49,7 @@ records& all_records() {
     return r;
 }
 
-/// Without namespaces, parameters, and what is said twice.
+/// Removes namespaces, parameters and repetitions.
 std::string short_name(const char* mangled) {
     int status = 0;
     const std::unique_ptr<char, decltype(&std::free)> demangled(

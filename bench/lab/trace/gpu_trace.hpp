@@ -18,7 +18,7 @@ class gpu_trace {
     struct result {
         std::map<std::string, total> work;   ///< of the GPU, by kernel, "memcpy" and "memset"
         std::map<std::string, total> calls;  ///< of the host, by function of the CUDA runtime
-        std::map<std::string, total> waits;  ///< of the host for the GPU, by what it waited for
+        std::map<std::string, total> waits;  ///< time that the host waited for the GPU, by cause
         std::uint64_t allocations = 0;       ///< of the GPU's memory, and releases
         std::uint64_t busy = 0,
                       wall = 0;  ///< ns: some work runs; from the first work's start to the last one's end
