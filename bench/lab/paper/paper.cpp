@@ -3,8 +3,8 @@
 
 /// Measures the gradient kernel on a trained model, as in the paper's Figures 5, 6 and 9: its time with one
 /// atomic per lane, with plain adds instead, and with three reductions; and the number of lanes of a warp
-/// that have something to add. bench/lab/paper.py runs it. The kernels take turns, so that all see the same state of
-/// the machine, and the gradient of the image is random.
+/// that have something to add. bench/lab/paper.py runs it. The kernels take turns, so that all see the same
+/// state of the machine, and the gradient of the image is random.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
