@@ -31,7 +31,7 @@ class exact_sum {
     void add(float x, int sign = 1) {
         int exponent;
         const auto significand = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 24));
-        // Of denormals the lowest bits are zero.
+        // The lowest bits of denormals are zero.
         const int place = exponent - 24 + 149;
         const std::int64_t whole = place >= 0 ? significand : significand >> -place;
         add_bits(static_cast<std::uint64_t>(std::abs(whole)), std::max(place, 0), (whole < 0) != (sign < 0));
@@ -53,13 +53,13 @@ class exact_sum {
             if (bits[i]) sum += std::ldexp(1.0, static_cast<int>(i) - 149);
         return negative ? -sum : sum;
     }
-    /// How far x is from it.
+    /// The distance of x from it.
     double minus(float x) const {
         exact_sum difference = *this;
         difference.add(x, -1);
         return difference.approximately();
     }
-    /// Whether no float is nearer to it than x.
+    /// Returns whether no float is nearer to it than x.
     bool is_nearest(float x) const {
         if (!std::isfinite(x)) return std::abs(approximately()) >= 0x1.ffffffp127;
         const double error = std::abs(minus(x));
@@ -108,7 +108,7 @@ struct add_in_order {
     }
 };
 
-/// What cells are of, of sums that are kept as `Accumulate` says.
+/// The element type of memory for sums that `Accumulate` keeps.
 template <class Accumulate>
 struct kept_by {
     using type = Accumulate;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 
-/// What lanes do wrong with memory.
+/// Wrong uses of memory by lanes.
 
 #include <algorithm>
 #include <vector>
@@ -308,7 +308,7 @@ TEST_CASE("which lanes are inactive") {
         for_each_seed(schedules, [&](std::uint64_t seed) {
             CHECK(try_launch({.seed = seed}, sum_of_first(n)).what == diagnosis::inactive_lane_read);
         });
-    // All lanes; and with garbage in lanes whose sums nobody takes.
+    // All lanes; and with garbage in lanes whose sums are not used.
     is_clean({}, sum_of_first(32));
     is_clean({}, [&](const checked& w) {
         float x = 1;
@@ -317,7 +317,7 @@ TEST_CASE("which lanes are inactive") {
         w.store(&sum, 0, x, w.lane() == 0);
     });
     CHECK(sum == 16);
-    // A lane that has returned is not there, whatever the mask says.
+    // A lane that has returned takes no part, even if the mask contains it.
     for_each_seed(schedules, [&](std::uint64_t seed) {
         const report r = try_launch({.seed = seed}, [&](const checked& w) {
             if (w.lane() == 9) return;

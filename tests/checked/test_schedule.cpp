@@ -53,7 +53,7 @@ std::vector<unsigned> order_of(emulator::grid g) {
     return order;
 }
 
-/// An operation that leaves what was committed last.
+/// An operation that keeps the value that was committed last.
 struct last {
     template <class T>
     static T combine(T, T b) {
@@ -358,7 +358,7 @@ TEST_CASE("activemask is a consistent partition of the lanes that are there") {
         }
     }
     CHECK(answers.size() > 100);
-    // Sooner or later all lanes that are there are named.
+    // Sooner or later all present lanes are named.
     CHECK(std::any_of(answers.begin(), answers.end(),
                       [](std::uint32_t m) { return __builtin_popcount(m) > 4; }));
 }

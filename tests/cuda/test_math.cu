@@ -38,7 +38,7 @@ struct evaluate {
     }
 };
 
-/// By function, and there by pair.
+/// Indexed by function, then by pair.
 std::vector<std::vector<float>> results_of(const std::vector<float>& a, const std::vector<float>& b) {
     backend::memory<float> first(a), second(b);
     backend::memory<float> results(std::vector<float>(function_count * a.size()));
@@ -50,7 +50,7 @@ std::vector<std::vector<float>> results_of(const std::vector<float>& a, const st
     return by_function;
 }
 
-/// By how many units in the last place of what is exact a float differs from it.
+/// The error of a float in units in the last place of the exact value.
 double ulps(float is, double exact) {
     const double unit = std::ldexp(1.0, std::max(std::ilogb(exact), -126) - 23);
     return std::fabs(static_cast<double>(is) - exact) / unit;

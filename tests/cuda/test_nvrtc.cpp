@@ -128,7 +128,7 @@ class driver {
         find(launch, "cuLaunchKernel");
         find(download, "cuMemcpyDtoH_v2");
     }
-    /// Whether there is a driver, and a GPU that runs PTX for compute_80.
+    /// Returns whether a driver and a GPU exist that run PTX for compute_80.
     bool has_gpu() const {
         CUdevice first = 0;
         int major = 0;

@@ -4,7 +4,7 @@
 
 /// What `warp_match_reduce_atomic` promises, on the `backend` that the including file has chosen and for the
 /// value types that it names in TEST_VALUES. Each case has records of its own, one per key, and the whole
-/// memory is compared bit by bit with what an oracle computes from the description.
+/// memory is compared bit by bit with the results of an oracle.
 
 #include <doctest/doctest.h>
 
@@ -20,7 +20,7 @@ namespace idle = warpagg::idle;
 namespace gate = warpagg::gate;
 using warpagg::policy;
 
-/// How a case's keys are drawn, of `keys` that there are.
+/// The distribution of a case's keys among `keys` of them.
 enum class spread { equal, different, rising, few, odd_one_out, runs, random };
 constexpr spread spreads[] = {spread::equal,       spread::different, spread::rising, spread::few,
                               spread::odd_one_out, spread::runs,      spread::random};

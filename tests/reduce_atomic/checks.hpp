@@ -4,7 +4,7 @@
 
 /// How the promises of `warp_reduce_atomic` are checked on whichever `backend` has been included. A kernel
 /// works through many cases, one record each, and the whole memory, guards between the records included, is
-/// compared bit by bit with what an oracle computes from the description.
+/// compared bit by bit with the results of an oracle.
 
 #include <doctest/doctest.h>
 
@@ -12,7 +12,7 @@
 
 namespace {
 
-/// What is done with the values of a case's lanes.
+/// The operation on the values of a case's lanes.
 struct rule {
     unsigned alone_below = 0;                      ///< with fewer active lanes, each adds its own values
     unsigned alone_below_if_packed = alone_below;  ///< the same where their commit packs neighbors
@@ -54,7 +54,7 @@ struct problem {
     }
 
     bool is_active(unsigned c, unsigned lane) const { return active[c * width + lane] != 0; }
-    /// What the active lanes hold.
+    /// The values of the active lanes.
     std::vector<T> own_values(unsigned c, unsigned i) const {
         std::vector<T> own;
         for (unsigned lane = 0; lane < width; ++lane)

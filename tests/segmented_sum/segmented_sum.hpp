@@ -38,7 +38,7 @@ struct fix_up_edges {
     }
 };
 
-/// Of sorted keys; -1 where there is no such key.
+/// The index among sorted keys; -1 if the key does not occur.
 template <class T>
 std::vector<T> ordered_sums(const std::vector<unsigned>& keys, const std::vector<T>& values, unsigned sums) {
     const auto n = static_cast<unsigned>(keys.size());

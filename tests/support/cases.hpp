@@ -46,7 +46,7 @@ constexpr kind kinds[] = {kind::one_scale, kind::many_scales, kind::zeros};
 /// Values of T. What is no number has a specialization.
 template <class T>
 struct values_of {
-    /// What an active lane holds.
+    /// The value of an active lane.
     static T draw(kind k, std::mt19937_64& random) {
         if constexpr (std::is_floating_point_v<T>) {
             const T sign = random() % 2 == 0 ? T(1) : T(-1);
@@ -60,7 +60,7 @@ struct values_of {
         }
     }
 
-    /// What an inactive lane holds: whatever is worst if it gets into a result.
+    /// The value of an inactive lane: the one that does most harm in a result.
     static T poison(unsigned number) {
         using limits = std::numeric_limits<T>;
         if constexpr (std::is_floating_point_v<T>) {
@@ -129,7 +129,7 @@ T combined(operation::bit_xor, T a, T b) {
     return a ^ b;
 }
 
-/// What combines with x to x, for every x but the sum's -0.
+/// The neutral element: combines with x to x, for every x but the sum's -0.
 template <class T, class Op>
 T neutral(Op) {
     using limits = std::numeric_limits<T>;
@@ -188,7 +188,7 @@ inline layout structure_of_arrays(unsigned cases, unsigned n) {
     return {guard, cases + guard, 1, guard + n * (cases + guard)};
 }
 
-/// What the memory must hold in the end, and how closely.
+/// The expected memory at the end, and its tolerance.
 template <class T>
 struct expectation {
     std::vector<T> value;
@@ -203,7 +203,7 @@ struct expectation {
             if constexpr (std::is_floating_point_v<T>) {
                 const auto error =
                     std::fabs(static_cast<long double>(after[k]) - static_cast<long double>(value[k]));
-                if (tolerance[k] > 0 && error <= tolerance[k]) continue;  // else -0 would pass for +0
+                if (tolerance[k] > 0 && error <= tolerance[k]) continue;  // otherwise -0 would pass for +0
             }
             std::ostringstream text;
             text << "cell " << k << " of " << value.size() << ": " << text_of(after[k]) << ", expected "

@@ -62,7 +62,7 @@ std::string error_of(const Action& action) {
     return {};
 }
 
-/// Whether the text holds all of the words.
+/// Returns whether the text contains all words.
 inline bool says(std::string_view text, std::initializer_list<std::string_view> words) {
     for (const std::string_view word : words)
         if (text.find(word) == std::string_view::npos) return false;

@@ -223,7 +223,7 @@ TEST_CASE("lanes with equal keys commit once") {
     CHECK(steps(31u - lane) == 0);
     CHECK(steps(lane & 3u) == 3 * 3);
     CHECK(steps(lane / 16u) == 4 * 3);
-    // And a shuffle of the key itself.
+    // One more shuffle moves the key itself.
     const counters one_key = cost_by_key(warpagg::simd_value<unsigned, 32>(5u));
     CHECK(one_key.atomics == 3);
     CHECK(steps(warpagg::simd_value<unsigned, 32>(5u)) == scatter_shuffles(3) + 1);

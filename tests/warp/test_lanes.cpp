@@ -242,7 +242,7 @@ TEST_CASE_TEMPLATE("min and max", T, float, double, std::int32_t, std::uint32_t)
         CHECK(same_bits(max(va, vb), each([&](std::size_t i) { return std::max(a[i], b[i]); })));
         CHECK(same_bits(min(va, b[0]), each([&](std::size_t i) { return std::min(a[i], b[0]); })));
         CHECK(same_bits(max(va, b[0]), each([&](std::size_t i) { return std::max(a[i], b[0]); })));
-        // As the scalar faces that kernels meet on the other models.
+        // The scalar counterparts of the other models.
         CHECK(same_bits(min(va, vb), each([&](std::size_t i) { return warpagg::math::min(a[i], b[i]); })));
         CHECK(same_bits(max(va, vb), each([&](std::size_t i) { return warpagg::math::max(a[i], b[i]); })));
     });

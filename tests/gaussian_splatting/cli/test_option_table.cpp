@@ -35,7 +35,7 @@ const gs::train::adaptive_config& adaptive(const settings& s) {
     return s.densification.of<gs::train::adaptive_config>();
 }
 
-/// By name, except for second names of the same option.
+/// Indexed by name, without second names of the same option.
 const std::map<std::string, option_case> cases{
     {"ply", {{"a.ply"}, [](const settings& s) { return s.ply == "a.ply"; }}},
     {"--data", {{"a scene"}, [](const settings& s) { return s.scene.data == "a scene"; }}},

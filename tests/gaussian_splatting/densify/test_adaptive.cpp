@@ -328,7 +328,7 @@ TEST_CASE("adaptive: Adam's catch-up steps survive the removal of other Gaussian
         };
         const std::vector<bool> first = seen_by(0), second = seen_by(1);
         e->set_model(model);
-        e->step(plan(0, 0));  // gives momentum to what it sees
+        e->step(plan(0, 0));  // gives momentum to visible Gaussians
         for (int i = 0; i < missed; ++i) e->step(plan(1, 0));
         densify_once(*e, {.densify_grad_threshold = 1e30}, 0);
         REQUIRE(e->count() == model.count() - dropped);

@@ -34,7 +34,7 @@ gs::scene made(const std::string& parameters) {
     return gs::load_scene(o, {});
 }
 
-/// What a feature finds in the photos.
+/// Returns a feature's finding in the photos.
 finding analyzed(std::string_view name, const gs::scene& scene) {
     for (const auto& f : all_features())
         if (f->name() == name) return f->analyze(gs::scene_statistics(scene));
@@ -167,7 +167,7 @@ TEST_CASE("exposures are found to 0.7 %, on average") {
     std::vector<double> off;
     for (std::size_t v = 0; v < varied.train.size(); ++v) {
         if (found.error[v] == 0) continue;
-        // Of the brightness of pixels that neither photo saturates.
+        // The brightness of pixels that neither photo saturates.
         double brighter = 0;
         int n = 0;
         const auto &a = plain.train[v].pixels.rgba, &b = varied.train[v].pixels.rgba;

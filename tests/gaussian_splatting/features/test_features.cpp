@@ -56,13 +56,13 @@ std::vector<float> random_render(std::mt19937& random, std::size_t values) {
     return render;
 }
 
-/// Of the selectable features.
+/// The names of the selectable features.
 const selected_feature& outcome(const feature_set& features, std::size_t i) {
     REQUIRE(features.all().size() == 6);
     return features.all()[i];
 }
 
-/// What training begins with.
+/// The initial state of training.
 int sh_degree_of(const feature_set& features) {
     const selected_feature& direction = outcome(features, 0);
     const int degree = first_sh_degree(direction.values);
@@ -271,7 +271,7 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
         const auto weights = random_render(random, 3 * pixels), through = random_render(random, pixels);
         gs::features::sky<gs::device::cpu> sky(device);
         CHECK(sky.draw(camera) == nullptr);
-        // Of the sum of weights and what comes through of the sky.
+        // The gradient of the sum of weights and of the transmitted sky.
         const auto loss = [&] {
             sky.set(coefficients);
             const float* planes = sky.draw(camera);

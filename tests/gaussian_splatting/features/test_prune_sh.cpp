@@ -69,7 +69,7 @@ std::vector<std::size_t> origins(const gaussians& now, const gaussians& before) 
     return from;
 }
 
-/// How many of the first `rows` rows are not those of `before`.
+/// Counts the rows among the first `rows` that differ from `before`.
 std::size_t changed(const std::vector<float>& now, const std::vector<float>& before,
                     const std::vector<std::size_t>& from, std::size_t rows) {
     const std::size_t width = now.size() / from.size();

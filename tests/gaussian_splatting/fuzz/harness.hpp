@@ -29,10 +29,10 @@ struct harness {
 /// All loaders: the functions above, and each format of models that can be read, by its name in lower case.
 const std::vector<harness>& harnesses();
 
-/// The harness of this name. Throws `std::out_of_range` if there is none.
+/// Returns the harness of this name. Throws `std::out_of_range` if the name is unknown.
 const harness& harness_of(std::string_view name);
 
-/// Beside the file's multiple: buffers of streams, and messages.
+/// An allowance for buffers of streams and for messages.
 inline constexpr std::size_t small_change = 64 << 10;
 
 /// Has `load` read a file of these bytes. Throws `std::logic_error` if it allocates, at any time, more than

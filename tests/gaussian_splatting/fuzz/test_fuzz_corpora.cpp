@@ -23,7 +23,7 @@ std::vector<fs::path> corpus_of(const std::string& harness) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(fs::path(WARPAGG_CORPUS) / harness))
         files.push_back(entry.path());
-    std::ranges::sort(files);  // so that what is drawn at random is drawn alike everywhere
+    std::ranges::sort(files);  // so that random mutations are the same everywhere
     return files;
 }
 

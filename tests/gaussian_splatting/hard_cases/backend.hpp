@@ -41,7 +41,7 @@ struct render_case {
     }
 };
 
-/// What densification is told of a Gaussian.
+/// The statistics of a Gaussian for densification.
 struct sighting {
     double gradient = 0, seen = 0;
 };
@@ -145,7 +145,7 @@ struct backend {
     double (*sum)(const std::vector<double>&, accumulator);
 };
 
-/// Double, one lane a warp: what the others are measured by.
+/// Double precision with one lane per warp: the reference for all others.
 const backend& reference();
 /// Those in float that are to be measured: lanes, 8 and 32 a warp, serial, and the GPU where the build has
 /// one.

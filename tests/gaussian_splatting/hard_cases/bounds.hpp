@@ -27,7 +27,7 @@ agreement compare(const render_result& got, const render_result& expected);
 /// does.
 std::string excess(const render_result& got, const render_result& expected);
 
-/// The same for one array.
+/// Does the same for one array.
 std::string excess(const std::vector<double>& got, const std::vector<double>& expected);
 
 /// The largest distance between elements; infinite where one is not finite or the sizes differ.

@@ -101,7 +101,7 @@ TEST_CASE("case 18: 1,000 Gaussians at one depth keep their order") {
     q.view.camera.rotation = glm::dmat3(1);
     q.view.camera.translation = glm::dvec3(0);
     for (std::size_t i = 0; i < q.count(); ++i) q.parameters[0][3 * i + 2] = 4;
-    // The same an ulp behind one another, in this order and against it.
+    // The same depths, one ulp apart, in ascending and in descending order.
     render_case ascending = q, descending = q;
     float z = 4;
     for (std::size_t i = 0; i < q.count(); ++i, z = std::nextafter(z, 5.0f)) {
@@ -125,7 +125,7 @@ TEST_CASE("case 18: 1,000 Gaussians at one depth keep their order") {
 
 TEST_CASE("keys are sorted, and equal ones keep their order") {
     std::mt19937 random(1);
-    // On either side of what a block of a GPU sorts at once.
+    // Sizes on both sides of the tile that a block of a GPU sorts.
     for (const std::size_t n : {0, 1, 32, 2047, 2048, 2049, 100000})
         for (const std::uint32_t values : {1u, 3u, 0x10000u, 0xffffffffu}) {
             CAPTURE(n);

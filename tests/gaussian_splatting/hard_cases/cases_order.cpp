@@ -126,7 +126,7 @@ TEST_CASE("case 27: what cancels in the sums of gradients") {
             }
             CHECK(worst <= bound);
         }
-        // Where each sum on the way is a float, what is left is exact in any order.
+        // If each partial sum is a float, the result is exact in any order.
         std::vector<double> exact{0x1p-3};
         for (int i = 0; i < 511; ++i) {
             exact.push_back(0x1p10);

@@ -133,7 +133,7 @@ TEST_CASE("case 25: images of odd sizes") {
         CAPTURE(width);
         CAPTURE(height);
         render_case q = random_case(25, 20, width, height, 2);
-        // As wide for thin images as for others.
+        // The width is the same for thin images and for others.
         q.view.camera.fx = q.view.camera.fy = std::max(width, height);
         check_drawn(q, true);
     }

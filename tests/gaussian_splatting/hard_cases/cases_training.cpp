@@ -75,7 +75,7 @@ TEST_CASE("case 21: the logit of an opacity of 0 and of 1") {
     }
     CHECK(gs::logit(0) < -80);
     CHECK(gs::logit(1) > 16);
-    // And what is drawn of them is finite.
+    // Their renders are finite, too.
     on_each_variant([&](const backend& b, accumulator how) {
         for (const double logit : logits) {
             render_case q = faint_crowd(21, 10);
@@ -90,7 +90,8 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
     gs::train::densify_config config;
     constexpr std::uint32_t none = 0xffffffffu;
     on_each_backend([&](const backend& b) {
-        // Never seen; seen and still; seen a little, much, and by 1e30; what a broken sum would leave.
+        // Never seen; seen without gradient; a small, a large and a huge gradient; the result of a broken
+        // sum.
         const std::vector<sighting> seen{{0, 0}, {0, 7}, {1e-3, 1e3}, {1, 1e3}, {1e30, 1}, {1e38, 100}};
         const judgment j = b.judge(seen, std::vector<double>(seen.size(), 2.0), config);
         CHECK(j.stays == std::vector<std::uint32_t>(seen.size(), 1));
@@ -128,7 +129,7 @@ TEST_CASE("case 22: densification of what was never seen, or seen to move by 1e3
         single.weights = {std::nan("")};
         for (const sighting& s : b.render(single).sightings) {
             CHECK(s.gradient == 0);
-            // Fixed point has no NaN: it leaves such sums out, and says so elsewhere.
+            // Fixed point has no NaN: it leaves such sums out and sets a flag.
             CHECK(s.seen == (how == accumulator::fixed ? 1 : 0));
         }
         for (const double size : {1e30, 1e36, infinity}) {
@@ -202,7 +203,7 @@ TEST_CASE("Adam moves those that take part as a dense one does all, and touches 
         auto given = gradients;
         for (std::size_t s = 0; s < steps; ++s)
             for (std::size_t i = 0; i < count; ++i)
-                if (takes_part[s][i] == 0) given[s][i] = std::nan("");  // nobody looks at it
+                if (takes_part[s][i] == 0) given[s][i] = std::nan("");  // no camera sees it
         on_each_backend([&](const backend& b) {
             const auto path = b.descend(given, rate, takes_part, before);
             for (std::size_t s = 0; s < steps; ++s)

@@ -8,7 +8,7 @@
 
 namespace hard_cases {
 
-/// Where these tests put what is not as it should be: one of a crowd.
+/// The index of the faulty Gaussian in a crowd.
 inline constexpr std::size_t crowd = 30, victim = 15;
 
 /// The values of one parameter of a Gaussian.
@@ -20,7 +20,7 @@ void paint_photo(render_case& q, unsigned seed);
 /// The quaternion of a turn about an axis.
 std::array<double, 4> turned(double angle, const glm::dvec3& axis);
 
-/// With each variant on each backend: `victim` must not be drawn, and nobody else may notice.
+/// Checks each variant on each backend: `victim` is not drawn, and no other Gaussian changes.
 void check_culled(const render_case& q);
 
 /// With each variant on each backend: drawn as the reference draws, finite, and the image to 1e-3 of the

@@ -78,7 +78,7 @@ verdict check_by_differences(const render_case& given, const std::vector<std::si
             }
     }
 
-    // Each parameter by about as much as changes the loss as much as the others do.
+    // Steps are chosen so that all parameters change the loss by similar amounts.
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
     std::array<std::vector<double>, gs::parameter_count> direction;

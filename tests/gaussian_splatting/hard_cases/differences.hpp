@@ -8,7 +8,7 @@
 
 namespace hard_cases {
 
-/// What central differences say of the reference's gradients.
+/// Compares the reference's gradients with central differences.
 struct verdict {
     std::size_t right = 0, wrong = 0;
     std::size_t straddling = 0;  ///< a threshold lies within the step: two steps disagree

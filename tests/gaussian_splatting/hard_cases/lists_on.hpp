@@ -52,7 +52,7 @@ struct given_items {
     }
 };
 
-/// What a backend does with splats, and with numbers.
+/// The operations of a backend on splats and numbers.
 template <class Device, class Real>
 class lists_on {
     template <class T>

@@ -40,7 +40,7 @@ bool is_bad(const render_case& q, std::size_t i) {
     return length < least;
 }
 
-/// One value in one parameter of the victim, and what the reference makes of it.
+/// One value in one parameter of the victim, and the result of the reference.
 struct injected {
     std::size_t parameter, element;
     double value;

@@ -23,7 +23,7 @@ struct weigh_pixels {
     WARPAGG_HD void operator()(std::size_t i) const { weighed[i] = gradient[i] * weights[i % pixels]; }
 };
 
-/// What a backend does with Gaussians.
+/// The operations of a backend on Gaussians.
 template <class Device, class Real>
 class renders_on {
     template <class T>
@@ -78,7 +78,7 @@ class renders_on {
         }
     };
 
-    /// Of a pixel, by image and inverse depth.
+    /// The gradient of a pixel with respect to image and inverse depth.
     static float largest_gradient(const render_case& q) {
         return (q.weights.empty() ? 1 : largest_of(q.weights)) / static_cast<float>(q.pixels());
     }
@@ -138,7 +138,7 @@ class renders_on {
         splats.resize(n);
         boxes.resize(n);
         identities.resize(n);
-        // What a frame before left there.
+        // Leftovers of an earlier frame.
         on.put_as_they_are(depths, std::vector<std::uint32_t>(n, 0));
         on.put_as_they_are(tiles, std::vector<std::uint32_t>(n, 1));
         const auto tiles_along = [](int pixels) {

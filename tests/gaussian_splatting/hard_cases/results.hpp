@@ -12,7 +12,7 @@ namespace hard_cases {
 
 enum class outcome { running, ok, failed };
 
-/// What is known of a test case.
+/// The known facts about a test case.
 struct row {
     std::string remarks;
     std::map<std::string, outcome> cells;             ///< by column

@@ -32,7 +32,7 @@ struct descend_row {
     }
 };
 
-/// What a backend does to train.
+/// The training operations of a backend.
 template <class Device, class Real>
 class training_on {
     template <class T>

@@ -192,7 +192,7 @@ void write_gray_png(const std::filesystem::path& file, int width, int height) {
 
 // ------------------------------------------------------------------------------------------------- JPEGs
 
-/// At the highest quality and without subsampling, so that what is read is what was written but for rounding.
+/// At the highest quality and without subsampling, so that only rounding changes the pixels.
 void write_jpeg(const std::filesystem::path& file, int width, int height, J_COLOR_SPACE space,
                 const std::vector<std::uint8_t>& samples, bool progressive = false) {
     std::FILE* out = std::fopen(file.c_str(), "wb");
@@ -273,7 +273,7 @@ std::string error_of_reading_size(const std::filesystem::path& file) {
     return error_of([&] { gs::read_image_size(file, width, height); });
 }
 
-/// What is printed to stderr meanwhile goes to a file.
+/// Redirects stderr to a file.
 class captured_stderr {
   public:
     explicit captured_stderr(const std::filesystem::path& file) : kept_(dup(STDERR_FILENO)) {

@@ -92,7 +92,7 @@ struct outcome {
     double loss;
 };
 
-/// Makes this loss whatever the name.
+/// Makes this loss for every name.
 template <class Loss>
 std::unique_ptr<gs::train::loss<float>> named(cpu& device, const std::string&) {
     return std::make_unique<Loss>(device);

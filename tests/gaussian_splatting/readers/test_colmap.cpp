@@ -663,8 +663,8 @@ TEST_CASE("masks exclude black pixels, also in undistorted and downsampled photo
         const gs::camera c = intrinsics_of(lens.camera);
         const temporary_folder folder;
         write_binary(folder / "sparse/0", photos_by(lens.camera, {"a.png", "b/c.png", "d.png"}));
-        // Photos are red where the mask is black, and else blue; the masks are 1 of 255 where they are not
-        // black.
+        // Photos are red where the mask is black, and blue otherwise; the masks are 1 of 255 where they are
+        // not black.
         const auto write = [&](const std::filesystem::path& file, const std::array<float, 3>& left_out,
                                const std::array<float, 3>& kept) {
             std::filesystem::create_directories(file.parent_path());
@@ -716,7 +716,7 @@ TEST_CASE("masks exclude black pixels, also in undistorted and downsampled photo
 
 namespace {
 
-/// Of one channel and 16 bit.
+/// One channel of 16 bits.
 void write_gray(const std::filesystem::path& file, int width, int height,
                 const std::vector<std::uint16_t>& values) {
     std::filesystem::create_directories(file.parent_path());

@@ -168,7 +168,7 @@ TEST_CASE("synthetic scenes: cameras look from the upper hemisphere at the cente
         const pixel_position center = project(v.camera, {0, 0, 0});
         CHECK(center.x == doctest::Approx(v.camera.cx));
         CHECK(center.y == doctest::Approx(v.camera.cy));
-        // Upright: what is higher in the world is higher in the image.
+        // Upright: a higher point of the world is higher in the image.
         CHECK(project(v.camera, {0, 0, 0.1}).y < center.y);
     }
 }

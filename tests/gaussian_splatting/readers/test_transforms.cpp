@@ -33,7 +33,7 @@ json matrix_at(double x, double y, double z) {
     return {{1, 0, 0, x}, {0, 1, 0, y}, {0, 0, 1, z}, {0, 0, 0, 1}};
 }
 
-/// Photos NAME_0.png and so on, whose cameras look along -z, and the file that says so.
+/// Photos NAME_0.png and so on, whose cameras look along -z, and the file that describes them.
 json transforms(const std::filesystem::path& folder, const std::string& name, int count) {
     json result = {{"camera_angle_x", 0.8}, {"frames", json::array()}};
     for (int i = 0; i < count; ++i) {

@@ -25,7 +25,7 @@ gs::camera fisheye_camera() {
     return c;
 }
 
-/// In camera space, so far from the axis.
+/// A point in camera space at this distance from the axis.
 glm::dvec3 place_at(double angle, double around, double distance) {
     return distance * glm::dvec3(std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around),
                                  std::cos(angle));

@@ -28,7 +28,7 @@ gs::scene spheres(int resolution) {
     return gs::load_scene(o, silent);
 }
 
-/// The same scene in other coordinates: scale * (x + offset).
+/// Returns the scene in other coordinates: scale * (x + offset).
 gs::scene displaced(gs::scene scene, const glm::dvec3& offset, double scale) {
     for (auto* views : {&scene.train, &scene.test})
         for (gs::view& v : *views)
@@ -135,7 +135,7 @@ TEST_CASE("a model is transformed to internal and world coordinates, rounded onc
         CHECK(std::abs(static_cast<double>(back.mean[i] - model.mean[i])) < 1.01 * half_ulp_at_300 / 8);
     for (std::size_t i = 0; i < model.log_scale.size(); ++i)
         CHECK(back.log_scale[i] == doctest::Approx(model.log_scale[i]).epsilon(1e-6));
-    // What has been rounded once stays as it is.
+    // A value that has been rounded once does not change again.
     CHECK(gs::to_world(f, back).mean == out.mean);
 }
 

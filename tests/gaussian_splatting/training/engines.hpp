@@ -12,7 +12,7 @@
 #include "readers/load_scene.hpp"
 #include "training/schedule.hpp"
 
-/// What tests of the engine begin with.
+/// The setup of tests of the engine.
 
 using make_engine = std::unique_ptr<gs::train::engine> (*)();
 

@@ -225,7 +225,7 @@ TEST_CASE("a Gaussian that a view does not see keeps its bits, whatever its mome
         };
         const std::vector<bool> first = seen_by(0), second = seen_by(1);
         e->set_model(model);
-        e->step(plan(0, 0));  // gives momentum to what it sees
+        e->step(plan(0, 0));  // gives momentum to visible Gaussians
         CHECK(same(e->get_model(), model));
         e->step(plan(1, 0.01f));
         const std::vector<bool> moved = changed(model, e->get_model());

@@ -20,7 +20,7 @@ using gs::train::adaptive_config;
 using gs::train::densify_config;
 using gs::train::step_plan;
 
-/// Has nothing but a number of Gaussians, which grow as they may, and notes what it was told to do.
+/// An engine without kernels: it has a number of Gaussians, which grow, and records its calls.
 class recorder final : public gs::train::engine, gs::device::profiler {
   public:
     struct made_step {
@@ -32,10 +32,10 @@ class recorder final : public gs::train::engine, gs::device::profiler {
     std::vector<int> sizes_reserved;
     std::vector<std::size_t> counts;          ///< after each densification
     std::size_t dropped = 0;                  ///< in each
-    std::vector<std::size_t> pruned_after;    ///< so many steps
-    std::vector<std::size_t> adjusted_after;  ///< so many steps
+    std::vector<std::size_t> pruned_after;    ///< number of steps
+    std::vector<std::size_t> adjusted_after;  ///< number of steps
     std::vector<int> degrees;
-    std::vector<std::size_t> pruned_sh_after;  ///< so many steps
+    std::vector<std::size_t> pruned_sh_after;  ///< number of steps
     double seconds = 0;                        ///< one per step
 
     explicit recorder(std::size_t count) : sh_(*this) {

@@ -57,7 +57,7 @@ std::string bytes_of(T value) {
     return bytes;
 }
 
-/// Every value another one, and some awkward: what is rounded or swapped on the way shows.
+/// All values differ and some are awkward, so that rounding or swapping becomes visible.
 gs::gaussians sample_model(int degree, std::size_t count) {
     gs::gaussians model;
     model.sh_degree = degree;
@@ -418,7 +418,7 @@ TEST_CASE("ply: a failing write names the file and leaves the existing one as it
     const fs::path file = folder.path / "model.ply";
     const gs::gaussians good = sample_model(0, 3);
     gs::write_ply(file, good);
-    // A folder where the new file is written aside: fails for root too, whom no permission stops.
+    // A folder in the place of the temporary file: fails for root, too, whom no permission stops.
     fs::create_directories(folder.path / "model.ply.part" / "occupied");
     CHECK_THROWS_WITH_AS(gs::write_ply(file, sample_model(1, 5)), doctest::Contains(file.string().c_str()),
                          gs::error);

@@ -63,7 +63,7 @@ __global__ void one_warp(F f) {
 
 __global__ void nothing() {}
 
-/// What code runs here has been compiled for, times ten.
+/// The compute capability that the running code was compiled for, times ten.
 inline int compute_capability() {
     cudaFuncAttributes of{};
     check_cuda(cudaFuncGetAttributes(&of, nothing), "cudaFuncGetAttributes");

@@ -14,9 +14,9 @@ template <class Warp>
 struct simd_backend {
     using warp = Warp;
     static constexpr bool commits_in_lane_order = true;
-    /// Of the masks that there are, each nth is tried.
+    /// Every nth of all masks is tried.
     static constexpr unsigned every_nth_mask = 1;
-    /// Whether `commit::packed` applies to aligned records of T.
+    /// States whether `commit::packed` applies to aligned records of T.
     template <class T>
     static constexpr bool packs() {
         return false;

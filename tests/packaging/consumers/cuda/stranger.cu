@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <warpagg/atomic.hpp>
 
-/// How many numbers there are in all, and how many of them are odd.
+/// Counts all numbers, and the odd ones among them.
 __global__ void count(const unsigned* numbers, unsigned n, unsigned* totals) {
     const warpagg::cuda_warp warp;
     const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
