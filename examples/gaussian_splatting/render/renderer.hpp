@@ -20,8 +20,8 @@
 namespace gs::raster {
 
 // knob: renderer
-/// Gaussians to an image and, from dL/dimage, to the gradients of their parameters. Holds what lies in
-/// between. `Accumulators`: an `accumulator_set`, from which `backward` chooses at run time.
+/// Draws Gaussians, and computes the gradients of their parameters from dL/dimage. Owns the memory for all
+/// intermediate results. `Accumulators`: an `accumulator_set`, from which `backward` chooses at run time.
 template <device::device Device, class Real, class Cut = cut_for<typename Device::warp>,
           class Accumulators = product_accumulators>
 class renderer {
@@ -37,23 +37,23 @@ class renderer {
         device_.zero(reserve(required_, 1).data(), 1);
     }
 
-    /// Of what is drawn from now on, beside what views' lenses call for: none at first.
+    /// Sets the effects of all later draws; initially none. The lens comes from the view.
     void set_effects(const effect_set& effects) { effects_ = effects; }
 
-    /// Finds how many instances (Gaussian, tile) a view has: see `instances`.
+    /// Counts the instances (Gaussian, tile) of a view: see `instances`.
     void measure(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         project_all(gaussians, count, view, sh_degree);
         list_by_tile(count, 0);
     }
-    /// How many instances the last view has, whether drawn or measured. Waits for the device.
+    /// Returns the number of instances of the last view that was drawn or measured. Waits for the device.
     std::uint64_t instances() {
         std::uint64_t n = 0;
         device_.download(&n, required_.data(), 1);
         return n;
     }
 
-    /// Makes room for that many instances a view, and for `spare` more as far as 31 bits go. `forward` cuts
-    /// what does not fit: see `capacity`.
+    /// Reserves memory for this number of instances per view, and for `spare` more within the limit of 31
+    /// bits. `forward` drops instances that do not fit: see `capacity`.
     void reserve_instances(std::uint64_t most, std::uint64_t spare = 0) {
         constexpr std::uint64_t limit = std::uint64_t{1} << 31;
         if (most >= limit)
@@ -64,15 +64,15 @@ class renderer {
     }
     std::uint64_t reserved_instances() const { return capacity_; }
 
-    /// Draws the view: `render()`, three planes, is valid afterwards. `background_image`: three planes that
-    /// lie behind all, in place of the background; until `backward`.
+    /// Draws the view into `render()`, three planes. `background_image`: three planes that replace the
+    /// background; they must exist until `backward`.
     void forward(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
                  const std::array<float, 3>& background, const Real* background_image = nullptr) {
         list(gaussians, count, view, sh_degree);
         blend(background, background_image);
     }
 
-    /// The first part of `forward`: who is in the image, and where.
+    /// The first part of `forward`: projects the Gaussians and makes the tile lists.
     void list(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         using device::stage;
         device_.begin(stage::project);
@@ -92,7 +92,7 @@ class renderer {
         sh_degree_ = sh_degree;
         effects_.depth = false;
     }
-    /// The rest of it.
+    /// The second part of `forward`: blends.
     void blend(const std::array<float, 3>& background, const Real* background_image = nullptr) {
         background_ = {color(background)};
         background_image_ = {background_image};
@@ -100,9 +100,9 @@ class renderer {
                                     : blend_forward_by<Cut>(background_image_, lists(), pairs_.data());
     }
 
-    /// Between both: draws the inverse depths, sum w_i / z_i with the weights that colors have, and zero
-    /// behind. They are the first plane of `render()` until `blend`. What this and the next function take
-    /// counts as blending forward.
+    /// Called between both parts: draws the inverse depths, the sum of w_i / z_i with the weights of the
+    /// colors, on a background of zero. They are the first plane of `render()` until `blend`. The time of
+    /// this and the next function counts as forward blending.
     void blend_depths() {
         with_flag(camera_.fisheye.has_value(), [&]<bool Fisheye> {
             device_.for_each_index(count_, depth_splats<Real, effect_set{.fisheye = Fisheye}>{
@@ -112,8 +112,8 @@ class renderer {
         background_ = {};
         blend_forward_by<Cut>(background_, depth_lists(), pairs_.data() + 1);
     }
-    /// From the gradient by these, three planes of which the last two are zero, for `backward` to go on from
-    /// with the same `largest` and `how`.
+    /// Adds the gradient of the inverse depths, three planes of which the last two are zero, to the sums.
+    /// `backward` continues with them and needs the same `largest` and `how`.
     void backward_depths(const Real* gradient, float largest, accumulator how) {
         Accumulators::template with_kernel<Real, Cut>(how, [&](auto kernel) {
             sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()));
@@ -123,9 +123,9 @@ class renderer {
         effects_.depth = true;
     }
 
-    /// From the gradient of the last `forward`'s image to those of its parameters, colors up to a degree,
-    /// which `sink` is given: see `project_backward`. `largest` is the magnitude of a pixel's gradient,
-    /// about: see `gradient_sums`. `seen` may be null.
+    /// Computes the gradients of all parameters from the gradient of the last image, and passes them to
+    /// `sink`: see `project_backward`. Colors are included up to an SH degree. `largest` is the approximate
+    /// magnitude of a pixel's gradient: see `gradient_sums`. `seen` may be null.
     template <class Sink>
     void backward(const Real* render_gradient, float largest, accumulator how, int learned_sh_degree,
                   const Sink& sink, visibility* seen) {
@@ -141,7 +141,8 @@ class renderer {
         });
     }
 
-    /// The first half of `backward`: by Gaussian that was drawn, what `project_backward` begins from.
+    /// The first half of `backward`. Returns the sums of each Gaussian that was drawn, the input of
+    /// `project_backward`.
     const Real* pixel_sums(const Real* render_gradient, float largest, accumulator how) {
         const Real* sums = nullptr;
         Accumulators::visit(how, [&]<class Variant>(Variant) {
@@ -158,7 +159,7 @@ class renderer {
         return sums;
     }
 
-    /// The blending's part of `backward` by this kernel, which is filled in. Returns its sums: see
+    /// Runs the blending part of `backward` with this kernel, whose members it sets. Returns the sums: see
     /// `project_backward`.
     template <class Kernel>
     const buffer<Real>& blend_backward_by(Kernel kernel, const Real* render_gradient, float largest) {
@@ -170,16 +171,16 @@ class renderer {
     /// See `gradient_sums`.
     std::uint32_t* fault() const { return sums_.fault(); }
 
-    /// Of the last view, by Gaussian.
+    /// The splats of the last view, one per Gaussian.
     const splat<Real>* splats() const { return splats_.data(); }
-    /// In how many tiles it may be; zero if it is not drawn.
+    /// The number of tiles that a Gaussian may touch; zero if it is not drawn.
     const std::uint32_t* tiles_of() const { return tiles_.data(); }
     const Real* render() const { return render_.data(); }
-    /// What is left of light from behind all splats, by pixel of the last `forward`.
+    /// The transmittance of each pixel behind all splats, of the last `forward`.
     const Real* transmittance() const { return transmittance_.data(); }
-    /// Whether the last view's instances fit.
+    /// The flag that tells whether the last view's instances fit.
     list_capacity capacity() const { return {required_.data(), capacity_}; }
-    /// On the device: pixel-Gaussian pairs evaluated by all `forward`s so far.
+    /// A counter on the device: pixel-Gaussian pairs that all calls of `forward` have evaluated.
     const unsigned long long* pairs() const { return pairs_.data(); }
 
   private:
@@ -211,7 +212,7 @@ class renderer {
         // knob: backward_warps
         device_.for_each_warp(kernel.template warps<warp>(tiles(), segments()), kernel);
     }
-    /// Lower patches are shorter work: they are taken where higher ones would leave the device idle.
+    /// Lower patches are smaller pieces of work. They are used if higher ones would leave the device idle.
     template <class Shape, class Backdrop>
     void blend_forward_by(const Backdrop& background, const tile_lists<Real>& lists,
                           unsigned long long* pairs) {
@@ -259,7 +260,7 @@ class renderer {
         });
     }
 
-    /// Lists of Gaussians per tile, front to back: equal depths keep the order of the Gaussians.
+    /// Makes the list of Gaussians of each tile, front to back. Equal depths keep the order of the Gaussians.
     void bin(std::size_t count) {
         device_.sort_pairs(depths_, order_, count);
         list_by_tile(count, capacity_);
@@ -284,7 +285,7 @@ class renderer {
     static vec3<Real> color(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
 
     Device& device_;
-    buffer<splat<Real>> splats_, near_;  ///< the second as `depth_splats` has them
+    buffer<splat<Real>> splats_, near_;  ///< the second for `depth_splats`
     buffer<tile_box> boxes_;
     buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_;
     buffer<std::uint64_t> required_;
@@ -292,14 +293,14 @@ class renderer {
     buffer<Real> render_, transmittance_, checkpoints_;
     gradient_sums<Device, Real> sums_;  // knob: renderer_members
     buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
-    buffer<unsigned long long> pairs_;  ///< of colors, and of depths, which nobody asks for
+    buffer<unsigned long long> pairs_;  ///< one counter for colors, and an unused one for depths
     std::uint64_t capacity_ = 0;
 
     unsigned tiles_across_ = 0, tiles_down_ = 0;
 
     effect_set effects_;
 
-    // What `backward` belongs to.
+    // The arguments of the last `forward`, which `backward` uses.
     model gaussians_;
     std::size_t count_ = 0;
     camera camera_{};

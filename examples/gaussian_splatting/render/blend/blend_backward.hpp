@@ -11,7 +11,7 @@
 
 namespace gs::raster {
 
-/// What a sum of the backward blending is in memory.
+/// The type of a gradient sum in memory: an accumulator if the policy names one, `Real` otherwise.
 /// @{
 template <class Real, class Policy>
 struct sum_of {
@@ -26,24 +26,29 @@ template <class Real, class Policy>
 using sum_in_memory = typename sum_of<Real, Policy>::type;
 /// @}
 
-/// What the backward blending reads beside the lists: what the forward one came to, and what comes back.
+/// The inputs of the backward pass besides the tile lists: results of the forward pass, and the gradient
+/// of the loss.
 template <class Real, class Backdrop = constant_background<Real>>
 struct blended {
     Backdrop background;
     const Real* render;         ///< three planes
-    const Real* transmittance;  ///< and what else `blend_forward` writes
+    const Real* transmittance;  ///< this and the next two: see `blend_forward`
     const std::uint32_t* last;
     Real* checkpoints;
     const Real* gradient;  ///< dL/dimage: three planes
 };
 
-/// The gradient of `blend_forward`: back to front over what each pixel saw, T recovered by division, nine
-/// sums a Gaussian (see `sum`) handed to `warp_reduce_atomic` with `Policy`. With g = dL/dC and B_i the
-/// color behind splat i per unit of transmittance, background included, dL/dalpha_i = T_i g (c_i - B_i): one
-/// scalar g B is carried instead of three channels, and nothing is divided by 1 - alpha but T. A lane's
-/// pixels lie in a column, where u is the same: it is multiplied into the sums once. `Split`: one warp a
-/// patch and segment, else one a patch. `AskFirst`: skip what no pixel of the patch sees before any of it is
-/// computed (the paper, Figure 8).
+/// Computes the gradient of `blend_forward`. Each pixel walks back to front over the splats that it saw and
+/// recovers the transmittance T by division. Nine sums per Gaussian (see `sum`) are added to memory by
+/// `warp_reduce_atomic` with `Policy`.
+///
+/// Let g = dL/dC, and let B_i be the color behind splat i per unit of transmittance, background included.
+/// Then dL/dalpha_i = T_i g (c_i - B_i). So a pixel carries the scalar g B instead of three channels, and
+/// only T is divided by 1 - alpha. The pixels of a lane lie in one column and share u, which is multiplied
+/// into the sums once.
+///
+/// `Split`: one warp per patch and segment; otherwise one warp per patch. `AskFirst`: skips splats that no
+/// pixel of the patch sees before anything is computed (the paper, Figure 8).
 template <class Real, class Cut, bool Split, class Policy, bool AskFirst,
           class Backdrop = constant_background<Real>>
 struct blend_backward {
@@ -53,16 +58,17 @@ struct blend_backward {
     blended<Real, Backdrop> view;
     const std::uint32_t* tile_of_segment;  ///< see `number_segments`
 
-    sum_in_memory<Real, Policy>* sums;  ///< `record_stride` a Gaussian, added to
+    sum_in_memory<Real, Policy>* sums;  ///< `record_stride` per Gaussian; the kernel adds to them
     Policy how;                         // knob: backward_policy
 
-    static constexpr int warps_at_once = 32;  ///< on an SM; measured
+    static constexpr int warps_at_once = 32;  ///< warps per multiprocessor; measured
 
     template <class W>
     static std::size_t warps(std::size_t tiles, std::size_t segments) {
         return (Split ? segments : tiles) * patch<W, Real, Cut>::per_tile;
     }
-    /// How many of them may add to one Gaussian's sums: it is in a tile's list once.
+    /// Returns the largest number of warps that add to the sums of one Gaussian, which is in the list of each
+    /// tile at most once.
     template <class W>
     static std::size_t warps_of_sum(std::size_t tiles) {
         return tiles * patch<W, Real, Cut>::per_tile;

@@ -13,25 +13,25 @@
 
 namespace gs::raster {
 
-/// Rounds sums that were kept in cells: one index a sum.
+/// Rounds accumulated sums to floats. One index per sum.
 template <class Accumulate>
 struct round_sums {
     const warpagg::accumulator<Accumulate>* cells;
-    float unit;  ///< what a cell's one is worth
+    float unit;  ///< value of one unit of an accumulator
     float* sums;
 
     WARPAGG_HD void operator()(std::size_t i) const { sums[i] = cells[i].value() * unit; }
 };
 
-/// The sums of a backward blending on a device, and the memory in which it keeps them.
+/// The gradient sums of a backward pass, and their memory on the device.
 template <device::device Device, class Real>
 class gradient_sums {
     template <class T>
     using buffer = typename Device::template buffer<T>;
 
   public:
-    /// A warp's sum in fixed point may be up to this many times the largest gradient of a pixel. It has 64
-    /// pixels, moments of up to 8 and differences of colors, most of them below 1.
+    /// The largest sum of a warp in fixed point, relative to the largest gradient of a pixel. A warp has 64
+    /// pixels, moments of up to 8, and differences of colors, most of which are below 1.
     static constexpr float headroom = 4096;
 
     explicit gradient_sums(Device& device) : device_(device) {
@@ -39,11 +39,11 @@ class gradient_sums {
         device_.zero(fault_.data(), 1);
     }
 
-    /// Makes sums of zero for so many Gaussians and gives them to the kernel, a `blend_backward`. Where it
-    /// `goes_on` they are what the kernel before made them, which `set_depths_aside` has seen.
-    /// `largest`: the magnitude of a pixel's gradient, about; for fixed point, which leaves out what is more
-    /// than `headroom` times that. `warps`: how many may add to a sum. Throws `error` if those are too many
-    /// for fixed point.
+    /// Clears the sums of all Gaussians and passes them to the kernel, a `blend_backward`. If it `goes_on`,
+    /// the kernel continues with the sums that `set_depths_aside` has kept. `largest`: the approximate
+    /// magnitude of a pixel's gradient; fixed point leaves out sums above `headroom` times this value.
+    /// `warps`: the largest number of warps that add to a sum. Throws `error` if there are too many for
+    /// fixed point.
     template <class Kernel>
     void begin(Kernel& kernel, std::size_t gaussians, float largest, std::size_t warps,
                bool goes_on = false) {
@@ -69,13 +69,14 @@ class gradient_sums {
                 {}, {}, {fixed_sums{fault_.data(), fixed_sums::scale_to_fit(headroom * largest)}});
         }
     }
-    /// After a kernel that blended `depth_splats`, in place of `end`: another one goes on from there.
+    /// Called instead of `end` after a kernel that blended `depth_splats`: keeps the sums for the next
+    /// kernel.
     template <class Kernel>
     void set_depths_aside(const Kernel& kernel) {
         using in_memory = std::remove_pointer_t<decltype(kernel.sums)>;
         device_.for_each_index(sums_.size() / record_stride, set_red_aside<in_memory>{kernel.sums});
     }
-    /// After the kernel: what the sums are as `Real`.
+    /// Called after the kernel. Returns the sums as `Real`.
     template <class Kernel>
     const buffer<Real>& end(const Kernel& kernel) {
         if constexpr (!std::is_same_v<std::remove_pointer_t<decltype(kernel.sums)>, Real>) {
@@ -88,7 +89,7 @@ class gradient_sums {
         return sums_;
     }
 
-    /// On the device: not zero once something did not fit in fixed point, and was left out.
+    /// A flag on the device: not zero after a sum did not fit into fixed point and was left out.
     std::uint32_t* fault() const { return fault_.data(); }
 
   private:

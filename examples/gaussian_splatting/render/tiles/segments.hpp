@@ -10,42 +10,42 @@
 
 namespace gs::raster {
 
-/// How a view is cut up for warps: the lanes of a warp are `Across` pixels wide, each has `Rows` pixels of a
-/// column (see `patch`), and a segment has `Segment` places of the sorted list. A long list is split over
-/// several warps in the backward blending: lists are cut wherever a place is a multiple of `Segment`, and the
-/// forward blending notes there what the pixels had come to. `Sparse`: rows of a patch that see nothing of a
-/// splat are left out one by one, for a vote and a branch.
+/// Divides a view among warps. The lanes of a warp are `Across` pixels wide, each lane has `Rows` pixels of a
+/// column (see `patch`), and a segment has `Segment` places of the sorted list. The backward pass splits a
+/// long list over several warps: lists are cut where a place is a multiple of `Segment`, and the forward
+/// pass stores the state of the pixels there. `Sparse`: skips single rows of a patch that do not see a
+/// splat, at the cost of a vote and a branch each.
 template <unsigned Across, unsigned Rows, unsigned Segment, bool Sparse = false>
 struct cut {
     static constexpr unsigned across = Across, rows = Rows, segment = Segment;
     static constexpr bool sparse = Sparse;
 };
 
-/// How a device's warps cut it, as measured (`lab backward`).
+/// The division for the warps of a device. Source: measurements with `lab backward`.
 template <class W>
 using cut_for = std::conditional_t<W::size == 1, cut<1, 1, 128>,
                                    // knob: segment_cut
                                    std::conditional_t<W::size == 8, cut<8, 16, 1024, true>, cut<8, 2, 128>>>;
-/// The same with a pixel a lane.
+/// Returns the same division with one pixel per lane.
 template <class Cut>
 using pixel_a_lane = cut<Cut::across, 1, Cut::segment>;
-/// The same with lower patches, where higher ones are too few to keep a device busy.
+/// Returns the same division with lower patches, for views with too few patches to keep a device busy.
 template <class Cut>
 using lower = std::conditional_t<Cut::sparse, cut<Cut::across, 8, Cut::segment, true>, pixel_a_lane<Cut>>;
 
-/// Segments are numbered by tile and then by place: that of a place of tile t is t + place / Segment. Not
-/// every number is taken.
+/// Returns an upper bound of segment numbers. The segment of a place in the list of tile t has the number
+/// t + place / Segment; not every number is used.
 template <class Cut>
 constexpr std::size_t most_segments(std::size_t tiles, std::size_t places) {
     return tiles + places / Cut::segment;
 }
 
-/// Says which tile a segment belongs to: one index a segment.
+/// Finds the tile of each segment. One index per segment.
 template <class Cut>
 struct number_segments {
     const tile_range* ranges;
     std::uint32_t tiles;
-    std::uint32_t* tile_of;  ///< one more than the tile, and zero where there is no segment
+    std::uint32_t* tile_of;  ///< the tile plus one, or zero if the number is not used
 
     WARPAGG_HD void operator()(std::size_t index) const {
         const auto segment = static_cast<std::uint32_t>(index);
@@ -60,12 +60,12 @@ struct number_segments {
     }
 };
 
-/// Values that a segment's checkpoint takes.
+/// Number of values in the checkpoint of a segment.
 inline constexpr std::size_t checkpoint_values = 4 * tile_size * tile_size;
 
-/// What a tile's pixels had come to where a segment begins: transmittance and color. The forward blending
-/// writes it, the backward one of the segment before begins there. By blocks of a pixel a lane, so that
-/// patches of one width share it whatever their height.
+/// The state of a tile's pixels at the beginning of a segment: transmittance and color. The forward pass
+/// writes it, and the backward pass of the segment before begins with it. It is stored in blocks of one pixel
+/// per lane, so that patches of one width and any height share the layout.
 template <class W, class Real, class Patch>
 class checkpoint {
   public:
@@ -75,7 +75,7 @@ class checkpoint {
         : at_(all + segment * checkpoint_values +
               (in_tile / Patch::per_row * Patch::rows * Patch::per_row + in_tile % Patch::per_row) * block) {}
 
-    /// Of the block in row k of the patch.
+    /// Writes or reads the block in row k of the patch.
     /// @{
     WARPAGG_HD void store(const W& w, unsigned k, const real (&state)[4]) const {
         for (unsigned i = 0; i < 4; ++i) w.store_row(at_, place(k, i), state[i], true);
