@@ -16,10 +16,11 @@
 
 namespace gs::raster {
 
-/// Gaussians nearer than this are not drawn.
+/// Gaussians whose center has a smaller depth than this are not drawn. The depth is z for a pinhole
+/// camera, and the distance from the camera for a fisheye. In the unit of the model.
 inline constexpr double near_plane = 0.15;
 
-/// A camera as the kernels read it.
+/// The camera parameters that kernels read. `Real` may be a SIMD value with equal lanes.
 template <class Real>
 struct device_camera {
     int width, height;
@@ -27,27 +28,29 @@ struct device_camera {
     glm::mat<3, 3, Real> rotation;
     glm::vec<3, Real> translation;
     glm::vec<3, Real> center;
-    /// Bounds of x/z and y/z in the Jacobian of the projection: the image and 15 % of its width (height) on
-    /// every side, so that the affine approximation of far-off Gaussians stays bounded (Zwicker et al. 2001).
+    /// Bounds of x/z and y/z in the Jacobian of the projection: the image, extended on each side by
+    /// 15 % of its width or height. They bound the affine approximation (Zwicker et al. 2001) of
+    /// Gaussians far outside the image.
     Real least_x, most_x, least_y, most_y;
-    /// A fisheye's.
+    /// The next three are used for fisheye lenses only.
     glm::vec<4, Real> bends;  ///< see `fisheye::k`
-    Real least_cosine;        ///< of angles from its axis, to the corners of the image and the same margin
+    Real least_cosine;        ///< cosine of the largest drawn angle: image corners plus margin
     Real end;                 ///< see `fisheye::end`
 
-    /// A row of the rotation: an axis of camera space, in the world.
+    /// Returns row r of the rotation: axis r of camera space in world coordinates.
     WARPAGG_HD glm::vec<3, Real> axis(int r) const {
         return {rotation[0][r], rotation[1][r], rotation[2][r]};
     }
 };
 
-/// Throws `error` where an image is too large: places in its three planes are numbers of 31 bits.
+/// Throws `error` if an image is too large: indices into its three planes must fit in 31 bits.
 inline void require_drawable(const camera& view) {
     if (std::int64_t{view.width} * view.height > std::int64_t{1} << 29)
         throw error("an image of " + std::to_string(view.width) + "x" + std::to_string(view.height) +
                     " has more than 2^29 pixels: lower --resolution");
 }
 
+/// Converts a camera for kernels.
 template <class Real>
 device_camera<Real> for_device(const camera& c) {
     const double margin_x = 0.15 * c.width, margin_y = 0.15 * c.height;

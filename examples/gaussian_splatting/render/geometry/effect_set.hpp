@@ -4,23 +4,24 @@
 
 namespace gs {
 
-/// What the projection of Gaussians, or its gradient, simulates on demand. Kernels have it as a template
-/// parameter: what is off is not compiled in. See docs/explanation/how_effects_are_chosen.md.
+/// Optional effects of the projection of Gaussians and of its gradient. Kernels take the set as a
+/// template parameter, so that effects that are off cost nothing. See
+/// docs/explanation/how_effects_are_chosen.md.
 struct effect_set {
-    bool antialiasing = false;  ///< a Gaussian that a pixel's filter widens becomes fainter by as much
-    bool fisheye = false;       ///< the camera has such a lens
-    bool depth = false;         ///< inverse depths have gradients, too
+    bool antialiasing = false;  ///< 2D Mip filter: see `opacity_left`
+    bool fisheye = false;       ///< the camera has a fisheye lens
+    bool depth = false;         ///< the gradient includes inverse depths
 };
 
 namespace raster {
 
-/// Calls `f.template operator()<flag>()`.
+/// Calls `f.template operator()<flag>()`: turns a run-time flag into a template argument.
 template <class F>
 decltype(auto) with_flag(bool flag, const F& f) {
     if (flag) return f.template operator()<true>();
     return f.template operator()<false>();
 }
-/// Calls `f.template operator()<set>()`.
+/// Calls `f.template operator()<set>()`: turns a run-time set into a template argument.
 template <class F>
 decltype(auto) with_effects(const effect_set& set, const F& f) {
     return with_flag(set.antialiasing, [&]<bool Antialiasing>() -> decltype(auto) {

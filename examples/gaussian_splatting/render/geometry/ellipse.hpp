@@ -6,27 +6,29 @@
 
 namespace gs::raster {
 
-/// Pixels; what the covariance of a splat is widened by, the variance of a pixel's filter (Kerbl et al.
-/// 2023).
+/// The variance of the pixel filter in square pixels. It is added to the diagonal of the covariance
+/// of each splat (Kerbl et al. 2023).
 inline constexpr double pixel_variance = 0.3;
 
-/// The shape of a splat: the Cholesky factor of the inverse of its covariance over 2 ln 2, from the vectors
-/// whose Gram matrix the covariance is before it is widened. The determinant is a square by Lagrange's
-/// identity and what the widening adds: a sum of positive terms, so nothing cancels. Sizes are divided out
-/// first, so nothing overflows either. NaN where the vectors are not finite.
+/// The shape of a splat: the Cholesky factor of its inverse covariance over 2 ln 2, in pixels. It
+/// is computed from two vectors whose Gram matrix is the covariance without the pixel filter.
+///
+/// By Lagrange's identity, the determinant is the squared length of a cross product plus the terms
+/// of the pixel filter. All terms are positive, so nothing cancels. The sizes of the vectors are
+/// divided out first, so that nothing overflows. Values are NaN if the vectors are not finite.
 template <class Real>
 struct ellipse {
     Real p, q, r;               ///< see `splat`
     Real dx_per_dy, dy_per_dx;  ///< see `splat`
-    Real width, height;         ///< half the bounding box's sides where the exponent is 1
+    Real width, height;         ///< half the sides of the bounding box of exponent 1
 
     ellipse() = default;
     WARPAGG_HD ellipse(const vec3<Real>& ax, const vec3<Real>& ay) {
         using warpagg::math::max;
         using warpagg::math::sqrt;
         const Real two_ln2 = constant<Real>(1.3862943611198906), added = constant<Real>(pixel_variance);
-        // The variances are size_x^2 xx and size_y^2 yy, the determinant (size_x across)^2 times
-        // `determinant`.
+        // The variances are size_x^2 xx and size_y^2 yy. The determinant of the covariance is
+        // (size_x across)^2 times `determinant`.
         const Real size_x = max(Real(1), largest(ax)), size_y = max(Real(1), largest(ay));
         const vec3<Real> bx = ax / size_x, by = ay / size_y;
         const Real xx = glm::dot(bx, bx) + added / size_x / size_x;

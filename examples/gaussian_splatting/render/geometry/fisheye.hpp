@@ -9,8 +9,9 @@ namespace gs::raster {
 
 using warpagg::math::select;
 
-/// The angle t of a cosine u over its sine, with its derivatives by u, from v = 1 - u: the series of
-/// k! / (2k + 1)!! v^k, which has all of a double's digits up to v = 1/4, 41 degrees.
+/// The ratio t / sin t of an angle t with cosine u, and its derivatives with respect to u. It is
+/// computed from v = 1 - u as the sum of k! / (2k + 1)!! v^k for k <= 16, which has double
+/// precision up to v = 1/4 (41 degrees).
 template <class Real>
 struct angle_by_sine {
     Real value, first, second;
@@ -27,16 +28,17 @@ struct angle_by_sine {
     }
 };
 
-/// How a fisheye camera sees a place: see `projection_of`. It is drawn at s (x, y) focal lengths with s =
-/// H(u) / |at|, u the cosine of its angle from the axis, H = (1 + k1 t^2 + ...) t / sin t. All that is asked
-/// of the lens is H and its derivatives by u, which have no trouble on the axis.
+/// The projection of a point by a fisheye camera: see `projection_of`. A point (x, y, z) in camera
+/// space is drawn s (x, y) focal lengths from the center of the image with s = H(u) / |at|. Here, u
+/// is the cosine of its angle t from the axis, and H = (1 + k1 t^2 + ...) t / sin t. The lens
+/// enters only through H and its derivatives with respect to u, which are smooth on the axis.
 template <class Real>
 struct fisheye_projection {
-    vec3<Real> at, ray;  ///< the place, and its direction
-    Real near;           ///< 1 / |at|
-    Real u, h, by_u, by_uu;
+    vec3<Real> at, ray;      ///< the point in camera space, and its direction
+    Real near;               ///< 1 / |at|
+    Real u, h, by_u, by_uu;  ///< the cosine, H, and its derivatives with respect to u
     Real s;
-    vec3<Real> ds;  ///< by the place
+    vec3<Real> ds;  ///< gradient of s with respect to `at`
     Real x, y;
     vec3<Real> px, py;
 
@@ -62,7 +64,8 @@ struct fisheye_projection {
 
     WARPAGG_HD vec3<Real> position_gradient(const vec2<Real>& center, const vec3<Real>& dpx,
                                             const vec3<Real>& dpy, const device_camera<Real>& camera) const {
-        // By the rows of the Jacobian in camera space, s e_x + x ds and s e_y + y ds.
+        // The gradients with respect to the rows of the Jacobian in camera space, which are
+        // s e_x + x ds and s e_y + y ds.
         const vec3<Real> dx = camera.fx * (camera.rotation * dpx), dy = camera.fy * (camera.rotation * dpy);
         const Real cx = camera.fx * center.x, cy = camera.fy * center.y;
         const Real by_s = cx * at.x + cy * at.y + dx.x + dy.y;
@@ -78,13 +81,14 @@ struct fisheye_projection {
     }
 
   private:
-    /// H and its derivatives.
+    /// Computes H and its derivatives with respect to u.
     WARPAGG_HD void bend(const device_camera<Real>& camera) {
         using warpagg::math::sqrt;
         const Real one(1), half = constant<Real>(0.5);
         const Real q = ray.x * ray.x + ray.y * ray.y;  // the square of the sine
         const vec4<Real>& k = camera.bends;
-        // The angle from a quarter of it, 1 - cos t = v, halved twice.
+        // v = 1 - cos t, without cancellation for small t. `halved` maps it to 1 - cos(t / 2). The
+        // angle is computed from a quarter of it, for which the series converges fast.
         const Real v = select(u > Real(0), q / (one + u), one - u);
         const auto halved = [&](const Real& vers) { return half * vers / (one + sqrt(one - half * vers)); };
         const Real quarter = halved(halved(v));
@@ -96,7 +100,8 @@ struct fisheye_projection {
         const Real e1 = select(is_near, near_axis.first, (u * e - one) / square);
         const Real e2 = select(is_near, near_axis.second, (Real(3) * u * e1 + e) / square);
 
-        const Real w = angle * angle, w1 = Real(-2) * e, w2 = Real(-2) * e1;  // w and its derivatives by u
+        // w = t^2 and its derivatives with respect to u.
+        const Real w = angle * angle, w1 = Real(-2) * e, w2 = Real(-2) * e1;
         const Real p = one + w * (k.x + w * (k.y + w * (k.z + w * k.w)));
         const Real by_w = k.x + w * (Real(2) * k.y + w * (Real(3) * k.z + w * (Real(4) * k.w)));
         const Real by_ww = Real(2) * k.y + w * (Real(6) * k.z + w * (Real(12) * k.w));
@@ -106,7 +111,7 @@ struct fisheye_projection {
         by_uu = p2 * e + Real(2) * p1 * e1 + p * e2;
     }
 
-    /// How `ds` changes along a step: its Hessian's product with it.
+    /// Returns the change of `ds` along `step`: the Hessian of s times `step`.
     WARPAGG_HD vec3<Real> change_of_ds(const vec3<Real>& step) const {
         const Real farther = glm::dot(ray, step);
         const Real du = near * (step.z - u * farther);
@@ -117,7 +122,9 @@ struct fisheye_projection {
     }
 };
 
-/// The direction in camera space of what is seen at a place of the image, in focal lengths from its center.
+/// Returns the unit direction in camera space of the ray through a place in the image, which is
+/// given in focal lengths from the center. Beyond the end of the lens model, returns a ray at its
+/// largest angle.
 template <class Real>
 WARPAGG_HD vec3<Real> fisheye_ray(const vec2<Real>& place, const device_camera<Real>& camera) {
     using warpagg::math::max;
@@ -125,14 +132,15 @@ WARPAGG_HD vec3<Real> fisheye_ray(const vec2<Real>& place, const device_camera<R
     const Real out = warpagg::math::sqrt(glm::dot(place, place)), one(1);
     const vec4<Real>& k = camera.bends;
     Real angle = min(out, camera.end);
-    for (int step = 0; step < 8; ++step) {  // Newton's
+    for (int step = 0; step < 8; ++step) {  // Newton's method
         const Real w = angle * angle;
         const Real radius = angle * (one + w * (k.x + w * (k.y + w * (k.z + w * k.w))));
         const Real slope =
             one + w * (Real(3) * k.x + w * (Real(5) * k.y + w * (Real(7) * k.z + w * (Real(9) * k.w))));
         angle = min(max(angle + (out - radius) / max(slope, constant<Real>(1e-3)), Real(0)), camera.end);
     }
-    // Sine and cosine by their series at an eighth of the angle, at most 22 degrees, doubled three times.
+    // The series of sine and cosine at an eighth of the angle, which is at most 22 degrees. Then
+    // the angle is doubled three times.
     const Real part = angle * constant<Real>(0.125), w = part * part;
     const auto over = [&](double n) { return w * constant<Real>(1 / n); };
     Real sine = part * (one - over(6) * (one - over(20) * (one - over(42) * (one - over(72)))));

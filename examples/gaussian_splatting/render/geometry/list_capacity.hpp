@@ -7,11 +7,11 @@
 
 namespace gs::raster {
 
-/// Whether a view's tile lists fit into the memory that was reserved for them, as the device finds out. A
-/// step whose lists do not fit saw half an image: it is left out, and nothing is learned from it.
+/// Tells kernels whether the tile lists of a view fit in the memory that is reserved for them. If
+/// they do not, the render is incomplete: the step is skipped and changes no parameter.
 struct list_capacity {
-    const std::uint64_t* required = nullptr;  ///< null: there is room enough
-    std::uint64_t reserved = 0;
+    const std::uint64_t* required = nullptr;  ///< number of instances; null: no limit
+    std::uint64_t reserved = 0;               ///< number of instances that fit
 
     WARPAGG_HD bool exceeded() const { return required != nullptr && *required > reserved; }
 };

@@ -9,12 +9,12 @@ namespace gs::raster {
 
 using warpagg::math::select;
 
-/// How a pinhole camera sees a place: see `projection_of`.
+/// The projection of a point by a pinhole camera: see `projection_of`.
 template <class Real>
 struct pinhole_projection {
-    vec3<Real> at;
+    vec3<Real> at;                 ///< the point in camera space
     Real u, v;                     ///< x/z and y/z, clamped for the Jacobian
-    flag_of<Real> u_free, v_free;  ///< not clamped
+    flag_of<Real> u_free, v_free;  ///< whether u and v are not clamped
     Real x, y;
     vec3<Real> px, py;
 
@@ -27,7 +27,7 @@ struct pinhole_projection {
         using warpagg::math::max;
         using warpagg::math::min;
         const Real rz = 1 / at.z;
-        const Real x_by_z = at.x / at.z, y_by_z = at.y / at.z;  // where 1 / z underflows, too
+        const Real x_by_z = at.x / at.z, y_by_z = at.y / at.z;  // valid even if 1 / z underflows
         u = min(max(x_by_z, camera.least_x), camera.most_x);
         v = min(max(y_by_z, camera.least_y), camera.most_y);
         u_free = u == x_by_z;
@@ -41,7 +41,8 @@ struct pinhole_projection {
     WARPAGG_HD vec3<Real> position_gradient(const vec2<Real>& center, const vec3<Real>& dpx,
                                             const vec3<Real>& dpy, const device_camera<Real>& camera) const {
         const Real rz = 1 / at.z;
-        // px = fx / z (row 0 - u row 2), and u = x / z unless it is clamped.
+        // px = fx / z (row 0 - u row 2) with the rows of the rotation, and u = x / z unless
+        // clamped.
         // mutate: clamped_jacobian_as_if_free
         const Real du = select(u_free, -camera.fx * rz * glm::dot(dpx, camera.axis(2)), Real(0));
         const Real dv = select(v_free, -camera.fy * rz * glm::dot(dpy, camera.axis(2)), Real(0));

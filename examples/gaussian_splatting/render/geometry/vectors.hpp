@@ -32,7 +32,7 @@ WARPAGG_HD flag_of<Real> is_finite(const vec3<Real>& v) {
     return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
 }
 
-/// The component of largest size.
+/// Returns the largest magnitude of a component.
 template <int N, class Real>
 WARPAGG_HD Real largest(const glm::vec<N, Real>& v) {
     Real most(0);
@@ -40,8 +40,9 @@ WARPAGG_HD Real largest(const glm::vec<N, Real>& v) {
     return most;
 }
 
-/// Which way a vector points. Its largest component is divided out first, so that no square over- or
-/// underflows: only zero and what is not finite have no direction, and get NaN.
+/// The direction of a vector, and the inverse of its length. Divides by the largest component
+/// first, so that no square overflows or underflows. The values are NaN only for vectors that are
+/// zero or not finite.
 template <int N, class Real>
 struct unit {
     glm::vec<N, Real> direction;
@@ -56,7 +57,9 @@ struct unit {
     }
 };
 
-/// The components of Gaussian i in an array of three: see `aosoa_index`.
+/// Load or store the components of Gaussian i in an array with 3 or 4 components per Gaussian: see
+/// `aosoa_index`.
+/// @{
 template <class Real>
 WARPAGG_HD vec3<Real> load3(const Real* p, unsigned i) {
     return {p[aosoa_index(i, 0, 3)], p[aosoa_index(i, 1, 3)], p[aosoa_index(i, 2, 3)]};
@@ -71,5 +74,6 @@ WARPAGG_HD vec4<Real> load4(const Real* p, unsigned i) {
     return {p[aosoa_index(i, 0, 4)], p[aosoa_index(i, 1, 4)], p[aosoa_index(i, 2, 4)],
             p[aosoa_index(i, 3, 4)]};
 }
+/// @}
 
 }  // namespace gs::raster

@@ -6,11 +6,12 @@
 
 namespace gs {
 
-/// What memory keeps the sums of gradients in while the warps of the backward pass add to them. The values
-/// number the variants of a `raster::accumulator_set`: these are the first two of every set.
+/// How gradient sums are kept in memory while the warps of the backward pass add to them. A value
+/// is the index of a variant in a `raster::accumulator_set`; the two below are the first variants
+/// of every set.
 enum class accumulator : std::uint8_t {
-    native,  ///< floats: the fastest, but the order of additions changes the last bits
-    fixed    ///< fixed-point numbers: the same bits in any order
+    native,  ///< floats: fastest, but the last bits depend on the order of additions
+    fixed    ///< fixed point: the bits do not depend on the order of additions
 };
 
 }  // namespace gs

@@ -13,9 +13,9 @@
 
 namespace gs::raster {
 
-/// A variant of the backward blending: tile lists split over warps, and sums in floats.
+/// A variant of the backward pass that splits tile lists over warps and keeps sums as `Real`.
 struct native_sums {
-    /// Whether a kernel exists for a `Backdrop` other than one color.
+    /// Whether the kernel also exists for an `image_background`.
     static constexpr bool supports_background_image = true;
     template <class Real, class Cut, class Backdrop = constant_background<Real>>
     using kernel =
@@ -23,8 +23,8 @@ struct native_sums {
                        true, Backdrop>;
 };
 
-/// The same kernel, except that the sums of warps are kept as `Accumulate` keeps them. Sums in double are
-/// always kept in double.
+/// The same variant with the sums of warps accumulated in `Accumulate`. If `Real` is double, sums
+/// stay double.
 template <class Accumulate, bool SupportsBackdrop = true>
 struct sums_kept_in {
     static constexpr bool supports_background_image = SupportsBackdrop;
@@ -39,15 +39,16 @@ struct sums_kept_in {
                        true, Backdrop>;
 };
 
-/// Fixed point in units of 2^-45 of the largest possible sum, for up to 2^18 warps: an image of 16 million
-/// pixels has as many patches.
+/// Sums in fixed point. The unit is 2^-45 of the largest sum of a warp. Up to 2^18 warps may add to
+/// one sum; with 64 pixels per patch, this is an image of 16 million pixels.
 inline constexpr int fixed_log_warps = 18;
 using fixed_sums = warpagg::accumulate::fixed<63 - fixed_log_warps, fixed_log_warps>;
 
-/// The variants that a renderer is compiled with. An `accumulator` is the number of one.
+/// The variants that a renderer is compiled for. An `accumulator` is the index of a variant.
 template <class... Variants>
 struct accumulator_set {
-    /// Calls `f` with a value of the chosen variant's type. Throws `error` if the set has no such variant.
+    /// Calls `f` with an object of the chosen variant. Throws `error` if the set has no such
+    /// variant.
     template <class F>
     static void visit(accumulator chosen, const F& f) {
         auto left = static_cast<std::size_t>(chosen);
@@ -57,8 +58,8 @@ struct accumulator_set {
                         " accumulators, but number " + std::to_string(static_cast<int>(chosen)) +
                         " was requested (they are numbered from 0)");
     }
-    /// Calls `f` with the chosen variant's `blend_backward`, for a background of one color. The kernel
-    /// follows a `blend_forward` with the same `Cut`.
+    /// Calls `f` with the `blend_backward` kernel of the chosen variant, for a constant background.
+    /// Precondition of the kernel: a `blend_forward` with the same `Cut` has run.
     template <class Real, class Cut, class F>
     static void with_kernel(accumulator chosen, const F& f) {
         visit(chosen, [&]<class Variant>(Variant) { f(typename Variant::template kernel<Real, Cut>{}); });
@@ -69,7 +70,7 @@ struct accumulator_set {
     }
 };
 
-/// The trainer's variants, in the order of `accumulator`.
+/// The variants of the trainer, in the order of `accumulator`.
 using product_accumulators = accumulator_set<native_sums, sums_kept_in<fixed_sums>>;
 
 }  // namespace gs::raster

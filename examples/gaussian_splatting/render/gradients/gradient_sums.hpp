@@ -30,8 +30,9 @@ class gradient_sums {
     using buffer = typename Device::template buffer<T>;
 
   public:
-    /// The largest sum of a warp in fixed point, relative to the largest gradient of a pixel. A warp has 64
-    /// pixels, moments of up to 8, and differences of colors, most of which are below 1.
+    /// The largest sum of a warp in fixed point, relative to the largest gradient of a pixel. A
+    /// warp has 64 pixels, moments of up to 8, and differences of colors, most of which are below
+    /// 1.
     static constexpr float headroom = 4096;
 
     explicit gradient_sums(Device& device) : device_(device) {
@@ -39,11 +40,11 @@ class gradient_sums {
         device_.zero(fault_.data(), 1);
     }
 
-    /// Clears the sums of all Gaussians and passes them to the kernel, a `blend_backward`. If it `goes_on`,
-    /// the kernel continues with the sums that `set_depths_aside` has kept. `largest`: the approximate
-    /// magnitude of a pixel's gradient; fixed point leaves out sums above `headroom` times this value.
-    /// `warps`: the largest number of warps that add to a sum. Throws `error` if there are too many for
-    /// fixed point.
+    /// Clears the sums of all Gaussians and passes them to the kernel, a `blend_backward`. If it
+    /// `goes_on`, the kernel continues with the sums that `set_depths_aside` has kept. `largest`:
+    /// the approximate magnitude of a pixel's gradient; fixed point leaves out sums above
+    /// `headroom` times this value. `warps`: the largest number of warps that add to a sum. Throws
+    /// `error` if there are too many for fixed point.
     template <class Kernel>
     void begin(Kernel& kernel, std::size_t gaussians, float largest, std::size_t warps,
                bool goes_on = false) {
@@ -69,8 +70,8 @@ class gradient_sums {
                 {}, {}, {fixed_sums{fault_.data(), fixed_sums::scale_to_fit(headroom * largest)}});
         }
     }
-    /// Called instead of `end` after a kernel that blended `depth_splats`: keeps the sums for the next
-    /// kernel.
+    /// Called instead of `end` after a kernel that blended `depth_splats`: keeps the sums for the
+    /// next kernel.
     template <class Kernel>
     void set_depths_aside(const Kernel& kernel) {
         using in_memory = std::remove_pointer_t<decltype(kernel.sums)>;
