@@ -20,8 +20,9 @@
 namespace gs::raster {
 
 // knob: renderer
-/// Draws Gaussians, and computes the gradients of their parameters from dL/dimage. Owns the memory for all
-/// intermediate results. `Accumulators`: an `accumulator_set`, from which `backward` chooses at run time.
+/// Draws Gaussians, and computes the gradients of their parameters from dL/dimage. Owns the memory
+/// for all intermediate results. `Accumulators`: an `accumulator_set`, from which `backward`
+/// chooses at run time.
 template <device::device Device, class Real, class Cut = cut_for<typename Device::warp>,
           class Accumulators = product_accumulators>
 class renderer {
@@ -45,15 +46,16 @@ class renderer {
         project_all(gaussians, count, view, sh_degree);
         list_by_tile(count, 0);
     }
-    /// Returns the number of instances of the last view that was drawn or measured. Waits for the device.
+    /// Returns the number of instances of the last view that was drawn or measured. Waits for the
+    /// device.
     std::uint64_t instances() {
         std::uint64_t n = 0;
         device_.download(&n, required_.data(), 1);
         return n;
     }
 
-    /// Reserves memory for this number of instances per view, and for `spare` more within the limit of 31
-    /// bits. `forward` drops instances that do not fit: see `capacity`.
+    /// Reserves memory for this number of instances per view, and for `spare` more within the limit
+    /// of 31 bits. `forward` drops instances that do not fit: see `capacity`.
     void reserve_instances(std::uint64_t most, std::uint64_t spare = 0) {
         constexpr std::uint64_t limit = std::uint64_t{1} << 31;
         if (most >= limit)
@@ -64,8 +66,8 @@ class renderer {
     }
     std::uint64_t reserved_instances() const { return capacity_; }
 
-    /// Draws the view into `render()`, three planes. `background_image`: three planes that replace the
-    /// background; they must exist until `backward`.
+    /// Draws the view into `render()`, three planes. `background_image`: three planes that replace
+    /// the background; they must exist until `backward`.
     void forward(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
                  const std::array<float, 3>& background, const Real* background_image = nullptr) {
         list(gaussians, count, view, sh_degree);
@@ -100,9 +102,9 @@ class renderer {
                                     : blend_forward_by<Cut>(background_image_, lists(), pairs_.data());
     }
 
-    /// Called between both parts: draws the inverse depths, the sum of w_i / z_i with the weights of the
-    /// colors, on a background of zero. They are the first plane of `render()` until `blend`. The time of
-    /// this and the next function counts as forward blending.
+    /// Called between both parts: draws the inverse depths, the sum of w_i / z_i with the weights
+    /// of the colors, on a background of zero. They are the first plane of `render()` until
+    /// `blend`. The time of this and the next function counts as forward blending.
     void blend_depths() {
         with_flag(camera_.fisheye.has_value(), [&]<bool Fisheye> {
             device_.for_each_index(count_, depth_splats<Real, effect_set{.fisheye = Fisheye}>{
@@ -112,8 +114,8 @@ class renderer {
         background_ = {};
         blend_forward_by<Cut>(background_, depth_lists(), pairs_.data() + 1);
     }
-    /// Adds the gradient of the inverse depths, three planes of which the last two are zero, to the sums.
-    /// `backward` continues with them and needs the same `largest` and `how`.
+    /// Adds the gradient of the inverse depths, three planes of which the last two are zero, to the
+    /// sums. `backward` continues with them and needs the same `largest` and `how`.
     void backward_depths(const Real* gradient, float largest, accumulator how) {
         Accumulators::template with_kernel<Real, Cut>(how, [&](auto kernel) {
             sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()));
@@ -123,9 +125,9 @@ class renderer {
         effects_.depth = true;
     }
 
-    /// Computes the gradients of all parameters from the gradient of the last image, and passes them to
-    /// `sink`: see `project_backward`. Colors are included up to an SH degree. `largest` is the approximate
-    /// magnitude of a pixel's gradient: see `gradient_sums`. `seen` may be null.
+    /// Computes the gradients of all parameters from the gradient of the last image, and passes
+    /// them to `sink`: see `project_backward`. Colors are included up to an SH degree. `largest` is
+    /// the approximate magnitude of a pixel's gradient: see `gradient_sums`. `seen` may be null.
     template <class Sink>
     void backward(const Real* render_gradient, float largest, accumulator how, int learned_sh_degree,
                   const Sink& sink, visibility* seen) {
@@ -159,8 +161,8 @@ class renderer {
         return sums;
     }
 
-    /// Runs the blending part of `backward` with this kernel, whose members it sets. Returns the sums: see
-    /// `project_backward`.
+    /// Runs the blending part of `backward` with this kernel, whose members it sets. Returns the
+    /// sums: see `project_backward`.
     template <class Kernel>
     const buffer<Real>& blend_backward_by(Kernel kernel, const Real* render_gradient, float largest) {
         sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()), effects_.depth);
@@ -212,7 +214,8 @@ class renderer {
         // knob: backward_warps
         device_.for_each_warp(kernel.template warps<warp>(tiles(), segments()), kernel);
     }
-    /// Lower patches are smaller pieces of work. They are used if higher ones would leave the device idle.
+    /// Lower patches are smaller pieces of work. They are used if higher ones would leave the
+    /// device idle.
     template <class Shape, class Backdrop>
     void blend_forward_by(const Backdrop& background, const tile_lists<Real>& lists,
                           unsigned long long* pairs) {
@@ -260,7 +263,8 @@ class renderer {
         });
     }
 
-    /// Makes the list of Gaussians of each tile, front to back. Equal depths keep the order of the Gaussians.
+    /// Makes the list of Gaussians of each tile, front to back. Equal depths keep the order of the
+    /// Gaussians.
     void bin(std::size_t count) {
         device_.sort_pairs(depths_, order_, count);
         list_by_tile(count, capacity_);

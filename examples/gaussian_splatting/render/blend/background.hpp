@@ -8,7 +8,8 @@
 
 namespace gs::raster {
 
-/// What lies behind all splats, where `at` a pixel's place in a plane: one color, or one a pixel.
+/// The background behind all splats: a constant color, or an image. `at` returns one channel at the
+/// pixels of a warp. `pixel` is the index in a plane, which has `plane` pixels.
 /// @{
 template <class Real>
 struct constant_background {
@@ -22,7 +23,7 @@ struct constant_background {
 };
 template <class Real>
 struct image_background {
-    const Real* planes;  ///< three, as the image's
+    const Real* planes;  ///< three planes of the size of the render
 
     template <class W>
     WARPAGG_HD warpagg::value_t<W, Real> at(const W& w, const warpagg::value_t<W, unsigned>& pixel,

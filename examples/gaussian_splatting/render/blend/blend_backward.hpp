@@ -26,8 +26,8 @@ template <class Real, class Policy>
 using sum_in_memory = typename sum_of<Real, Policy>::type;
 /// @}
 
-/// The inputs of the backward pass besides the tile lists: results of the forward pass, and the gradient
-/// of the loss.
+/// The inputs of the backward pass besides the tile lists: results of the forward pass, and the
+/// gradient of the loss.
 template <class Real, class Backdrop = constant_background<Real>>
 struct blended {
     Backdrop background;
@@ -38,17 +38,17 @@ struct blended {
     const Real* gradient;  ///< dL/dimage: three planes
 };
 
-/// Computes the gradient of `blend_forward`. Each pixel walks back to front over the splats that it saw and
-/// recovers the transmittance T by division. Nine sums per Gaussian (see `sum`) are added to memory by
-/// `warp_reduce_atomic` with `Policy`.
+/// Computes the gradient of `blend_forward`. Each pixel walks back to front over the splats that it
+/// saw and recovers the transmittance T by division. Nine sums per Gaussian (see `sum`) are added
+/// to memory by `warp_reduce_atomic` with `Policy`.
 ///
-/// Let g = dL/dC, and let B_i be the color behind splat i per unit of transmittance, background included.
-/// Then dL/dalpha_i = T_i g (c_i - B_i). So a pixel carries the scalar g B instead of three channels, and
-/// only T is divided by 1 - alpha. The pixels of a lane lie in one column and share u, which is multiplied
-/// into the sums once.
+/// Let g = dL/dC, and let B_i be the color behind splat i per unit of transmittance, background
+/// included. Then dL/dalpha_i = T_i g (c_i - B_i). So a pixel carries the scalar g B instead of
+/// three channels, and only T is divided by 1 - alpha. The pixels of a lane lie in one column and
+/// share u, which is multiplied into the sums once.
 ///
-/// `Split`: one warp per patch and segment; otherwise one warp per patch. `AskFirst`: skips splats that no
-/// pixel of the patch sees before anything is computed (the paper, Figure 8).
+/// `Split`: one warp per patch and segment; otherwise one warp per patch. `AskFirst`: skips splats
+/// that no pixel of the patch sees before anything is computed (the paper, Figure 8).
 template <class Real, class Cut, bool Split, class Policy, bool AskFirst,
           class Backdrop = constant_background<Real>>
 struct blend_backward {
@@ -67,8 +67,8 @@ struct blend_backward {
     static std::size_t warps(std::size_t tiles, std::size_t segments) {
         return (Split ? segments : tiles) * patch<W, Real, Cut>::per_tile;
     }
-    /// Returns the largest number of warps that add to the sums of one Gaussian, which is in the list of each
-    /// tile at most once.
+    /// Returns the largest number of warps that add to the sums of one Gaussian, which is in the
+    /// list of each tile at most once.
     template <class W>
     static std::size_t warps_of_sum(std::size_t tiles) {
         return tiles * patch<W, Real, Cut>::per_tile;
@@ -94,14 +94,16 @@ struct blend_backward {
     }
 
   private:
-    /// A pixel on its way to the front.
+    /// The state of a pixel during the walk: g, the transmittance T in front of the last walked
+    /// splat, and `behind`, which is g B.
     template <class real>
     struct pixel_state {
         real g[3];
         real T, behind;
     };
 
-    /// Over the places [from, to) of a tile's list, which begins at `begin`.
+    /// Walks over the places [from, to) of a tile's list, which begins at `begin`, from back to
+    /// front.
     template <class W, class Patch>
     WARPAGG_HD void walk(const W& w, splat_stage<W, Real>& stage, unsigned tile, unsigned in_tile,
                          unsigned begin, unsigned from, unsigned to) const {
@@ -119,13 +121,14 @@ struct blend_backward {
         pixel_state<real> pixels[rows];
         begin_pixels(w, p, tile, in_tile, to - begin, to / Cut::segment, end, pixels);
 
-        // What lies behind the last splat that counted for any pixel need not be read.
+        // Skips blocks behind the last splat that counted for any pixel.
         unsigned base = (to - 1) - (to - 1) % W::size;
         while (base > from && !some_pass(base)) base -= W::size;
         list_reader<W, Real, Patch> reader(w, lists, p, begin, from, to, stage, base, base - W::size);
         for (;; base -= W::size) {
             const unsigned staged = reader.stage(w, base, base - W::size, base - 2 * W::size);
-            if constexpr (!std::is_same_v<mask_t<W>, bool>)  // one thread, which would wait for each
+            // Prefetches the sums if one thread runs all lanes and would wait for each splat's.
+            if constexpr (!std::is_same_v<mask_t<W>, bool>)
                 for (unsigned i = 0; i < staged; ++i)
                     __builtin_prefetch(sums + stage.splats[i].gaussian() * record_stride, 1);
             // knob: add_splats
@@ -134,7 +137,8 @@ struct blend_backward {
         }
     }
 
-    /// The pixels as they are behind the splat of rank `to`, where block `next` of the list begins.
+    /// Sets the pixels to their state behind the splat of rank `to`. Pixels with later splats
+    /// continue from the checkpoint of segment `tile + next`.
     template <class W, class Patch, class real, class ends>
     WARPAGG_HD void begin_pixels(const W& w, const Patch& p, unsigned tile, unsigned in_tile, unsigned to,
                                  unsigned next, const ends& end,
@@ -181,7 +185,7 @@ struct blend_backward {
             if (warpagg::skip_if_warp_idle(w, any_of(counts))) return;
         }
 
-        // red, green, blue, s, s v, s v^2
+        // Sums over the pixels of the lane: red, green, blue, s, s v, s v^2.
         real part[6];
         for (real& x : part) x = real(0);
         for_each_row<Cut>(reached, [&](unsigned k) {
@@ -211,7 +215,8 @@ struct blend_backward {
         values[sum_suv] = seen.u * part[4];
         values[sum_svv] = part[5];
         // knob: pad_gradients
-        // Lanes that see nothing of it add zeros: several pixels a lane are masked already, by their alpha.
+        // With several pixels per lane, alpha is zero where the splat does not count, so that all
+        // lanes can take part.
         const mask_t<W> who = rows > 1 ? mask_t<W>(true) : counts[0];
         const auto to = [this, record](unsigned i) { return sums + (record + i); };
         warpagg::warp_reduce_atomic(w, to, values, who, how);  // knob: add_to_sums

@@ -10,8 +10,10 @@
 
 namespace gs::raster {
 
-/// Front to back over each tile's list: C = sum c_i alpha_i T_i + T b, T_i = prod (1 - alpha_j) (Kerbl et al.
-/// 2023, equation 3). One warp a patch. A pixel ends where a splat would bring T below `least_transmittance`.
+/// Blends each tile's list from front to back: C = sum_i c_i alpha_i T_i + T b with the
+/// transmittance T_i = prod_(j < i) (1 - alpha_j) and the background b (Kerbl et al. 2023, equation
+/// 3). One warp per patch. A pixel ends before the first splat that would reduce T below
+/// `least_transmittance`.
 template <class Real, class Cut, class Backdrop = constant_background<Real>>
 struct blend_forward {
     tile_lists<Real> lists;
@@ -19,12 +21,12 @@ struct blend_forward {
     Backdrop background;
 
     Real* render;               ///< three planes
-    Real* transmittance;        ///< what is left behind the last splat
-    std::uint32_t* last;        ///< one past the place, in the tile's list, of the last splat that counted
-    Real* checkpoints;          ///< by segment: see there
-    unsigned long long* pairs;  ///< pixel-Gaussian pairs that were evaluated, added to
+    Real* transmittance;        ///< T behind the last splat of each pixel
+    std::uint32_t* last;        ///< rank of the last splat of each pixel, from one; 0: none
+    Real* checkpoints;          ///< by segment: see `checkpoint`
+    unsigned long long* pairs;  ///< counter of evaluated pixel-Gaussian pairs
 
-    static constexpr int warps_at_once = 24;  ///< on an SM; measured
+    static constexpr int warps_at_once = 24;  ///< warps per multiprocessor; measured
 
     template <class W>
     static std::size_t warps(std::size_t tiles) {
@@ -41,7 +43,7 @@ struct blend_forward {
         const patch p(w, tile, in_tile, lists.tiles_across, lists.width, lists.height);
         const tile_range range = lists.ranges[tile];
 
-        real state[rows][4];  // T, negative once the pixel has ended, and the color so far
+        real state[rows][4];  // T, negated when the pixel has ended, and the color so far
         value_t<W, unsigned> end[rows];
         for (unsigned k = 0; k < rows; ++k) {
             state[k][0] = select(p.inside[k], real(1), real(-1));

@@ -9,11 +9,11 @@
 
 namespace gs::raster {
 
-/// Splats that show how near they are: red is the inverse of the depth, and the rest black. One index a
-/// Gaussian.
+/// Makes splats that render inverse depths: red is the inverse depth of the Gaussian, and green and
+/// blue are zero. One index per Gaussian.
 template <class Real, effect_set Effects>
 struct depth_splats {
-    const Real* mean;  ///< of all Gaussians, see `parameter_arrays`
+    const Real* mean;  ///< means of all Gaussians, see `parameter_arrays`
     device_camera<Real> camera;
     const splat<Real>* splats;
     splat<Real>* shown;
@@ -28,8 +28,8 @@ struct depth_splats {
     }
 };
 
-/// The sum of red becomes that of inverse depths, and is zero again for the image's own. One index a
-/// Gaussian.
+/// Moves the gradient sum of red to the sum of inverse depths, and clears it for the backward pass
+/// of the colors. One index per Gaussian.
 template <class Sum>
 struct set_red_aside {
     Sum* sums;

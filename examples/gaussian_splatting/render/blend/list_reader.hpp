@@ -7,24 +7,24 @@
 
 namespace gs::raster {
 
-/// A splat as the pixels of one tile see it: with (x, y) the pixel's place in the tile, u = p x + u0 and
-/// v = q y + r x + v0 (see `whitened`).
+/// A splat relative to a tile. For the pixel (x, y) of the tile, u = p x + u0 and
+/// v = q y + r x + v0: see `whitened`.
 template <class Real>
 struct alignas(16) staged_splat {
     Real p, u0, r, v0;
     Real q, log2_opacity, red, green;
     Real blue;
-    Real rank_bits, gaussian_bits;  ///< of whole numbers: all of it is stored as `Real`
+    Real rank_bits, gaussian_bits;  ///< integers, stored as the bits of `Real`
     Real unused;
 
-    /// In the tile's list, from one.
+    /// Returns the position in the tile's list, counted from one.
     WARPAGG_HD unsigned rank() const { return static_cast<unsigned>(bits_of<bits_as<Real>>(rank_bits)); }
     WARPAGG_HD unsigned gaussian() const {
         return static_cast<unsigned>(bits_of<bits_as<Real>>(gaussian_bits));
     }
 };
 
-/// What the pixels of a lane's column see of a splat.
+/// The parts of a splat's exponent that all pixels of a column share. One column per lane.
 template <class W, class Real>
 struct column_view {
     using real = value_t<W, Real>;
@@ -37,29 +37,30 @@ struct column_view {
           q_(s.q) {}
 
     WARPAGG_HD real v(const real& y) const { return fma(q_, y, shear_); }
-    /// log2 of alpha there, before it is capped. Forward and backward share it, and its rounding is pinned,
-    /// so that both see the same alpha to the bit.
+    /// Returns log2 of alpha before the cap. Explicit `fma` fixes the rounding, so that the forward
+    /// and the backward pass get the same bits.
     WARPAGG_HD real log2_alpha(const real& v) const { return fma(-v, v, left_); }
 
   private:
     real left_, shear_, q_;
 };
 
-/// The splats that a warp walks next, where all its lanes see them: in shared memory on a GPU.
+/// The splats that a warp blends next, in memory that its lanes share.
 template <class W, class Real>
 struct splat_stage {
     staged_splat<Real> splats[W::size];
 };
 
-/// Reads a list W::size places at a time and puts on the stage what may reach a patch. The splats of the next
-/// places are on their way while those on the stage are walked.
+/// Reads a tile's list in blocks of W::size places, and stages the splats that may reach a patch.
+/// It loads the next block while the warp blends the staged one, which hides the latency of memory.
 template <class W, class Real, class Patch>
 class list_reader {
     using real = value_t<W, Real>;
     using index = value_t<W, unsigned>;
 
   public:
-    /// Of the places in [from, to) of a tile's list, which begins at `begin`: first of those from `base` on.
+    /// Reads the places [from, to) of a tile's list, which begins at `begin`. The first block
+    /// begins at `base`, and the second one at `next`.
     WARPAGG_HD list_reader(const W& w, const tile_lists<Real>& lists, const Patch& p, unsigned begin,
                            unsigned from, unsigned to, splat_stage<W, Real>& stage, unsigned base,
                            unsigned next)
@@ -68,13 +69,14 @@ class list_reader {
         fetch(w, base, next);
     }
 
-    /// Stages the splats of the places from `base` on, those that were fetched last, and fetches those from
-    /// `next` on; `after` come after these. Returns how many are on the stage, in the order of the list.
+    /// Stages the block at `base`, which was fetched last, and fetches the block at `next`. `after`
+    /// is the beginning of the block after that. Returns the number of staged splats, which keep
+    /// the order of the list.
     WARPAGG_HD unsigned stage(const W& w, unsigned base, unsigned next, unsigned after) {
         const real x0 = patch_.left - field_[0], y0 = patch_.top - field_[1];
         const real least = least_exponent<real>(field_[2], field_[3], field_[4], field_[5], field_[6], x0,
                                                 x0 + Real(Patch::across - 1), y0, y0 + Real(Patch::down - 1));
-        // The pixels decide; rounding of the least exponent must not take one away from them.
+        // The test of single pixels decides. The slack keeps splats that only rounding would drop.
         constexpr Real slack = Real(1) / 256;
         const mask_t<W> reaches = is_valid(w, base) && least <= field_[7] + slack;
         const std::uint32_t hits = w.ballot(reaches);
@@ -90,7 +92,7 @@ class list_reader {
                 p,          p * dx,     r,          fma(q, dy, r * dx), q,      field_[8], field_[9],
                 field_[10], field_[11], bits(rank), bits(gaussian_),    real(0)};
             const index slot = warpagg::math::popcount(lanes_below(w) & index(hits));
-            w.sync();  // the last ones have been read
+            w.sync();  // all lanes have read the previous splats
             w.store_packed(reinterpret_cast<Real*>(stage_.splats), slot * 12u, staged, reaches);
             w.sync();
         }
@@ -118,8 +120,8 @@ class list_reader {
     const Patch& patch_;
     unsigned begin_, from_, to_;
     splat_stage<W, Real>& stage_;
-    real field_[splat_width];   // of the splats that were fetched
-    index gaussian_, waiting_;  // theirs, and those of the next places
+    real field_[splat_width];   // values of the fetched splats
+    index gaussian_, waiting_;  // indices of the fetched Gaussians, and of those in the next block
 };
 
 }  // namespace gs::raster

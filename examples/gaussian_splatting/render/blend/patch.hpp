@@ -13,8 +13,8 @@ using warpagg::value_t;
 using warpagg::math::fma;
 using warpagg::math::select;
 
-/// The pixels that a warp owns: blocks of one pixel a lane, one below the other, so that a lane's pixels lie
-/// in one column. A tile is cut into patches.
+/// The pixels that a warp blends: blocks of one pixel per lane, one below the other. The pixels of
+/// a lane lie in one column. A tile consists of `per_tile` patches.
 template <class W, class Real, class Cut>
 struct patch {
     static constexpr unsigned across = Cut::across, rows = Cut::rows, block = W::size / across,
@@ -24,10 +24,10 @@ struct patch {
 
     Real tile_left, tile_top;    ///< center of the tile's first pixel
     Real left, top;              ///< center of the patch's first pixel
-    value_t<W, Real> x, y;       ///< the lane's first pixel, from the tile's
-    value_t<W, unsigned> pixel;  ///< its place in a plane of the image
-    unsigned step;               ///< from one pixel of the lane to its next
-    mask_t<W> inside[rows];      ///< they are in the image
+    value_t<W, Real> x, y;       ///< the lane's first pixel, relative to the tile's first pixel
+    value_t<W, unsigned> pixel;  ///< its index in a plane of the image
+    unsigned step;               ///< index distance of consecutive pixels of a lane
+    mask_t<W> inside[rows];      ///< whether the lane's pixels are in the image
 
     WARPAGG_HD patch(const W& w, unsigned tile, unsigned in_tile, unsigned tiles_across, int width,
                      int height)
@@ -49,14 +49,14 @@ struct patch {
     }
 };
 
-/// Alpha is at least `least_alpha`.
+/// Returns whether alpha is at least `least_alpha`.
 template <class V>
 WARPAGG_HD auto is_hit(const V& log2_alpha) {
     constexpr double log2_least_alpha = -7.994353436858858;  // knob: log2_least_alpha
     return log2_alpha >= V(warpagg::scalar_t<V>(log2_least_alpha));
 }
 
-/// Some pixel of the lane.
+/// Returns whether the mask of any row is set, for each lane.
 template <class Mask, unsigned Rows>
 WARPAGG_HD Mask any_of(const Mask (&masks)[Rows]) {
     Mask any = masks[0];
@@ -64,7 +64,8 @@ WARPAGG_HD Mask any_of(const Mask (&masks)[Rows]) {
     return any;
 }
 
-/// The rows of a patch of which some lane has `flag(k)`, as bits; all of them where `Cut` is not sparse.
+/// Returns a bit set of the rows k in which some lane has `flag(k)`, or of all rows if `Cut` is not
+/// sparse.
 template <class Cut, class W, class F>
 WARPAGG_HD std::uint32_t rows_with(const W& w, const F& flag) {
     std::uint32_t rows = 0;
@@ -75,7 +76,7 @@ WARPAGG_HD std::uint32_t rows_with(const W& w, const F& flag) {
     }
     return rows;
 }
-/// Calls f(k) for each of these rows.
+/// Calls f(k) for each row k that `rows_with` has returned.
 template <class Cut, class F>
 WARPAGG_HD void for_each_row(std::uint32_t rows, const F& f) {
     if constexpr (Cut::sparse) {
@@ -87,7 +88,8 @@ WARPAGG_HD void for_each_row(std::uint32_t rows, const F& f) {
 }
 
 // knob: alpha_of_patch
-/// `free`: alpha is not capped, so that geometry and opacity move it.
+/// Alpha, capped at `most_alpha`. `free`: whether the cap does not apply, so that alpha has a
+/// gradient.
 template <class W, class Real>
 struct capped_alpha {
     value_t<W, Real> alpha;

@@ -6,8 +6,8 @@
 
 namespace gs::raster {
 
-/// The two vectors whose Gram matrix is the covariance of a splat before a pixel's filter widened it, in
-/// widths of the splat as it is drawn: each is no longer than 1 / sqrt(2 ln 2).
+/// The two vectors whose Gram matrix is the covariance of a splat without the pixel filter, in
+/// units of the width of the drawn splat: see `whitened`. Each is at most 1 / sqrt(2 ln 2) long.
 template <class Real>
 struct whitened_axes {
     vec3<Real> x, y;
@@ -16,22 +16,24 @@ struct whitened_axes {
         : x(shape.p * ax), y(shape.r * ax + shape.q * ay) {}
 };
 
-/// The 2D Mip filter (Yu et al. 2024, equation 9): the square root of the determinant of a splat's covariance
-/// before it was widened over that after it, at most 1. With opacity times that, a splat much smaller than a
-/// pixel has the light of its own size, and not of the pixel's.
+/// Returns the opacity factor of the 2D Mip filter (Yu et al. 2024, equation 9): the square root of
+/// det(covariance) / det(covariance with the pixel filter), at most 1. With this factor, a splat
+/// that is much smaller than a pixel keeps its total light, although the pixel filter widens it.
 template <class Real>
 WARPAGG_HD Real opacity_left(const whitened_axes<Real>& axes) {
     const vec3<Real> area = glm::cross(axes.x, axes.y);
     return constant<Real>(1.3862943611198906) * warpagg::math::sqrt(glm::dot(area, area));
 }
 
-/// Adds to the gradients of the whitened axes what they have through `opacity_left`. `by_logarithm`: the
-/// gradient by the opacity's logarithm. Precondition: where that is not zero, nor is `opacity_left`.
+/// Adds the gradient through `opacity_left` to the gradients of the whitened axes. `by_logarithm`:
+/// the gradient with respect to the logarithm of the opacity. Precondition: `opacity_left` is not
+/// zero where `by_logarithm` is not zero.
 template <class Real>
 WARPAGG_HD void add_opacity_left_gradient(const whitened_axes<Real>& axes, const Real& by_logarithm,
                                           vec3<Real>& by_x, vec3<Real>& by_y) {
-    // The logarithm of the area by either axis is the other one's cross product with it, over the area's
-    // square; of the ellipse that is divided by, 2 ln 2 times the axis.
+    // The gradient of log |area| with respect to an axis is the cross product of the other axis and
+    // the area, over the squared area. The gradient of the logarithm of the drawn ellipse's area,
+    // which is subtracted, is 2 ln 2 times the axis.
     const vec3<Real> area = glm::cross(axes.x, axes.y);
     const Real share = by_logarithm / glm::dot(area, area), two_ln2 = constant<Real>(1.3862943611198906);
     by_x += share * glm::cross(axes.y, area) - (by_logarithm * two_ln2) * axes.x;

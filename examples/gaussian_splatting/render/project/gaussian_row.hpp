@@ -15,19 +15,20 @@ using warpagg::mask_t;
 using warpagg::value_t;
 using warpagg::math::select;
 
-/// A warp's Gaussians, one a lane: neighbors of a block.
+/// The Gaussians of a warp, one per lane. They are neighbors in one AoSoA block.
 template <class W>
 struct gaussian_row {
     std::size_t first;
-    mask_t<W> inside;  ///< there is such a Gaussian
-    mask_t<W> active;  ///< and the step concerns it
+    mask_t<W> inside;  ///< whether the lane has a Gaussian
+    mask_t<W> active;  ///< whether it also takes part
 
-    /// Up to which degree their colors depend on direction, of what a model has: the same in all lanes.
+    /// Returns the SH degree of all lanes in a model of degree `sh_degree`.
     template <class Real>
     WARPAGG_HD int degree_of(const parameter_arrays<Real>& gaussians, int sh_degree) const {
         return first < gaussians.gaussians_with_sh ? sh_degree : 0;
     }
-    /// N components of each, from the k-th on, in an array of `width`. Means nothing in lanes not active.
+    /// Loads the components k to k + N - 1 of each Gaussian from an array with `width` components
+    /// per Gaussian. The values in inactive lanes are unspecified.
     template <int N, class Real>
     WARPAGG_HD glm::vec<N, value_t<W, Real>> load(const W& w, const Real* from, std::size_t k,
                                                   std::size_t width) const {
@@ -35,7 +36,7 @@ struct gaussian_row {
         WARPAGG_UNROLL
         for (int n = 0; n < N; ++n) {
             if constexpr (whole) {
-                // Of the next block: these are too many streams for the hardware to foresee.
+                // Prefetches the next block: hardware prefetchers track fewer streams.
                 __builtin_prefetch(from + at(k, n, width) +
                                    static_cast<std::ptrdiff_t>(width * block_length));
             }
@@ -43,22 +44,22 @@ struct gaussian_row {
         }
         return v;
     }
-    /// Component k + n becomes `value` where `changes`; in other active lanes it stays `before`, as it was
-    /// loaded.
+    /// Stores `value` as component k + n in active lanes where `changes`. Other lanes keep
+    /// `before`, which must be the value that was loaded.
     template <class Real>
     WARPAGG_HD void store(const W& w, Real* to, std::size_t k, int n, std::size_t width,
                           const value_t<W, Real>& value, const value_t<W, Real>& before,
                           const mask_t<W>& changes) const {
         w.store_row(to, at(k, n, width), select(active && changes, value, before), touched());
     }
-    /// Where component k + n of the first lies.
+    /// Returns the index of component k + n of the first Gaussian.
     WARPAGG_HD std::ptrdiff_t at(std::size_t k, int n, std::size_t width) const {
         return static_cast<std::ptrdiff_t>(aosoa_index(first, k + static_cast<std::size_t>(n), width));
     }
 
   private:
-    /// Where one thread holds all lanes it reads and writes whole rows, which is faster than parts of them:
-    /// lanes that are not active get what they had.
+    /// Whether one thread holds all lanes. It then reads and writes whole rows, which is faster
+    /// than masked access, and inactive lanes write back the values that they have loaded.
     static constexpr bool whole = !std::is_same_v<mask_t<W>, bool>;
     WARPAGG_HD mask_t<W> touched() const { return whole ? mask_t<W>(true) : active; }
 };

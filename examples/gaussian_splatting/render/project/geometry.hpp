@@ -10,10 +10,12 @@
 
 namespace gs::raster {
 
-/// Colors are held between 0 and this, so that their squares stay finite; photos end at 1.
+/// The upper bound to which colors are clamped, so that their squares stay finite. The lower bound
+/// is 0, and the colors of photos are at most 1.
 inline constexpr double most_color = 32768;
 
-/// The rotation of a unit quaternion w x y z; columns are the principal axes.
+/// Returns the rotation matrix of a unit quaternion (w, x, y, z). Its columns are the principal
+/// axes.
 template <class Real>
 WARPAGG_HD mat3<Real> rotation_of(const vec4<Real>& q) {
     const Real w = q.x, x = q.y, y = q.z, z = q.w;
@@ -22,7 +24,7 @@ WARPAGG_HD mat3<Real> rotation_of(const vec4<Real>& q) {
             2 * (x * z + w * y),     2 * (y * z - w * x),     1 - 2 * (x * x + y * y)};
 }
 
-/// The gradient by the quaternion's components of sum(g * rotation_of(q)), element by element.
+/// Returns the gradient of the sum of g * rotation_of(q) over all elements, with respect to q.
 template <class Real>
 WARPAGG_HD vec4<Real> rotation_gradient(const vec4<Real>& q, const mat3<Real>& g) {
     const Real w = q.x, x = q.y, y = q.z, z = q.w;
@@ -36,20 +38,22 @@ WARPAGG_HD vec4<Real> rotation_gradient(const vec4<Real>& q, const mat3<Real>& g
                                     2 * z * (g[0][0] + g[1][1]));
 }
 
-/// How a camera sees a Gaussian: all that both directions of the chain rule need.
+/// The projection of a Gaussian, with all intermediate values that the forward and the backward
+/// pass share.
 template <class Real, effect_set Effects>
 struct footprint {
     projection_of<Real, Effects> seen;
-    vec4<Real> turn;      ///< quaternion of length one
-    Real inverse_length;  ///< of the quaternion
+    vec4<Real> turn;      ///< the normalized quaternion
+    Real inverse_length;  ///< inverse length of the quaternion
     vec3<Real> scale;
-    mat3<Real> rotation;  ///< of the Gaussian
-    /// The Jacobian's rows times rotation times scale: the covariance is their Gram matrix.
+    mat3<Real> rotation;  ///< rotation of the Gaussian
+    /// The rows of the Jacobian times rotation times scale. Their Gram matrix is the covariance in
+    /// pixels.
     vec3<Real> ax, ay;
     ellipse<Real> shape;
-    flag_of<Real> drawable;  ///< finite
+    flag_of<Real> drawable;  ///< whether all values are finite
 
-    /// `at`: the mean in camera space, and drawable (see `projection_of`).
+    /// `at`: the mean in camera space. Values are valid only if `projection_of::is_drawn`.
     WARPAGG_HD footprint(const vec3<Real>& at, const vec3<Real>& log_scale, const vec4<Real>& quaternion,
                          const device_camera<Real>& camera)
         : seen(at, camera) {
@@ -58,7 +62,7 @@ struct footprint {
         inverse_length = unit_turn.inverse_length;
         for (int k = 0; k < 3; ++k) scale[k] = exponential(log_scale[k]);
         rotation = rotation_of(turn);
-        // v * M is the row vector times the matrix.
+        // In GLM, v * M is the product of a row vector and a matrix.
         ax = (seen.px * rotation) * scale;
         ay = (seen.py * rotation) * scale;
         shape = ellipse<Real>(ax, ay);
@@ -67,7 +71,7 @@ struct footprint {
     }
 };
 
-/// Where a mean is in camera space.
+/// Transforms a mean to camera space.
 template <class Real>
 WARPAGG_HD vec3<Real> in_camera(const vec3<Real>& mean, const device_camera<Real>& camera) {
     return camera.rotation * mean + camera.translation;

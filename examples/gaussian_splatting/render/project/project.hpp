@@ -16,7 +16,7 @@
 
 namespace gs::raster {
 
-/// Gaussians to splats, a Gaussian a lane.
+/// Projects Gaussians to splats. One Gaussian per lane.
 template <class W, class Real, effect_set Effects>
 struct project {
     using real = value_t<W, Real>;
@@ -30,9 +30,9 @@ struct project {
 
     splat<Real>* splats;
     tile_box* boxes;
-    std::uint32_t* depths;      ///< the depth as a sort key: a positive float's bits are in its order
-    std::uint32_t* identities;  ///< i: the value that is sorted along
-    std::uint32_t* tiles;       ///< how many tiles the splat's box has; zero if it is not drawn
+    std::uint32_t* depths;      ///< sort keys: the bits of positive floats have their order
+    std::uint32_t* identities;  ///< index of each Gaussian, sorted along with the key
+    std::uint32_t* tiles;       ///< number of tiles in the splat's box; zero if it is not drawn
 
     static std::size_t warps(std::size_t count) { return (count + W::size - 1) / W::size; }
 
@@ -53,7 +53,7 @@ struct project {
         w.store_row(depths, first, select(row.active, bits_of<number>(depth), number(0xffffffffu)), inside);
         // mutate: keys_of_the_culled_left_as_they_are
         w.store_row(tiles, first, drawn((d.x1 - d.x0) * (d.y1 - d.y0)), inside);
-        // As they lie in memory.
+        // A `tile_box` as two words of 32 bits.
         auto* corners = reinterpret_cast<std::uint32_t*>(boxes);
         w.store(corners, 2 * i, drawn(d.x0 | d.y0 << number(16u)), inside);
         w.store(corners, 2 * i + 1, drawn(d.x1 | d.y1 << number(16u)), inside);
@@ -71,7 +71,7 @@ struct project {
         number x0, y0, x1, y1;  ///< its `tile_box`
     };
 
-    /// Of the row's active Gaussians; those that are not to be drawn are not active afterwards.
+    /// Computes the splats of the active Gaussians. Gaussians that are not drawn become inactive.
     WARPAGG_HD void draw(const W& w, gaussian_row<W>& row, const vec3<real>& mean, const vec3<real>& at,
                          drawing& d) const {
         const auto log_scale = row.template load<3>(w, gaussians.log_scale, 0, 3);
@@ -104,7 +104,8 @@ struct project {
         s.blue = held(rgb.z);
     }
 
-    /// The tiles that hold a pixel center within these half extents.
+    /// Sets the box to all tiles that may have a pixel center within these distances of the splat's
+    /// center.
     WARPAGG_HD void bound(const real& half_x, const real& half_y, drawing& d) const {
         using namespace warpagg::math;
         const auto tile = [](const real& pixel, unsigned end) {

@@ -15,22 +15,26 @@
 
 namespace gs::raster {
 
-/// What the backward blending sums for a Gaussian over the pixels, with s = dL/dalpha alpha and (u, v) the
-/// offset in widths of the splat (see `whitened`), in which a long thin splat's moments do not cancel. A
-/// record is 12 values apart from the next, so that one commit touches two sectors.
+/// The sums over pixels that the backward pass computes for each Gaussian: the gradient of its
+/// color, and the moments up to second order of s = alpha dL/dalpha over the offset (u, v). The
+/// offset is in units of the splat's width (see `whitened`), so that the moments of long thin
+/// splats do not cancel.
+///
+/// The record of a Gaussian begins every 12 values, so that a commit of floats touches two memory
+/// sectors.
 enum sum { sum_red, sum_green, sum_blue, sum_s, sum_su, sum_sv, sum_suu, sum_suv, sum_svv, sum_count };
 inline constexpr unsigned record_stride = 12;
-/// Behind them, with depth maps: of the inverse of its depth.
+/// The index of an additional sum for depth maps: the gradient of the inverse depth.
 inline constexpr unsigned sum_inverse_depth = sum_count;
 
-/// What densification wants to know of a Gaussian, over the iterations since it last asked.
+/// The statistics of a Gaussian for densification, over the iterations since its last run.
 struct visibility {
-    float gradient;  ///< sum of the norms of dL/d(center), in halves of the image's sides
-    float seen;      ///< iterations in which it was drawn
+    float gradient;  ///< sum of |dL/d(center)|; a unit is half the image's width and height
+    float seen;      ///< number of iterations in which it was drawn
 };
 
-/// Where `project_backward` puts gradients that are to be looked at: into arrays, zeros where a Gaussian took
-/// part in no pixel.
+/// A sink of `project_backward` that stores all gradients in arrays. Gaussians that take part in no
+/// pixel get zeros.
 template <class Real>
 struct store_gradients {
     parameter_arrays<Real> to;
@@ -57,11 +61,14 @@ struct store_gradients {
     }
 };
 
-/// From the sums over pixels to the gradients of the parameters, a Gaussian a lane. A Gaussian takes part in
-/// the step if any of its sums is not zero: else all its gradients are. What `Sink::for_row` returns is given
-/// the value and the gradient of each parameter of those that take part, three components or so at a time,
-/// and may change the value at once: it has been read by all that needs it. `Sink::takes_zeros` says whether
-/// it wants the others' as well.
+/// Computes the gradients of all parameters from the sums over pixels. One Gaussian per lane. A
+/// Gaussian takes part in the step if any of its sums is not zero; otherwise all of its gradients
+/// are zero.
+///
+/// `Sink::for_row` returns a function that is called with the values and the gradients of a few
+/// components at a time. It may change the parameters immediately, because all reads have happened.
+/// If `Sink::takes_zeros`, it is also called for rows in which no Gaussian takes part. If
+/// `Sink::idle`, the kernel does nothing.
 template <class W, class Real, class Sink, effect_set Effects>
 struct project_backward {
     using real = value_t<W, Real>;
@@ -70,13 +77,13 @@ struct project_backward {
     std::size_t count;
     device_camera<real> camera;
     int sh_degree;
-    int learned_sh_degree;  ///< no gradients of bands above it
+    int learned_sh_degree;  ///< largest SH degree with gradients
     const splat<Real>* splats;
     const std::uint32_t* tiles;
-    const Real* sums;  ///< `record_stride` a Gaussian
+    const Real* sums;  ///< `record_stride` values per Gaussian
     Sink sink;
-    visibility* seen;        ///< null: nobody wants to know
-    list_capacity capacity;  ///< of the view
+    visibility* seen;        ///< may be null
+    list_capacity capacity;  ///< capacity for the lists of the view
 
     WARPAGG_HD void operator()(const W& w, unsigned warp_index) const {
         if (sink.idle()) return;
@@ -96,7 +103,7 @@ struct project_backward {
     }
 
   private:
-    /// Returns where it is not zero.
+    /// Loads the sum of the inverse depth. Returns the lanes in which it is not zero.
     WARPAGG_HD mask_t<W> load_depth_sum(const W& w, const value_t<W, unsigned>& i, const mask_t<W>& drawn,
                                         real* s) const {
         s[sum_inverse_depth] = w.load(sums, i * record_stride + sum_inverse_depth, drawn);
@@ -112,14 +119,16 @@ struct project_backward {
         const auto opacity = row.template load<1>(w, gaussians.opacity, 0, 1);
         const footprint<real, Effects> f(in_camera(mean, camera), log_scale, quaternion, camera);
         const auto put = sink.for_row(w, row);
-        // L depends on the exponent through alpha = o exp(-ln2 (u^2 + v^2)), and s = dL/dalpha alpha. With M
-        // the rows (p, 0), (r, q), the inverse covariance is 2 ln2 M^T M and (u, v) = M d.
+        // The loss depends on the exponent through alpha = o exp(-ln2 (u^2 + v^2)), and
+        // s = alpha dL/dalpha. Let M have the rows (p, 0) and (r, q). Then the inverse covariance
+        // is 2 ln2 M^T M, and (u, v) = M d for the offset d.
         const real two_ln2 = constant<real>(1.3862943611198906);
         const real p = f.shape.p, q = f.shape.q, r = f.shape.r;
         const vec2<real> center = two_ln2 * vec2<real>(p * s[sum_su] + r * s[sum_sv], q * s[sum_sv]);
 
-        // dL/dcovariance = (2 ln2)^2 / 2 M^T W M with W the second moments, and the covariance is the Gram
-        // matrix of ax and ay, whose whitened forms are `axes`.
+        // dL/dcovariance = (2 ln2)^2 / 2 M^T W M with the matrix W of second moments. The
+        // covariance is the Gram matrix of ax and ay plus the pixel filter, and `axes` are ax and
+        // ay multiplied by M.
         const whitened_axes<real> axes(f.shape, f.ax, f.ay);
         const real k = two_ln2 * two_ln2;
         vec3<real> nx = k * (s[sum_suu] * axes.x + s[sum_suv] * axes.y),
@@ -127,8 +136,7 @@ struct project_backward {
         if constexpr (Effects.antialiasing) add_opacity_left_gradient(axes, s[sum_s], nx, ny);
         const vec3<real> dax = p * nx + r * ny, day = q * ny;
 
-        // The mean moves the center and the Jacobian, the depth, and the direction that the color is seen
-        // from.
+        // The mean affects the center, the Jacobian, the depth and the direction for the color.
         vec3<real> by_position = f.seen.position_gradient(center, f.rotation * (dax * f.scale),
                                                           f.rotation * (day * f.scale), camera);
         if constexpr (Effects.depth)
@@ -141,21 +149,23 @@ struct project_backward {
         return center;
     }
 
-    /// ax = (px R) * scale: through R to the quaternion.
+    /// Returns the gradient with respect to the quaternion, through the rotation R in
+    /// ax = (px R) * scale. `sax` and `say` are the gradients with respect to px R and py R.
     static WARPAGG_HD vec4<real> turn(const footprint<real, Effects>& f, const vec3<real>& sax,
                                       const vec3<real>& say) {
         mat3<real> rotation;
         for (int c = 0; c < 3; ++c) rotation[c] = sax[c] * f.seen.px + say[c] * f.seen.py;
         const vec4<real> g = rotation_gradient(f.turn, rotation);
-        // Only the part across the quaternion turns anything.
+        // Removes the component along the quaternion, because normalization cancels its effect.
         return (g - f.turn * glm::dot(f.turn, g)) * f.inverse_length;
     }
 
-    /// Returns the mean's gradient through the direction.
+    /// Passes the gradients of the SH coefficients to `put`. Returns the gradient of the mean
+    /// through the direction.
     template <class Put>
     WARPAGG_HD vec3<real> color(const W& w, const gaussian_row<W>& row, const Put& put,
                                 const value_t<W, unsigned>& i, const vec3<real>& mean, const real* s) const {
-        // A channel that the forward pass held at a bound takes no gradient.
+        // A channel that the forward pass clamped has no gradient.
         constexpr unsigned red = offsetof(splat<Real>, red) / sizeof(Real);
         const auto free = [&](unsigned channel) {
             const real shown =
@@ -187,7 +197,8 @@ struct project_backward {
         return (d - direction * glm::dot(direction, d)) * sight.inverse_length;
     }
 
-    /// A step that is left out (see `list_capacity`), or a gradient that is, says nothing of the Gaussian.
+    /// Adds to the statistics, except in skipped steps (see `list_capacity`) and for gradients that
+    /// are not finite.
     WARPAGG_HD void note(const W& w, const value_t<W, unsigned>& i, const mask_t<W>& drawn,
                          const mask_t<W>& active, const vec2<real>& center) const {
         if (capacity.exceeded()) return;

@@ -10,14 +10,15 @@
 
 namespace gs::raster {
 
-/// How a camera of either kind sees a place `at` in camera space:
-///     depth(at)            what lies behind what
-///     is_drawn(at, camera) not nearer than `near_plane`, and where the camera sees anything at all
-///     x, y                 where, in pixels
-///     px, py               the rows of the Jacobian of that, by the place in the world
-///     inverse_depth_gradient(by_inverse, camera)   by the place in the world, from that by 1 / depth
-///     position_gradient(center, dpx, dpy, camera)  by the place in the world, from those by (x, y), px and
-///     py
+/// The projection of a point `at` in camera space, by a pinhole or fisheye camera. Its members are:
+/// - `depth(at)`: the depth, by which splats are sorted.
+/// - `is_drawn(at, camera)`: whether the depth exceeds `near_plane` and the camera can see it.
+/// - `x`, `y`: the position in the image in pixels.
+/// - `px`, `py`: the rows of the Jacobian of (x, y) with respect to the point in the world.
+/// - `position_gradient(center, dpx, dpy, camera)`: the gradient with respect to the point in the
+///   world. `center`, `dpx` and `dpy` are the gradients with respect to (x, y), `px` and `py`.
+/// - `inverse_depth_gradient(by_inverse, camera)`: the same, from the gradient with respect to
+///   1 / depth.
 template <class Real, effect_set Effects>
 using projection_of = std::conditional_t<Effects.fisheye, fisheye_projection<Real>, pinhole_projection<Real>>;
 

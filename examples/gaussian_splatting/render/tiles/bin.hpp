@@ -8,8 +8,9 @@
 
 namespace gs::raster {
 
-/// The splats in the order of their depth, as items that go to the tiles that they reach: see
-/// `device::items`. Candidates are the tiles of the box, row by row.
+/// The splats in the order of their depth, as the items of `device::distribute`: see
+/// `device::items`. The buckets are tiles, and the candidates of a splat are the tiles of its box,
+/// row by row.
 template <class Real>
 struct splats_by_depth {
     const std::uint32_t* order;
@@ -18,15 +19,15 @@ struct splats_by_depth {
     unsigned tiles_across;
 
     struct item {
-        std::uint32_t value;  ///< the Gaussian
+        std::uint32_t value;  ///< index of the Gaussian
         tile_box box;
-        float rows_a_tile;  ///< 1 / the tiles in a row of the box
+        float rows_a_tile;  ///< 1 / number of tiles in a row of the box
         unsigned tiles_across;
         splat<Real> shape;
 
         WARPAGG_HD std::uint32_t size() const { return box.size(); }
         WARPAGG_HD std::uint32_t bucket(std::uint32_t k) const {
-            // k / across, exact as long as k is below 2^21: an image has no more tiles.
+            // k / (tiles per row), exact for k < 2^21, which is the tile count of 2^29 pixels.
             const auto down = static_cast<unsigned>((static_cast<float>(k) + 0.5f) * rows_a_tile);
             const unsigned column = box.x0 + (k - down * (box.x1 - box.x0)), row = box.y0 + down;
             // mutate: five_bits_for_the_tile

@@ -10,11 +10,11 @@
 
 namespace gs::raster {
 
-/// Divides a view among warps. The lanes of a warp are `Across` pixels wide, each lane has `Rows` pixels of a
-/// column (see `patch`), and a segment has `Segment` places of the sorted list. The backward pass splits a
-/// long list over several warps: lists are cut where a place is a multiple of `Segment`, and the forward
-/// pass stores the state of the pixels there. `Sparse`: skips single rows of a patch that do not see a
-/// splat, at the cost of a vote and a branch each.
+/// Divides a view among warps. The lanes of a warp are `Across` pixels wide, each lane has `Rows`
+/// pixels of a column (see `patch`), and a segment has `Segment` places of the sorted list. The
+/// backward pass splits a long list over several warps: lists are cut where a place is a multiple
+/// of `Segment`, and the forward pass stores the state of the pixels there. `Sparse`: skips single
+/// rows of a patch that do not see a splat, at the cost of a vote and a branch each.
 template <unsigned Across, unsigned Rows, unsigned Segment, bool Sparse = false>
 struct cut {
     static constexpr unsigned across = Across, rows = Rows, segment = Segment;
@@ -29,12 +29,13 @@ using cut_for = std::conditional_t<W::size == 1, cut<1, 1, 128>,
 /// Returns the same division with one pixel per lane.
 template <class Cut>
 using pixel_a_lane = cut<Cut::across, 1, Cut::segment>;
-/// Returns the same division with lower patches, for views with too few patches to keep a device busy.
+/// Returns the same division with lower patches, for views with too few patches to keep a device
+/// busy.
 template <class Cut>
 using lower = std::conditional_t<Cut::sparse, cut<Cut::across, 8, Cut::segment, true>, pixel_a_lane<Cut>>;
 
-/// Returns an upper bound of segment numbers. The segment of a place in the list of tile t has the number
-/// t + place / Segment; not every number is used.
+/// Returns an upper bound of segment numbers. The segment of a place in the list of tile t has the
+/// number t + place / Segment; not every number is used.
 template <class Cut>
 constexpr std::size_t most_segments(std::size_t tiles, std::size_t places) {
     return tiles + places / Cut::segment;
@@ -49,7 +50,7 @@ struct number_segments {
 
     WARPAGG_HD void operator()(std::size_t index) const {
         const auto segment = static_cast<std::uint32_t>(index);
-        std::uint32_t tile = 0, end = tiles;  // the last tile whose first segment is not after this one
+        std::uint32_t tile = 0, end = tiles;  // finds the last tile with first segment <= segment
         while (end - tile > 1) {
             const std::uint32_t middle = tile + (end - tile) / 2;
             (middle + ranges[middle].begin / Cut::segment <= segment ? tile : end) = middle;
@@ -63,9 +64,9 @@ struct number_segments {
 /// Number of values in the checkpoint of a segment.
 inline constexpr std::size_t checkpoint_values = 4 * tile_size * tile_size;
 
-/// The state of a tile's pixels at the beginning of a segment: transmittance and color. The forward pass
-/// writes it, and the backward pass of the segment before begins with it. It is stored in blocks of one pixel
-/// per lane, so that patches of one width and any height share the layout.
+/// The state of a tile's pixels at the beginning of a segment: transmittance and color. The forward
+/// pass writes it, and the backward pass of the segment before begins with it. It is stored in
+/// blocks of one pixel per lane, so that patches of one width and any height share the layout.
 template <class W, class Real, class Patch>
 class checkpoint {
   public:

@@ -14,12 +14,13 @@ struct tile_range {
     std::uint32_t begin, end;
 };
 
-/// What a view's blending reads: the image's tiles, and for each the splats that it meets, front to back.
+/// The tile lists of a view, which blending reads: for each tile, the splats that reach it, front
+/// to back.
 template <class Real>
 struct tile_lists {
     const splat<Real>* splats;
-    const std::uint32_t* gaussian_of;  ///< by place in the list of all tiles
-    const tile_range* ranges;          ///< by tile; each begins where the one before ends
+    const std::uint32_t* gaussian_of;  ///< by place; the lists of all tiles follow one another
+    const tile_range* ranges;          ///< by tile; each begins where the previous one ends
     unsigned tiles_across;
     int width, height;
 };

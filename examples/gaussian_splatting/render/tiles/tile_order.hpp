@@ -10,21 +10,23 @@
 
 namespace gs::raster {
 
-/// The order in which tiles are blended: those with long lists first, so that none of them is still walked
-/// when all others are done. Lists of 64 to 127, 128 to 255 and so on are of one class, and come as they may.
+/// The order in which tiles are blended. Tiles with long lists come first, so that none of them is
+/// still running when all others are done. The lists of a class differ in length by less than a
+/// factor of two; the first class has all longer lists, and the last class all shorter ones. The
+/// order within a class is unspecified.
 struct tile_order {
     static constexpr unsigned classes = 8;
 
-    std::uint32_t* counts;   ///< of each class's tiles; zeros before `order_tiles`
-    std::uint32_t* members;  ///< of each class: room for `tiles`
-    std::uint32_t tiles;
+    std::uint32_t* counts;   ///< number of tiles per class; zero before `order_tiles`
+    std::uint32_t* members;  ///< tiles of each class; `tiles` places per class
+    std::uint32_t tiles;     ///< number of all tiles
 
     static WARPAGG_HD unsigned class_of(std::uint32_t length) {
         unsigned c = 0;
         for (std::uint32_t least = 4096; c < classes - 1 && length < least; least /= 2) ++c;
         return c;
     }
-    /// The tile that comes after `place` others.
+    /// Returns the tile at this place in the order.
     WARPAGG_HD std::uint32_t operator[](std::uint32_t place) const {
         const std::uint32_t* in_class = members;
         unsigned before = 0, next = 0;
@@ -41,7 +43,7 @@ struct tile_order {
     }
 };
 
-/// Finds it: one index a tile.
+/// Fills a `tile_order`. One index per tile.
 struct order_tiles {
     const tile_range* ranges;
     tile_order order;
