@@ -7,8 +7,8 @@
 
 namespace gs::device {
 
-/// Updates a counter of rare events from index kernels, which have no warp to reduce first. Relaxed. Cost:
-/// one atomic per call.
+/// Updates a counter of rare events in an index kernel, which cannot reduce over a warp first. The
+/// memory order is relaxed. Cost: one atomic per call.
 /// @{
 WARPAGG_HD void atomic_add(unsigned long long* to, unsigned long long value) {
 #if defined(__CUDA_ARCH__)
@@ -28,7 +28,7 @@ WARPAGG_HD void atomic_min(unsigned long long* to, unsigned long long value) {
 }
 /// @}
 
-/// Adds `value` atomically and returns the previous value.
+/// Adds `value` atomically, and returns the previous value. The memory order is relaxed.
 WARPAGG_HD std::uint32_t atomic_add(std::uint32_t* to, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)
     return atomicAdd(to, value);

@@ -3,8 +3,8 @@
 #pragma once
 
 /// @file
-/// The concept `device`: the requirements of the trainer on a device, which stores its data and runs its
-/// kernels. Only its models, `cpu` and `cuda`, use OpenMP and CUDA.
+/// The concept `device`: the requirements of the trainer on a device, which stores its data and
+/// runs its kernels. Its models are `cpu`, which uses OpenMP, and `cuda`.
 ///
 /// Kernels are function objects whose members are values and pointers to device memory. They run in
 /// the order of their launches. Only members whose description mentions it wait for the device.
@@ -48,7 +48,7 @@ struct host_work {
 }  // namespace archetype
 
 /// `D::buffer<T>`: an array of trivially copyable values in device memory, empty at first.
-/// - `resize(n)`: sets the size. Allocates, and loses the contents, if n exceeds every size before.
+/// - `resize(n)`: sets the size. If n exceeds all previous sizes, allocates and loses the contents.
 /// - `data()`, `size()`: pointer to device memory, number of values.
 template <class B, class T>
 concept buffer_of = std::movable<B> && std::default_initializable<B> && requires(B b, const B c) {
@@ -91,7 +91,7 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 /// - `distribute(n, items, buckets, capacity, listed, ranges, required)`: lists, for each bucket,
 ///   the values of the `items` [0, n) that go there, in their order. Bucket b's list is
 ///   `[ranges[b].begin, ranges[b].end)` of `listed`; buckets follow one another. Writes the length
-///   of all lists together to `*required`. Truncates what exceeds `capacity`.
+///   of all lists together to `*required`. Drops entries beyond `capacity`.
 ///
 /// Times of an iteration's stages
 /// - `begin(stage)`: marks where a stage begins.

@@ -16,13 +16,13 @@ class profiler {
     virtual ~profiler() = default;
 
     virtual std::string device_name() const = 0;
-    /// Times every n-th step after this call. By default a CPU times each step and a GPU every 50th step,
-    /// which costs little.
+    /// Times every n-th step after this call. By default a CPU times each step and a GPU every 50th
+    /// step, which costs little.
     virtual void sample_times(int every) = 0;
     virtual stage_times times() = 0;  ///< Returns the sums since `sample_times`, or since the start
     /// Returns the number of pairs of a pixel and a Gaussian that forward passes have evaluated.
     virtual std::uint64_t pairs() = 0;
-    virtual std::size_t peak_device_bytes() const = 0;  ///< Returns zero if the device uses host memory
+    virtual std::size_t peak_device_bytes() const = 0;  ///< Returns zero for host memory
     /// Waits until the device has finished all work.
     virtual void wait() = 0;
 };

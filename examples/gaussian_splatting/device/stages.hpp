@@ -15,8 +15,8 @@ enum class stage { project, bin, blend_forward, loss, blend_backward, project_ba
 inline constexpr std::array stage_names{"project",         "bin", "blend_forward", "loss", "blend_backward",
                                         "project_backward"};
 
-/// The values that determine the launches and the memory of an iteration. Iterations with equal keys launch
-/// the same kernels over the same ranges and use the same memory.
+/// The values that determine the launches and the memory of an iteration. Iterations with equal
+/// keys launch the same kernels over the same ranges and use the same memory.
 using graph_key = std::vector<std::size_t>;
 
 /// Milliseconds per stage, summed over the `sampled` iterations that were timed.

@@ -35,14 +35,15 @@ inline constexpr const char* instruction_set = ", AVX2";
 inline constexpr const char* instruction_set = "";
 #endif
 
-/// The model of `device` for the CPU. OpenMP threads share the indices or warps of a launch, and device
-/// memory is host memory. Each member returns when its work is done. `Warp` is the model of `warp` that
-/// warp kernels run on.
+/// The model of `device` for the CPU. OpenMP threads share the indices or warps of a launch, and
+/// device memory is host memory. Each member returns when its work is done. `Warp` is the model of
+/// `warp` that warp kernels run on.
 template <class Warp>
 class basic_cpu {
   public:
     using warp = Warp;
-    /// A narrow warp, because kernels over Gaussians with 32 lanes need more values than registers exist.
+    /// A narrow warp, because kernels over Gaussians with 32 lanes need more values than registers
+    /// exist.
     using narrow_warp = std::conditional_t<Warp::size == 32, warpagg::emulator::narrow_lanes<8>, Warp>;
 
     template <class T>
@@ -138,8 +139,8 @@ class basic_cpu {
     void distribute(std::size_t n, const items auto& all, std::size_t buckets, std::uint64_t capacity,
                     std::uint32_t* listed, Range* ranges, std::uint64_t* required) {
         // The items are cut into more slices than threads, because some items have far more
-        // candidates. Each slice has a row of counts, which become positions, and keeps its
-        // instances for the second pass.
+        // candidates than others. Each slice has a row of counts, which become positions, and
+        // keeps its instances for the second pass.
         const auto slices = 4 * static_cast<std::size_t>(omp_get_max_threads());
         places_.resize(slices * buckets);
         totals_.resize(buckets);
@@ -151,7 +152,7 @@ class basic_cpu {
         };
         zero(places_.data(), slices * buckets);
         for_each_slice([&](std::vector<instance>& kept, std::uint64_t* counts, std::size_t s) {
-            auto found = std::move(kept);  // a local copy, whose size shares no cache line with other threads
+            auto found = std::move(kept);  // a local copy avoids false sharing
             found.clear();
             for (std::size_t i = n * s / slices; i < n * (s + 1) / slices; ++i) {
                 const auto item = all(i);
@@ -227,7 +228,8 @@ class basic_cpu {
     key_check key_check_;
     using clock = std::chrono::steady_clock;
 
-    /// One pass of a stable radix sort: each slice of the pairs is counted and then moved.
+    /// Runs one pass of a stable radix sort, which counts the digits of each slice and then moves
+    /// the pairs.
     void sort_by_digit(const std::uint32_t* keys, const std::uint32_t* values, std::size_t n, int shift,
                        int bits) {
         const std::size_t digits = std::size_t{1} << bits;

@@ -12,9 +12,10 @@
 
 namespace gs::device {
 
-/// Checks graph keys on the CPU: iterations with equal keys must launch the same kernels over the same
-/// ranges, and only the first of them may allocate memory. A GPU captures all but the first as graphs, and
-/// cannot allocate during a capture. A violation is an error. Cost: a few comparisons per launch.
+/// Checks graph keys on the CPU: iterations with equal keys must launch the same kernels over the
+/// same ranges, and only the first of them may allocate memory. A GPU captures all but the first as
+/// graphs, and cannot allocate during a capture. A violation is an error. Cost: a few comparisons
+/// per launch.
 class key_check {
   public:
     /// Returns an address that is unique to a type of kernel.

@@ -34,13 +34,14 @@ struct wide_sum {
     __device__ std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
 };
 
-/// A sequence of the first n numbers, followed by zeros.
+/// The first n numbers of a sequence, followed by zeros.
 template <class Numbers>
 struct and_a_zero {
     Numbers numbers;
     std::size_t n;
     WARPAGG_HD std::uint64_t operator()(std::size_t i) const { return i < n ? numbers[i] : 0; }
 };
+/// The sizes of items, as a sequence.
 template <class Items>
 struct sizes_of {
     Items all;
@@ -54,8 +55,9 @@ __global__ void for_each_index(std::size_t n, F f) {
     if (i < n) f(i);
 }
 
-/// The minimum number of blocks per SM. A kernel may specify in `warps_at_once` how many of its warps an
-/// SM must hold at the same time. The compiler then limits the kernel's registers.
+/// The minimum number of resident blocks per multiprocessor. A kernel may set `warps_at_once` to
+/// the number of its warps that a multiprocessor must hold. The compiler then limits the kernel's
+/// registers.
 template <class F>
 constexpr int least_blocks = 1;
 template <class F>
@@ -77,8 +79,8 @@ __global__ void __launch_bounds__(block_size, least_blocks<F>) for_each_warp(uns
 
 }  // namespace detail
 
-/// The model of `device` for an NVIDIA GPU: the current CUDA device and one stream on it. Throws `error`
-/// if the GPU is out of memory.
+/// The model of `device` for an NVIDIA GPU: the current CUDA device and one stream on it. Throws
+/// `error` if the GPU is out of memory.
 class cuda {
   public:
     using warp = warpagg::cuda_warp;
@@ -178,9 +180,9 @@ class cuda {
                    count, digit * digit_bits, sort_memory(sort_memory_.data(), tiles, digit), to[0], to[1]);
     }
 
-    /// Runs an iteration. Iterations with equal keys need the same memory, which the first one allocates. The
-    /// launches of later ones are captured and submitted as one graph, because a capture cannot allocate.
-    /// Timed iterations are not captured.
+    /// Runs an iteration. Iterations with equal keys need the same memory, which the first one
+    /// allocates. The launches of later ones are captured and submitted as one graph, because a
+    /// capture cannot allocate. Timed iterations are not captured.
     template <class F>
     void iteration(const graph_key& key, const F& f) {
         const bool is_new = keys_.insert(key).second;
@@ -234,6 +236,7 @@ class cuda {
         check(cudaLaunchKernelEx(&config, kernel, arguments...));
     }
 
+    /// Computes `prefix_sum` of a sequence. Allocates scratch memory if it needs more than before.
     template <class Numbers>
     void prefix_sum_of(const Numbers& in, buffer<std::uint64_t>& out, std::size_t n) {
         const auto numbers = thrust::make_transform_iterator(thrust::counting_iterator<std::size_t>(0),

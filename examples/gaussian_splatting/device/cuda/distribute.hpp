@@ -10,10 +10,10 @@
 #include "../distribute.hpp"
 #include "kernel.hpp"
 
-/// The kernels of `cuda::distribute`. The candidates of all items, in the order of the items, are cut into
-/// `slices` of equal length, so that slices do not depend on the sizes of items. A table has a row per slice
-/// and a column per bucket. First it holds how many of the slice's candidates go to the bucket, then the
-/// place in the bucket's list where they begin.
+/// The kernels of `cuda::distribute`. The candidates of all items, in the order of the items, are
+/// cut into `slices` of equal length, so that slices do not depend on the sizes of items. A table
+/// has a row per slice and a column per bucket. First it holds how many of the slice's candidates
+/// go to the bucket, then the place in the bucket's list where they begin.
 namespace gs::device::detail {
 
 inline constexpr unsigned slices = 1024;
@@ -22,8 +22,8 @@ inline constexpr unsigned counting_warps = 4;  ///< number of warps per slice
 /// The largest number of buckets for which a row fits in shared memory.
 inline constexpr std::size_t shared_buckets = 48 * 1024 / sizeof(std::uint32_t);
 
-/// Returns the item that has this candidate: the last one with first[item] <= candidate. All lanes of the
-/// warp call this with equal arguments. The result is uniform.
+/// Returns the item that has this candidate: the last one with first[item] <= candidate. All lanes
+/// of the warp call this with equal arguments. The result is uniform.
 __device__ inline std::size_t item_of(const std::uint64_t* first, std::size_t items,
                                       std::uint64_t candidate) {
     std::size_t low = 0, high = items;  // the item is in [low, high)
@@ -37,9 +37,10 @@ __device__ inline std::size_t item_of(const std::uint64_t* first, std::size_t it
     return low;
 }
 
-/// Distributes the candidates [from, to) over the lanes of a warp, 32 `Rounds` at a time. An item with many
-/// candidates takes many lanes, and items with few candidates share a round. Calls f(buckets, values) with
-/// `Rounds` elements of each per lane. A lane without a candidate gets `no_bucket`.
+/// Distributes the candidates [from, to) over the lanes of a warp, 32 `Rounds` at a time. An item
+/// with many candidates takes many lanes, and items with few candidates share a round. Calls
+/// f(buckets, values) with `Rounds` elements of each per lane. A lane without a candidate gets
+/// `no_bucket`.
 template <unsigned Rounds, class Items, class F>
 __device__ void for_each_candidate(const Items& items, const std::uint64_t* first, std::size_t count,
                                    std::uint64_t from, std::uint64_t to, const F& f) {
@@ -55,7 +56,7 @@ __device__ void for_each_candidate(const Items& items, const std::uint64_t* firs
 #pragma unroll
             for (unsigned r = 0; r < Rounds; ++r) {
                 const auto place = static_cast<std::uint32_t>(begin) + r * warp_size + lane_of_warp();
-                unsigned before = 0;  // items that end at or before this place
+                unsigned before = 0;  // number of items that end at or before this place
 #pragma unroll
                 for (unsigned step = warp_size / 2; step > 0; step /= 2)
                     if (__shfl_sync(every_lane, end, before + step - 1) <= place) before += step;
@@ -107,10 +108,10 @@ __global__ void __launch_bounds__(counting_warps* warp_size)
 
 inline constexpr unsigned placing_warps = 32;
 
-/// Turns counts into places within each bucket's list, and computes the ranges of the lists. One block
-/// handles 32 buckets: each lane handles a bucket, and each warp a part of the slices. The block that
-/// finishes last, which the counter `done` determines, computes the ranges. Before that, `ranges[b].end`
-/// holds the length of list b.
+/// Turns counts into places within each bucket's list, and computes the ranges of the lists. One
+/// block handles 32 buckets: each lane handles a bucket, and each warp a part of the slices. The
+/// block that finishes last, which the counter `done` determines, computes the ranges. Before that,
+/// `ranges[b].end` holds the length of list b.
 template <class Range>
 __global__ void __launch_bounds__(placing_warps* warp_size)
     place_buckets(unsigned buckets, std::uint32_t* table, std::uint64_t capacity, Range* ranges,
@@ -170,8 +171,8 @@ __global__ void __launch_bounds__(placing_warps* warp_size)
     }
 }
 
-/// Writes the lists. One warp per slice, because the order of candidates in a slice is the order of the
-/// lists.
+/// Writes the lists. One warp per slice, because the order of candidates in a slice is the order of
+/// the lists.
 template <bool Shared, class Items, class Range>
 __global__ void __launch_bounds__(warp_size)
     append_slice(Items items, const std::uint64_t* first, std::size_t count, unsigned buckets,

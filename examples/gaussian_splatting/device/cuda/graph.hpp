@@ -6,7 +6,8 @@
 
 namespace gs::device {
 
-/// Launches work as one CUDA graph. Later launches update the executable graph of earlier ones if possible.
+/// Launches work as one CUDA graph. Later launches update the executable graph of earlier ones if
+/// possible.
 class cuda_graph {
   public:
     cuda_graph() = default;
@@ -16,8 +17,8 @@ class cuda_graph {
         if (graph_ != nullptr) cudaGraphExecDestroy(graph_);
     }
 
-    /// Captures the work that f submits to the stream, and launches it as a graph. f may launch kernels, copy
-    /// and zero memory, but must not allocate or wait.
+    /// Captures the work that f submits to the stream, and launches it as a graph. f may launch
+    /// kernels, copy and zero memory, but must not allocate or wait.
     template <class F>
     void launch(cudaStream_t stream, const F& f) {
         check(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal));

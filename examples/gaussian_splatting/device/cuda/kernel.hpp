@@ -5,9 +5,9 @@
 /// Functions that the kernels of `cuda` share.
 namespace gs::device::detail {
 
-/// Waits until the previous kernel has ended. Each kernel calls this first. On compute capability 9.0 and
-/// later, its blocks may be launched as soon as all blocks of the previous kernel have begun, which hides the
-/// latency of launches.
+/// Waits until the previous kernel has ended. Each kernel calls this first. On compute capability
+/// 9.0 and later, its blocks may be launched as soon as all blocks of the previous kernel have
+/// begun, which hides the latency of launches.
 __device__ inline void await_kernel_before() {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
     asm volatile("griddepcontrol.launch_dependents;");
@@ -35,8 +35,9 @@ __device__ T sum_to_lane(T x) {
     return x;
 }
 
-/// Returns the sum of x over the threads of a block up to and including the calling thread. All threads call
-/// this. `sums` is shared memory for one value per warp, which no thread has accessed since the last barrier.
+/// Returns the sum of x over the threads of a block up to and including the calling thread. All
+/// threads call this. `sums` is shared memory for one value per warp, which no thread has accessed
+/// since the last barrier.
 template <unsigned Warps, class T>
 __device__ T sum_to_thread(T x, T* sums) {
     static_assert(Warps <= warp_size);

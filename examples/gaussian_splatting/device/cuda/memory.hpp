@@ -63,7 +63,8 @@ class cuda_buffer {
     std::size_t size() const { return size_; }
 
   private:
-    /// Returns a stream whose work is ordered after earlier work and before later work of other streams.
+    /// Returns a stream whose work is ordered after earlier work and before later work of other
+    /// streams.
     static cudaStream_t in_order() { return cudaStreamLegacy; }
 
     void release() {

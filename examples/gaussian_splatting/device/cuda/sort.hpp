@@ -9,9 +9,10 @@
 
 #include "kernel.hpp"
 
-/// The kernels of `cuda::sort_pairs`: a stable radix sort, from the lowest digit on, with one launch per
-/// digit (Adinolfi and Merrill, "Onesweep", 2022). CUB's sort is made for tens of millions of keys. This one
-/// has half as many launches, and smaller tiles, which keep a GPU busy with a hundred thousand keys.
+/// The kernels of `cuda::sort_pairs`: a stable radix sort, from the lowest digit on, with one
+/// launch per digit (Adinolfi and Merrill, "Onesweep", 2022). CUB's sort is tuned for tens of
+/// millions of keys. This sort has half as many launches, and its smaller tiles keep a GPU busy
+/// with a hundred thousand keys.
 namespace gs::device::detail {
 
 inline constexpr unsigned digit_bits = 8, digits = 1u << digit_bits;
@@ -23,9 +24,10 @@ __device__ inline std::uint32_t digit_of(std::uint32_t key, unsigned shift) {
     return key >> shift & (digits - 1);
 }
 
-/// The memory that the launches of a sort share, zero at first. For one digit it has the histogram of all
-/// keys, the number of tiles that have begun, and a histogram of `digits` values per tile. The highest two
-/// bits of a tile's values tell whether they are known, and whether they count this tile or all tiles so far.
+/// The memory that the launches of a sort share, zero at first. For one digit it has the histogram
+/// of all keys, the number of tiles that have begun, and a histogram of `digits` values per tile.
+/// The highest two bits of a tile's values tell whether they are known, and whether they count this
+/// tile or all tiles so far.
 struct sort_memory {
     std::uint32_t* histograms;
     std::uint32_t* begun;
@@ -43,6 +45,7 @@ struct sort_memory {
           known(all + digits_a_key * (digits + 1) + std::size_t{digit} * tiles * digits) {}
 };
 
+/// Computes the histograms of all digits of the keys.
 template <class Key>
 __global__ void __launch_bounds__(sorting_threads)
     count_digits(const Key* keys, unsigned n, std::uint32_t* histograms) {
@@ -84,8 +87,8 @@ __device__ inline std::uint32_t count_before(const std::uint32_t* known, unsigne
     }
 }
 
-/// Ranks each key among the keys of its warp with the same digit, and adds the keys to the warp's counts. All
-/// lanes of the warp call this together.
+/// Ranks each key among the keys of its warp with the same digit, and adds the keys to the warp's
+/// counts. All lanes of the warp call this together.
 template <class Key>
 __device__ __forceinline__ void rank_in_warp(const Key (&key)[keys_a_thread], unsigned shift,
                                              std::uint32_t (&counts)[digits],
@@ -107,9 +110,9 @@ __device__ __forceinline__ void rank_in_warp(const Key (&key)[keys_a_thread], un
     }
 }
 
-/// Writes the sorted pairs of a tile to their places. The tile begins at pair `first` of n. `moved` has, for
-/// each digit, the distance from a pair's place in the tile to its place in the result. All threads of the
-/// block call this together.
+/// Writes the sorted pairs of a tile to their places. The tile begins at pair `first` of n. `moved`
+/// has, for each digit, the distance from a pair's place in the tile to its place in the result.
+/// All threads of the block call this together.
 template <class Key, class Value>
 __device__ __forceinline__ void write_sorted(const Key* sorted_keys, const Value* sorted_values,
                                              const std::uint32_t* moved, unsigned shift, unsigned first,
@@ -136,7 +139,8 @@ __global__ void __launch_bounds__(sorting_threads)
     __shared__ std::uint64_t sums[sorting_warps];
     __shared__ Key sorted_keys[keys_a_tile];
     __shared__ Value sorted_values[keys_a_tile];
-    // Tiles are numbered in the order in which blocks begin, so that no block waits for one not yet begun.
+    // Tiles are numbered in the order in which blocks begin, so that no block waits for one not yet
+    // begun.
     if (threadIdx.x == 0) my_tile = atomicAdd(memory.begun, 1u);
     for (auto& count : counts) count[threadIdx.x] = 0;
     __syncthreads();

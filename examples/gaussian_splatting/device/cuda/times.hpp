@@ -11,8 +11,8 @@
 
 namespace gs::device {
 
-/// Times the stages of every n-th iteration by events; timing every iteration would slow down training.
-/// Profilers see the stages of all iterations as NVTX ranges.
+/// Times the stages of every n-th iteration by events; timing every iteration would slow down
+/// training. Profilers see the stages of all iterations as NVTX ranges.
 class cuda_times {
   public:
     explicit cuda_times(cudaStream_t stream) : stream_(stream) {
