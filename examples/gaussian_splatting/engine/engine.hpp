@@ -18,46 +18,48 @@
 
 namespace gs::train {
 
-/// A model in training on a device, with its optimizer state. The engine does single steps; `training`
-/// decides when. Results reach the host only as return values of these functions.
+/// A model in training on a device, with its optimizer state. The engine does single steps;
+/// `training` decides when. Results reach the host only as return values of these functions.
 class engine {
   public:
     virtual ~engine() = default;
 
-    /// Sets the training views and the held-out views. Also stores each training view at `downscales` smaller
-    /// sizes; each size halves the previous one.
+    /// Sets the training views and the held-out views. Also stores each training view at
+    /// `downscales` smaller sizes; each size halves the previous one.
     virtual void set_views(const std::vector<view>& train, const std::vector<view>& test,
                            int downscales = 0) = 0;
-    /// Replaces the model and sets Adam's moments to zero. Features keep their learned values, such as
-    /// exposures.
+    /// Replaces the model and sets Adam's moments to zero. Features keep their learned values, such
+    /// as exposures.
     virtual void set_model(const gaussians& model) = 0;
     virtual gaussians get_model() = 0;
 
-    /// Prepares a training run: creates the loss and the densification strategy, and sets the initial values
-    /// of the features that are on. Precondition: views and a model are set.
+    /// Prepares a training run: creates the loss and the densification strategy, and sets the
+    /// initial values of the features that are on. Precondition: views and a model are set.
     virtual void begin(const training_setup& setup) = 0;
-    /// Reserves memory for the tile lists of the training views at size level `downscales`, with a reserve
-    /// for growth. Later steps use views of that size. Call this after each change of the number of
-    /// Gaussians, and at intervals. Waits for the device.
+    /// Reserves memory for the tile lists of the training views at size level `downscales`, with a
+    /// reserve for growth. Later steps use views of that size. Call this after each change of the
+    /// number of Gaussians, and at intervals. Waits for the device.
     virtual void reserve(int downscales = 0) = 0;
     /// Does one training step. A step whose tile lists exceed the capacity changes no parameter.
     virtual void step(const step_plan& plan) = 0;
-    /// Calls `strategy::run`. Returns the number of Gaussians that were drawn but received no gradient.
+    /// Calls `strategy::run`. Returns the number of Gaussians that were drawn but received no
+    /// gradient.
     virtual std::uint64_t densify(int iteration) = 0;
     /// Calls `strategy::adjust`.
     virtual void adjust(int iteration) = 0;
     /// Returns the report on the steps since the last call. Waits for the device.
     virtual step_report take_report() = 0;
 
-    /// Returns the state of a feature. Precondition: a feature of this name has state on the device.
+    /// Returns the state of a feature. Precondition: a feature of this name has state on the
+    /// device.
     virtual feature_state& feature(std::string_view name) = 0;
 
-    /// Renders the model with SH coefficients up to a degree. Returns three planes, red, green and blue, of
-    /// the camera's size. The values are not clamped.
+    /// Renders the model with SH coefficients up to a degree. Returns three planes, red, green and
+    /// blue, of the camera's size. The values are not clamped.
     virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
                                       int sh_degree = 3) = 0;
-    /// Compares the render of a held-out view with its target, both clamped to [0, 1]. If `render` is not
-    /// null, it receives the render, which is not clamped.
+    /// Compares the render of a held-out view with its target, both clamped to [0, 1]. If `render`
+    /// is not null, it receives the render, which is not clamped.
     virtual image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
                                   std::vector<float>* render = nullptr) = 0;
 
@@ -72,7 +74,8 @@ class engine {
     device::profiler* profiler_ = nullptr;
 };
 
-/// Returns a factory of CPU engines for each instruction set that this machine can run, the best one last.
+/// Returns a factory of CPU engines for each instruction set that this machine can run, the best
+/// one last.
 std::vector<std::unique_ptr<engine> (*)()> cpu_engines();
 /// Creates a CPU engine for the best instruction set.
 std::unique_ptr<engine> make_cpu_engine();

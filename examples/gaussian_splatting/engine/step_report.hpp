@@ -13,8 +13,8 @@ namespace gs::train {
 /// The results of the training steps since the last report.
 struct step_report {
     loss_report loss;           ///< means over these steps
-    std::uint64_t skipped = 0;  ///< steps without an effect, because their tile lists exceeded the capacity
-    fault_reports faults;       ///< values that were not finite; parameters always are finite: see `adam`
+    std::uint64_t skipped = 0;  ///< steps without effect: their tile lists exceeded the capacity
+    fault_reports faults;       ///< values that were not finite; `adam` keeps parameters finite
 };
 
 }  // namespace gs::train
