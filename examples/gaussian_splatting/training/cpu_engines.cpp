@@ -4,7 +4,7 @@
 #include "../engine/engine.hpp"
 
 extern "C" {
-// Each is engine_cpu.cpp, compiled for another instruction set.
+// Each function is compiled from engine_cpu.cpp, for another instruction set.
 #if defined(WARPAGG_CPU_LEVELS)
 gs::train::engine* make_cpu_engine_x86_64_v3();
 gs::train::engine* make_cpu_engine_x86_64_v4();

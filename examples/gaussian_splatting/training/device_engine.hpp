@@ -24,7 +24,7 @@
 
 namespace gs::train {
 
-/// Clamps a render to [0, 1], as it is displayed. One index per value.
+/// Clamps a render to [0, 1], the range of images. One index per value.
 struct clamp_render {
     const float* from;
     float* to;
@@ -33,7 +33,8 @@ struct clamp_render {
     }
 };
 
-/// An `engine` on a device: the order of the kernels, and the memory that they share.
+/// The engine for a device. It determines the order of the kernels and owns the memory that they
+/// share.
 template <device::device Device, class Accumulators = raster::product_accumulators>
 class device_engine final : public engine, device::profiler {
     using renderer_type =
@@ -151,7 +152,7 @@ class device_engine final : public engine, device::profiler {
     }
 
   private:
-    /// The degree and the bands of the model's parameters.
+    /// The SH degree of the model, and the SH coefficients of the parameters and of Adam's moments.
     class sh_state final : public sh_degree_state {
       public:
         explicit sh_state(device_engine& on) : on_(on) {}
@@ -174,7 +175,8 @@ class device_engine final : public engine, device::profiler {
         device_engine& on_;
     };
 
-    /// Draws the training views of one size. Neither timed nor counted as steps.
+    /// Renders the training views of one size for scores. These renders are not timed or counted as
+    /// steps.
     class drawn_views final : public score_views {
       public:
         drawn_views(device_engine& on, const std::vector<photo>& views) : on_(on), views_(views) {}
@@ -230,14 +232,16 @@ class device_engine final : public engine, device::profiler {
         return {device_, trained_, count_, sh_degree_, views_.centers(), views_.count()};
     }
 
-    /// `trained_` holds `count` Gaussians that no step has seen.
+    /// Sets the number of Gaussians and clears their statistics, after `trained_` has new
+    /// Gaussians.
     void begin_generation(std::size_t count) {
         count_ = count;
         seen_.resize(count);
         device_.zero(seen_.data(), count);
     }
 
-    /// Everything that decides about kernels, their sizes and memory in `iterate`.
+    /// Returns the graph key: all values that determine the launches of `iterate`, their ranges and
+    /// memory.
     device::graph_key key_of(const step_type& s) const {
         device::graph_key key{runs_,
                               count_,
@@ -292,7 +296,8 @@ class device_engine final : public engine, device::profiler {
         return n;
     }
 
-    /// Renders the whole model, whatever memory that takes. Neither timed nor counted as a step.
+    /// Renders the model. Reserves more memory if the tile lists do not fit. Waits for the device.
+    /// The render is not timed or counted as a step.
     void draw(const camera& camera, const std::array<float, 3>& background, int sh_degree) {
         const std::uint64_t before = all_pairs();
         device_.pause_times(true);
@@ -326,8 +331,8 @@ class device_engine final : public engine, device::profiler {
     std::unique_ptr<loss<float>> loss_;
     std::unique_ptr<strategy<Device>> strategy_;
     training_setup setup_;
-    std::size_t runs_ = 0;   ///< calls of `begin`: each may allocate
-    std::size_t level_ = 0;  ///< how many times the training views are halved
+    std::size_t runs_ = 0;   ///< number of calls of `start`, which may allocate
+    std::size_t level_ = 0;  ///< size level: the training views are halved this many times
 
     int sh_degree_ = 0;
     effect_set effects_;

@@ -17,14 +17,14 @@
 
 namespace gs::train {
 
-/// Training and held-out photos with their cameras, on a device.
+/// The training views at all size levels, and the held-out views, in device memory.
 template <device::device Device>
 class device_views {
   public:
     struct photo {
         gs::camera camera;
-        std::size_t first;  ///< byte in the memory of all photos
-        bool masked;
+        std::size_t first;  ///< index of its first byte in the memory of all photos
+        bool masked;        ///< whether it has a mask
 
         std::size_t pixels() const {
             return static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
@@ -33,7 +33,8 @@ class device_views {
 
     explicit device_views(Device& device) : device_(device) {}
 
-    /// Uploads the photos.
+    /// Uploads the photos of all size levels, and the centers of the training cameras. Waits for
+    /// the device.
     void set(const image_pyramid& levels, std::span<const view> held_out) {
         std::size_t bytes = 0;
         for (const auto views : levels) bytes += bytes_of(views);
@@ -49,7 +50,8 @@ class device_views {
         device_.wait();
     }
 
-    /// The training views, downsampled by two that many times. Throws `error` if `set` got fewer levels.
+    /// Returns the training views, downsampled by two `level` times. Throws `error` if `set` got
+    /// fewer levels.
     const std::vector<photo>& train(std::size_t level) const {
         if (level >= train_.size())
             throw error("the training views have " + std::to_string(train_.size()) +
@@ -58,7 +60,7 @@ class device_views {
     }
     const std::vector<photo>& smallest() const { return train_.back(); }
     const photo& held_out(std::size_t view) const { return held_out_[view]; }
-    /// Centers of the training cameras, in memory of the device.
+    /// Returns the centers of the training cameras, in device memory.
     const glm::vec3* centers() const { return centers_.data(); }
     std::size_t count() const { return train_[0].size(); }
 

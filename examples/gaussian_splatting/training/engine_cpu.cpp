@@ -7,7 +7,8 @@
 #define WARPAGG_MAKE_CPU_ENGINE make_cpu_engine_as_built
 #endif
 
-/// The engine of the CPU, for the instruction set that this file is compiled for. See cpu_engines.cpp.
+/// Creates the CPU engine for the instruction set that this file is compiled for. See
+/// cpu_engines.cpp.
 extern "C" gs::train::engine* WARPAGG_MAKE_CPU_ENGINE() {
     return new gs::train::device_engine<gs::device::cpu>;
 }

@@ -11,7 +11,8 @@
 
 namespace gs::train {
 
-/// What an engine creates by name, from the tables of the doors unless a caller says otherwise.
+/// The functions that create the loss and the densification strategy of an engine. By default they
+/// select them by name from `losses` and `strategies`; tests can replace them.
 template <device::device Device>
 struct engine_parts {
     std::unique_ptr<loss<float>> (*make_loss)(Device&, const std::string& name) =

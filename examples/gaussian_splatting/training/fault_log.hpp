@@ -13,15 +13,15 @@
 
 namespace gs::train {
 
-/// What was not finite in the steps of a training run, with the view in which it was found.
+/// Reports values that were not finite in the steps of a training run, with the view of the step.
 class fault_log {
   public:
-    /// A step trained on this view.
+    /// Records that a step has trained on this view. Call it for each step.
     void steps(std::size_t view) { views_.push_back(view); }
 
-    /// Looks at the faults of the steps since the last call, the last of which was `iteration`. Warns about
-    /// the first gradient and the first sum that was left out. Throws `error` if the loss or a parameter is
-    /// not finite.
+    /// Processes the faults of all steps since the last call. `iteration` is the last of these
+    /// steps. Warns about the first gradient and the first sum that was left out. Throws `error` if
+    /// the loss is not finite, or if a parameter would not be finite.
     void check(const fault_reports& found, const scene& scene, int iteration,
                const std::function<void(const std::string&)>& warn);
 
@@ -29,7 +29,7 @@ class fault_log {
     std::uint64_t left_out_sums() const { return left_out_sums_; }
 
   private:
-    std::vector<std::size_t> views_;  ///< of the steps since the last check
+    std::vector<std::size_t> views_;  ///< views of the steps since the last check
     std::uint64_t left_out_gradients_ = 0, left_out_sums_ = 0;
 };
 

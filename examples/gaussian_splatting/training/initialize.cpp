@@ -18,15 +18,17 @@ namespace {
 
 constexpr double initial_opacity = 0.1;
 constexpr std::size_t neighbors = 3;
-/// Keeps points that coincide from having no size; by an extent of `internal_extent`.
+/// The smallest squared scale in internal coordinates, for points that coincide.
 constexpr double least_squared_distance = 1e-7;
-/// Of the box in which the objects of NeRF-synthetic scenes lie, by the distance of their cameras.
+/// Half the side of the box around the objects of NeRF-synthetic scenes, relative to the distance
+/// of their cameras.
 constexpr double half_side_of_objects = 1.3 / 4.0311288;
 
-/// Spelt out because the standard leaves the results of its distributions to the implementation.
+/// Returns a uniform number in [0, 1). The distributions of the standard library would give
+/// different results on different implementations.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-/// `most` of the points in their order, each subset as likely as any other.
+/// Returns at most `most` random points, in their order. All subsets are equally likely.
 std::vector<colored_point> draw(const std::vector<colored_point>& points, std::size_t most,
                                 std::uint64_t seed) {
     if (points.size() <= most) return points;
@@ -46,7 +48,7 @@ std::vector<colored_point> draw(const std::vector<colored_point>& points, std::s
     return drawn;
 }
 
-/// What nanoflann asks of a point set; the names are its own.
+/// A point set with the member functions that nanoflann requires.
 struct point_set {
     const std::vector<colored_point>& points;
 
@@ -56,11 +58,12 @@ struct point_set {
     }
     template <class Box>
     bool kdtree_get_bbox(Box&) const {
-        return false;  // let nanoflann compute it
+        return false;  // makes nanoflann compute the box
     }
 };
 
-/// Per point, the mean squared distance to its nearest other points.
+/// Returns for each point the mean squared distance to its nearest other points, of which there are
+/// at most `neighbors`.
 std::vector<double> neighbor_distances(const std::vector<colored_point>& points) {
     using metric = nanoflann::L2_Simple_Adaptor<double, point_set>;
     using tree_type = nanoflann::KDTreeSingleIndexAdaptor<metric, point_set, 3, std::size_t>;
@@ -74,7 +77,7 @@ std::vector<double> neighbor_distances(const std::vector<colored_point>& points)
         std::size_t index[neighbors + 1];
         double squared[neighbors + 1] = {};
         tree.knnSearch(&points[i].position.x, others + 1, index, squared);
-        // The point itself is among those found, at distance 0, or else enough others are at distance 0.
+        // The results include the point itself at distance 0, or are all points at distance 0.
         const double sum = std::accumulate(std::begin(squared), std::end(squared), 0.0);
         if (others > 0) result[i] = sum / static_cast<double>(others);
     }

@@ -9,17 +9,19 @@
 
 namespace gs {
 
-/// One isotropic Gaussian per point, with the color of the point, opacity 0.1, and zero SH coefficients above
-/// degree 0. Its scale is the root mean square distance to the 3 nearest other points, or to all if there are
-/// fewer, and at least sqrt(1e-7) in internal coordinates. Takes at most `most` points; if there are more,
-/// draws them without replacement by `seed`. Precondition: at least one point.
+/// Returns one isotropic Gaussian per point, with the color of the point, opacity 0.1, and zero SH
+/// coefficients above degree 0. Its scale is the root mean square distance to the 3 nearest other
+/// points, or to all if there are fewer, and at least sqrt(1e-7) in internal coordinates. If there
+/// are more than `most` points, uses a random sample of `most` points, which `seed` determines.
+/// Precondition: there is at least one point.
 gaussians from_points(const std::vector<colored_point>& points, int sh_degree, std::size_t most,
                       std::uint64_t seed);
 
-/// `count` points of random color, uniform in a box, for scenes without points. If `scene::object_centered`
-/// and the cameras look at a common point, the box is centered there, and its half side is 1.3 / 4.03 of the
-/// median distance of the cameras, as in the NeRF-synthetic scenes. Otherwise it is centered on the mean
-/// camera, and its half side is the extent of the scene.
+/// Returns `count` points of random color, uniform in a box, for scenes without points. If
+/// `scene::object_centered` and the cameras look at a common point, the box is centered there, and
+/// its half side is 1.3 / 4.03 of the median distance of the cameras, as in the NeRF-synthetic
+/// scenes. Otherwise it is centered on the mean camera, and its half side is the extent of the
+/// scene.
 std::vector<colored_point> random_points(const scene& scene, std::size_t count, std::uint64_t seed);
 
 }  // namespace gs

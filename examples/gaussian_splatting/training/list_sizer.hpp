@@ -12,7 +12,7 @@
 
 namespace gs::train {
 
-/// Notes how long the lists of a view are. One index.
+/// Records the length of a view's tile lists. One index.
 struct note_length {
     raster::list_capacity capacity;
     std::uint64_t* length;
@@ -20,25 +20,25 @@ struct note_length {
     WARPAGG_HD void operator()(std::size_t) const { *length = *capacity.required; }
 };
 
-/// Remembers how long the tile lists of each training view were, and sizes the renderer's memory for the
-/// longest.
+/// Records the length of each training view's tile lists, and sizes the renderer's memory for the
+/// longest ones. A length is the number of instances (Gaussian, tile) of a view.
 template <device::device Device>
 class list_sizer {
   public:
     explicit list_sizer(Device& device) : device_(device) {}
 
-    /// Forgets all lengths.
+    /// Clears all lengths, and sets the number of views.
     void reset(std::size_t views) {
         lengths_.resize(views);
         counts_.assign(views, 0);
     }
-    /// Where a step notes the length of its view's lists, in memory of the device.
+    /// Returns the address in device memory where a step stores the length of this view.
     std::uint64_t* length(std::size_t view) { return lengths_.data() + view; }
-    /// A step has noted it, with that many Gaussians.
+    /// Records that a step with this number of Gaussians has stored the length of this view.
     void was_noted(std::size_t view, std::size_t gaussians) { counts_[view] = gaussians; }
 
-    /// Makes room for the longest lists, and for what they may grow to. Measures views that no step has seen.
-    /// Waits for the device.
+    /// Reserves memory for the longest lists, with a reserve for growth. Measures views whose
+    /// length is unknown. Waits for the device.
     template <class Renderer, class Views>
     void reserve(Renderer& renderer, const typename Renderer::model& model, std::size_t gaussians,
                  const Views& views) {
@@ -59,15 +59,15 @@ class list_sizer {
                     std::max(expected, static_cast<double>(lengths[v]) * static_cast<double>(gaussians) /
                                            static_cast<double>(counts_[v]));
         }
-        // With a margin on both sides, so that the memory seldom changes.
+        // The new reserve exceeds the tested one, so that the memory seldom changes.
         if (static_cast<double>(renderer.reserved_instances()) < 1.5 * expected + 1024)
             renderer.reserve_instances(longest, static_cast<std::uint64_t>(2 * expected) + 4096);
     }
 
   private:
     Device& device_;
-    typename Device::template buffer<std::uint64_t> lengths_;  ///< by training view, when it was last noted
-    std::vector<std::size_t> counts_;  ///< of Gaussians at that time; 0 if it was not noted
+    typename Device::template buffer<std::uint64_t> lengths_;  ///< last stored length of each view
+    std::vector<std::size_t> counts_;  ///< number of Gaussians at that time; 0: unknown length
 };
 
 }  // namespace gs::train

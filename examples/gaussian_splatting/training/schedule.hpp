@@ -9,41 +9,44 @@
 
 namespace gs::train {
 
-/// Learning rates, the image size and the SH degree by iteration. Based on the schedule of Kerbl et al. 2023,
-/// scaled from 30,000 iterations to any number. Rates and intervals are positive.
+/// The learning rates, the image size and the SH degree of each iteration. Based on the schedule of
+/// Kerbl et al. 2023, scaled from 30,000 iterations to any number. Rates and intervals are
+/// positive.
 struct schedule {
     int iterations = 7000;
     int sh_degree = 3;
     int sh_degree_interval = 500;  ///< iterations between two increases of the SH degree
     double extent = 1;             ///< see `scene::extent`
 
-    /// Learning rates of Adam. Rates of positions are relative to the extent and fall from `init` to `final`
-    /// geometrically.
+    /// Learning rates of Adam. Rates of positions are relative to the extent and decay
+    /// exponentially from `init` to `final`.
     double position_lr_init = 1.6e-4, position_lr_final = 1.6e-6;
-    double feature_lr = 2.5e-3;   ///< of SH degree 0
-    std::optional<double> sh_lr;  ///< of SH degrees 1 to 3; see `sh_rate`
+    double feature_lr = 2.5e-3;   ///< learning rate of SH degree 0
+    std::optional<double> sh_lr;  ///< learning rate of SH degrees 1 to 3; see `sh_rate`
     double opacity_lr = 2.5e-2, scaling_lr = 1e-2, rotation_lr = 1e-3;
 
-    /// Images are halved `num_downscales` times at first, and once less after every `resolution_interval`
-    /// iterations.
+    /// Images are halved `num_downscales` times at first, and once less after every
+    /// `resolution_interval` iterations.
     int num_downscales = 1;
     std::optional<int> resolution_schedule;  ///< see `resolution_interval`
-    int sh_update_interval = 1;              ///< iterations between two updates of SH degrees 1 to 3
+    int sh_update_interval = 1;              ///< iterations between updates of SH degrees 1 to 3
 
     int sh_degree_at(int iteration) const;
     bool updates_sh(int iteration) const { return iteration % sh_update_interval == 0; }
-    /// The iteration after which the SH degree is revised: half-way, or when the last degree has had its
-    /// interval.
+    /// Returns the iteration after which the SH degree is revised: half of the iterations, or the
+    /// end of the last degree's interval if that is later.
     int bands_are_known_after() const {
         return std::max(iterations / 2, (sh_degree + 1) * sh_degree_interval);
     }
     int downscales_at(int iteration) const;
-    /// Iterations until the images are halved once less: `resolution_schedule`, or if it is unset, a fifth of
-    /// the iterations and less for several halvings. 0 if the run is too short: images have full size then.
+    /// Returns the number of iterations between two doublings of the image size. It is
+    /// `resolution_schedule`, or if that is unset, a fifth of the iterations, and less if
+    /// `num_downscales` exceeds 1. Returns 0 if the run is too short; images then have full size.
     int resolution_interval() const;
-    /// The learning rate of SH degrees 1 to 3: `sh_lr`, or if it is unset, a tenth of `feature_lr`.
+    /// Returns the learning rate of SH degrees 1 to 3: `sh_lr`, or if it is unset, a tenth of
+    /// `feature_lr`.
     double sh_rate() const { return sh_lr.value_or(feature_lr / 10); }
-    /// Adam's learning rates, by `parameter`.
+    /// Returns Adam's learning rates by `parameter`.
     std::array<float, 8> rates_at(int iteration) const;
 };
 

@@ -12,12 +12,12 @@
 
 namespace gs::train {
 
-/// Ends a step: counts it if it was skipped, notes how long its lists were, and checks the loss and whether
-/// all sums fitted. One index.
+/// Ends a step. Counts it if it was skipped, stores the length of its tile lists, and checks that
+/// the loss is finite and that no gradient sum was left out. One index.
 struct close_step {
     raster::list_capacity capacity;
     std::uint64_t* skipped;
-    std::uint64_t* length;  ///< of the view's lists
+    std::uint64_t* length;  ///< receives the length of the view's tile lists
     const double* sums;     ///< see `loss::sums`
     std::size_t sum_count;
     std::uint32_t* unfit;  ///< see `gradient_sums::fault`
@@ -34,7 +34,7 @@ struct close_step {
     }
 };
 
-/// What goes wrong in steps, noted on the device and reported on request.
+/// Counts skipped steps and faults on the device, and reports them on request.
 template <device::device Device>
 class step_monitor {
   public:
@@ -54,13 +54,14 @@ class step_monitor {
                                              loss_sums.size(), renderer.fault(), check_of(iteration)});
     }
 
-    /// Steps that were skipped since the last call of `take_faults`. Waits for the device.
+    /// Returns the number of skipped steps since the last call of `take_faults`. Waits for the
+    /// device.
     std::uint64_t skipped() {
         std::uint64_t n = 0;
         device_.download(&n, skipped_.data(), 1);
         return n;
     }
-    /// Faults since the last call; resets all. Waits for the device.
+    /// Returns the faults since the last call. Resets all counters. Waits for the device.
     fault_reports take_faults() {
         finite_check::memory found;
         device_.download(&found, faults_.data(), 1);

@@ -73,7 +73,7 @@ void training::add_step() {
 }
 
 void training::add_memory() {
-    constexpr int reserve_every = 500;  // the lists grow slowly between densifications
+    constexpr int reserve_every = 500;  // iterations; lists grow slowly between densifications
     add({phase::prepare, "change the photos' size",
          [this](int iteration) { return schedule_.downscales_at(iteration) != level_; },
          [this](int iteration) {

@@ -18,16 +18,16 @@
 
 namespace gs::train {
 
-/// What to train against in the transparent parts of photos.
+/// The background of renders, and of the transparent parts of photos.
 struct background_choice {
     std::array<float, 3> color{};
-    bool random = false;  ///< another color in every step; held-out views are measured on `color`
+    bool random = false;  ///< random color in each step; held-out views use `color`
 };
 
 struct train_options {
     train::schedule schedule;
     strategy_settings densification;
-    std::size_t max_cap = 0;  ///< most Gaussians
+    std::size_t max_cap = 0;  ///< largest number of Gaussians
     std::string loss = default_loss;
     std::uint64_t seed = 0;
     accumulator gradient = accumulator::native;
@@ -37,37 +37,38 @@ struct train_options {
     std::set<int> test_iterations;
 };
 
-/// Where training stands.
+/// The progress of a training run.
 struct progress {
     int iteration = 0, iterations = 0;
-    double loss = 0, psnr = 0;  ///< means over the latest training steps
+    double loss = 0, psnr = 0;  ///< means over the steps since the last report
     std::size_t gaussians = 0;
-    double seconds = 0;
+    double seconds = 0;  ///< without the `test` and `save` callbacks
 };
 
 struct train_result {
-    double seconds = 0;          ///< in the loop, without callbacks
-    double densify_seconds = 0;  ///< of these, in the phases `restructure` and `size_lists`
+    double seconds = 0;          ///< time of the loop, without the `test` and `save` callbacks
+    double densify_seconds = 0;  ///< part of it in the phases `restructure` and `size_lists`
     std::uint64_t skipped_steps = 0;
-    std::uint64_t left_out_gradients = 0;  ///< elements that were not finite
-    std::uint64_t left_out_sums = 0;       ///< steps in which a sum did not fit in fixed point
-    std::uint64_t without_gradient = 0;    ///< largest number at any densification; see `engine::densify`
-    std::map<std::string, nlohmann::ordered_json> feature_reports;  ///< by feature, for metrics.json
+    std::uint64_t left_out_gradients = 0;  ///< number of elements that were not finite
+    std::uint64_t left_out_sums = 0;       ///< number of steps with a sum out of range
+    std::uint64_t without_gradient = 0;    ///< largest result of `engine::densify`
+    std::map<std::string, nlohmann::ordered_json> feature_reports;  ///< parts of metrics.json
 };
 
-/// What the loop calls back for.
+/// The callbacks of the training loop.
 struct train_events {
-    std::function<void(const progress&)> report;  ///< also before `test`
+    /// Called every 100 iterations, at the end, and before each `test`.
+    std::function<void(const progress&)> report;
     std::function<void(int iteration)> save;
     std::function<void(int iteration)> test;
     std::function<void(const std::string&)> warn = [](const std::string&) {};
-    /// The clock that times the run, in seconds from any start.
+    /// The clock of the reported times, in seconds since any fixed time.
     std::function<double()> seconds = [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
     };
 };
 
-/// The mean loss over steps of several reports of the engine.
+/// The mean loss over the steps of several reports of the engine.
 class mean_loss {
   public:
     void add(const loss_report& report, std::uint64_t steps) {
@@ -77,7 +78,8 @@ class mean_loss {
         sum_.square_error += weight * report.square_error;
         weight_ += weight;
     }
-    /// The mean of what was added since the last call.
+    /// Returns the mean over the steps that were added since the last call. It is NaN if
+    /// there were no steps.
     loss_report take() {
         const loss_report mean{sum_.loss / weight_, sum_.square_error / weight_};
         *this = {};
@@ -89,14 +91,15 @@ class mean_loss {
     double weight_ = 0;
 };
 
-/// When an action runs within an iteration. Actions of one phase run in the order in which they were added.
+/// The phases of an iteration, in their order. Actions of one phase run in the order in which they
+/// were added.
 enum class phase {
     prepare,      ///< before the step
     step,         ///< the step itself
     restructure,  ///< changes the number or the layout of parameters
-    size_lists,   ///< sizes the tile lists for what changed
+    size_lists,   ///< sizes the tile lists after such changes
     upkeep,       ///< changes parameters in place
-    observe       ///< looks at the result: faults, progress, tests, files
+    observe       ///< observes the result: faults, progress, tests, files
 };
 
 struct action {
@@ -106,19 +109,22 @@ struct action {
     std::function<void(int iteration)> run;
 };
 
-/// The training loop: a list of scheduled actions, run for each iteration.
+/// The training loop: a list of actions that run in the iterations in which they are due.
 class training {
   public:
-    /// Precondition: `engine` has the scene's views and a model.
+    /// Calls `engine::begin`, and adds the actions that every training has. `engine`, `scene` and
+    /// `options` must outlive the object. Precondition: `engine` has the scene's views and a model.
     training(train::engine& engine, const gs::scene& scene, const train_options& options,
              const train_events& events);
 
+    /// Adds an action to the end of its phase.
     void add(action action);
-    /// Runs all iterations. A gradient that is not finite is left out of its step, and a warning names the
-    /// first. A loss that is not finite, or a parameter that would not be, ends training: throws `error` that
-    /// names the iteration, the view and the parameter. What was saved before stays. The device notes such
-    /// faults in the iteration in which they appear; the loop looks at them every 100 iterations and before
-    /// anything is tested or saved.
+    /// Runs all iterations. Steps leave out gradients that are not finite; a warning names the
+    /// first one. If the loss is not finite, or a parameter would not be finite, throws an `error`
+    /// that names the iteration, the view and the parameter. Earlier saves remain valid.
+    ///
+    /// The device records such faults in the iteration in which they occur. The loop checks for
+    /// them every 100 iterations, at the end, and before each test and save.
     train_result run();
 
     train::engine& engine() { return engine_; }
@@ -140,21 +146,21 @@ class training {
     train::schedule schedule_;
     std::vector<action> actions_;
     train_result result_;
-    int level_ = 0;              ///< how many times photos are halved
-    bool restructured_ = false;  ///< in this iteration
+    int level_ = 0;              ///< size level: photos are halved this many times
+    bool restructured_ = false;  ///< whether the phase `restructure` has acted in this iteration
     fault_log faults_;
-    int checked_ = 0;  ///< the last iteration that was checked for faults
+    int checked_ = 0;  ///< last iteration that was checked for faults
     mean_loss losses_;
     std::function<double()> clock_;
-    double start_ = 0, outside_ = 0;  ///< seconds at the start, and in callbacks
+    double start_ = 0, outside_ = 0;  ///< time of the start, and seconds spent in callbacks
 };
 
-/// Trains the model that `engine` holds with the features of `options`. See `training`.
+/// Trains the model of `engine` with the features of `options`. See `training`.
 train_result train(engine& engine, const scene& scene, const train_options& options,
                    const train_events& events);
 
-/// As many Gaussians as the photos can tell apart: one per 32 pixels of all training views, and at least
-/// 10,000.
+/// Returns the default limit of the number of Gaussians: one per 32 pixels of all training views,
+/// and at least 10,000.
 std::size_t default_cap(const scene& scene);
 
 }  // namespace gs::train

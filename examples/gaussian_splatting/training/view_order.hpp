@@ -11,7 +11,7 @@
 
 namespace gs::train {
 
-/// Every view once before any comes again, each time in another random order.
+/// Returns each view once in random order, then each view again in another random order, and so on.
 class view_order {
   public:
     view_order(std::size_t views, std::uint64_t seed) : order_(views), next_(views), random_(seed) {
