@@ -25,8 +25,8 @@ __global__ void launch(W w, Kernel kernel) {
 struct counting_warp : warpagg::cuda_warp {
     unsigned long long* atomics;
 
-    template <class Op, class Dst, class T>
-    __device__ void atomic(Op op, Dst dst, unsigned index, T v, bool active) const {
+    template <class Op, class Dst, class Index, class T>
+    __device__ void atomic(Op op, Dst dst, Index index, T v, bool active) const {
         if (active) atomicAdd(atomics, 1ull);
         warpagg::cuda_warp::atomic(op, dst, index, v, active);
     }

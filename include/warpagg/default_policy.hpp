@@ -11,9 +11,9 @@ namespace warpagg {
 
 namespace detail {
 
-/// The fastest reduction for N values of T, and a gate at the number of active lanes from which it
-/// beats plain atomics. Source: measurements on compute capability 9.0. Other devices use the same
-/// values; those below 9.0 never pack.
+/// The reduction and the gate for N values of T. Source: times of whole kernels (bench/kernels) and of
+/// atomics alone (bench/atomics) on compute capability 9.0. Other devices use the same choice; those
+/// below 9.0 never pack.
 template <class T, int N>
 struct measured {
     // The general case, for pairs of 16-bit floats and other types of 32 bits.
@@ -21,11 +21,15 @@ struct measured {
     using gate = std::conditional_t<(N > 1 && N <= 4), gate::at_least<2>, gate::always>;
 };
 
+// Small records: few lanes commit faster on their own. Records of middle size: kernels that compute
+// between atomics lose more by the gate's test than they gain. Large records: a reduction takes so many
+// shuffles that the test pays.
 template <int N>
 struct measured<float, N> : measured<void, N> {
-    static constexpr unsigned lanes = N == 2 ? 3 : N < 12 ? 2 : 1;
-    static constexpr unsigned lanes_if_packed = N == 4 ? 6 : N == 2 || N == 8 ? 5 : N == 3 || N >= 24 ? 3 : 4;
-    using gate = std::conditional_t<N == 1, gate::always, gate::at_least<lanes, lanes_if_packed>>;
+    static constexpr unsigned lanes = N == 2 ? 3 : N < 5 ? 2 : 8;
+    static constexpr unsigned lanes_if_packed = N == 2 ? 5 : N == 3 ? 3 : N == 4 ? 6 : 16;
+    using gate =
+        std::conditional_t<N == 1 || (N > 4 && N < 16), gate::always, gate::at_least<lanes, lanes_if_packed>>;
 };
 
 template <class T, int N>
@@ -75,7 +79,11 @@ struct resolved_policy {
         or_default<typename Policy::operation, warpagg::operation::sum>::template suits<T>,
         "memory has sums of 32 bits and more, and minimum, maximum, bit_and, bit_or and bit_xor of integers "
         "of 32 and 64 bits");
-    using operation = or_default<typename Policy::operation, warpagg::operation::sum>;
+    using unscoped = or_default<typename Policy::operation, warpagg::operation::sum>;
+    using operation =
+        std::conditional_t<std::is_same_v<typename Policy::scope, unset> ||
+                               std::is_same_v<typename Policy::scope, warpagg::scope::device>,
+                           unscoped, warpagg::operation::scoped<unscoped, typename Policy::scope>>;
     using reduce =
         or_default<typename Policy::reduce,
                    typename reduce_for<typename Policy::commit, typename measured<T, N>::reduce>::type>;

@@ -16,7 +16,8 @@ template <class Base, int N>
 struct component_by_key {
     Base base;
     unsigned i;
-    WARPAGG_HD auto operator()(unsigned key) const {
+    template <class Key>
+    WARPAGG_HD auto operator()(Key key) const {
         if constexpr (requires { base(key, i); }) {
             return base(key, i);
         } else {
@@ -26,10 +27,10 @@ struct component_by_key {
 };
 
 /// An accessor that takes i and returns the address of component i of one key's record.
-template <class Base>
+template <class Base, class Key>
 struct component_of_key {
     Base base;
-    unsigned key;
+    Key key;
     WARPAGG_HD auto operator()(unsigned i) const { return base(key, i); }
 };
 
@@ -64,9 +65,8 @@ WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint3
 /// `everyone` has the bits of the active lanes. Cost: one shuffle and one vote, less than a match.
 /// Rising keys are often neighboring addresses, for which plain atomics are faster than a match.
 WARPAGG_EXEC_CHECK_DISABLE
-template <warp W>
-WARPAGG_HD bool keys_rise(const W& w, const value_t<W, unsigned>& key, const mask_t<W>& active,
-                          std::uint32_t everyone) {
+template <warp W, class Key>
+WARPAGG_HD bool keys_rise(const W& w, const Key& key, const mask_t<W>& active, std::uint32_t everyone) {
     using math::countr_zero;
     using bits = value_t<W, std::uint32_t>;
     // mutate: match_rises_to_inactive_lanes
@@ -86,15 +86,16 @@ using commit_of_keys = std::conditional_t<std::is_same_v<typename Resolved::redu
 /// Commits the values of each active lane to the record of its key. Cost: N atomic instructions, or
 /// N / K where `packed<K>` applies.
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Op, class Commit, warp W, class Base, class V, int N>
-WARPAGG_HD void commit_by_key(const W& w, Base base, const value_t<W, unsigned>& key, const V (&v)[N],
+template <class Op, class Commit, warp W, class Base, class Key, class V, int N>
+WARPAGG_HD void commit_by_key(const W& w, Base base, const Key& key, const V (&v)[N],
                               const mask_t<W>& active) {
     using record = commit::contiguous_record<V>;
     if constexpr (std::is_same_v<Base, V*> && commit::detail::packs<Op, Commit, W, record, V>) {
         if constexpr (N % Commit::neighbors == 0) {
             if (commit::is_packed<Op, Commit, V>(w, record{base})) {
                 // mutate: match_packed_key_stride_lost
-                commit::detail::by_groups<Commit::neighbors, 0>(w, base + std::size_t{key} * N, v, active);
+                commit::detail::by_groups<Op, Commit::neighbors, 0>(w, base + std::size_t{key} * N, v,
+                                                                    active);
                 return;
             }
         }
@@ -105,13 +106,13 @@ WARPAGG_HD void commit_by_key(const W& w, Base base, const value_t<W, unsigned>&
 }
 
 /// Returns the record of a uniform key as a destination.
-template <int N, class T>
-WARPAGG_HD commit::contiguous_record<T> record_of_key(T* base, unsigned key) {
+template <int N, class T, class Key>
+WARPAGG_HD commit::contiguous_record<T> record_of_key(T* base, Key key) {
     return {base + std::size_t{key} * N};
 }
-template <int N, class Base>
-WARPAGG_HD auto record_of_key(Base base, unsigned key) {
-    return component_of_key<Base>{base, key};
+template <int N, class Base, class Key>
+WARPAGG_HD auto record_of_key(Base base, Key key) {
+    return component_of_key<Base, Key>{base, key};
 }
 
 /// Returns a base of accumulators as a base of their limbs.
@@ -119,7 +120,8 @@ WARPAGG_HD auto record_of_key(Base base, unsigned key) {
 template <class Base, int Limbs>
 struct limbs_by_key {
     Base base;
-    WARPAGG_HD auto operator()(unsigned key, unsigned i) const {
+    template <class Key>
+    WARPAGG_HD auto operator()(Key key, unsigned i) const {
         return base(key, i / Limbs)->limb + i % Limbs;
     }
 };
@@ -138,62 +140,121 @@ WARPAGG_HD auto base_of_limbs(Base base) {
 }
 /// @}
 
-/// Implements `warp_match_reduce_atomic` for the accumulator `native`.
+/// Returns a key as an unsigned lane value of 32 bits, or of 64 bits if the key has 64 bits.
+template <class W, class Key>
+WARPAGG_HD auto unsigned_key(const Key& key) {
+    using scalar = scalar_t<Key>;
+    static_assert(std::is_integral_v<scalar>, "a key is an integer: the index of the lane's record");
+    using wide = std::conditional_t<sizeof(scalar) == 8, std::uint64_t, std::uint32_t>;
+    if constexpr (std::is_same_v<Key, scalar>) {
+        return value_t<W, wide>(static_cast<wide>(key));
+    } else {
+        using math::convert;
+        return convert<wide>(key);
+    }
+}
+
+/// How the keys of the active lanes relate.
+enum class key_relation {
+    none,       ///< no lane is active
+    different,  ///< lanes commit on their own: all keys differ, or few lanes are active
+    same,       ///< all active lanes have one key
+    mixed,      ///< some lanes have equal keys
+};
+
+/// The active lanes of a warp by key.
+template <warp W, class Key>
+struct lanes_by_key {
+    Key key;
+    mask_t<W> active;
+    std::uint32_t everyone;           ///< the bits of the active lanes; 0 if they were not compared
+    value_t<W, std::uint32_t> peers;  ///< the bits of the active lanes with the lane's key, if mixed
+    key_relation relation;
+};
+
+/// Compares the keys of the active lanes if there are at least `least` of them.
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Policy, warp W, class Base, class V, int N>
-WARPAGG_HD void match_and_commit(const W& w, Base base, const value_t<W, unsigned>& key, const V (&values)[N],
-                                 const mask_t<W>& active, call_site at) {
-    using math::countr_zero;
+template <warp W, class Key>
+WARPAGG_HD lanes_by_key<W, Key> compare_keys(const W& w, const Key& key, const mask_t<W>& active,
+                                             unsigned least) {
     using math::popcount;
     using math::select;
+    using bits = value_t<W, std::uint32_t>;
+    lanes_by_key<W, Key> lanes{key, active, w.ballot(active), bits(0u), key_relation::none};
+    if (lanes.everyone == 0) return lanes;
+    lanes.relation = key_relation::different;
+    // mutate: match_gate_more_than
+    if (popcount(lanes.everyone) < least) return lanes;
+    if (keys_rise(w, key, active, lanes.everyone)) return lanes;
+    // mutate: match_without_active_mask
+    lanes.peers = select(active, w.match(key) & lanes.everyone, bits(0u));
+    lanes.relation =
+        w.any(active && lanes.peers != lanes.everyone) ? key_relation::mixed : key_relation::same;
+    return lanes;
+}
+
+/// Combines the values of lanes with equal keys and commits the results.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Policy, warp W, class Key, class Base, class V, int N>
+WARPAGG_HD void commit_by_relation(const W& w, const lanes_by_key<W, Key>& lanes, Base base,
+                                   const V (&values)[N]) {
+    using math::countr_zero;
     using math::uniform;
     using chosen = resolved_policy<scalar_t<V>, N, Policy>;
     using operation = typename chosen::operation;
-    using bits = value_t<W, std::uint32_t>;
+    using commit_rule = commit_of_keys<chosen, Policy, N>;
+    if (lanes.relation == key_relation::none) return;
+    if (lanes.relation == key_relation::same) {
+        // mutate: match_key_of_lane_0
+        const auto only = uniform(w.shfl(lanes.key, countr_zero(lanes.everyone)));
+        reduce_and_commit<chosen>(w, record_of_key<N>(base, only), values, lanes.active);
+        return;
+    }
+    V results[N];
+    WARPAGG_UNROLL
+    for (int i = 0; i < N; ++i) results[i] = values[i];
+    mask_t<W> commits = lanes.active;
+    if (lanes.relation == key_relation::mixed) {
+        combine_peers<operation>(w, results, lanes.peers);
+        commits = lanes.active && countr_zero(lanes.peers) == w.lane();  // mutate: match_idle_lane_commits
+    }
+    commit_by_key<operation, commit_rule>(w, base, lanes.key, results, commits);
+}
+
+/// Checks the arguments of `warp_match_reduce_atomic` and `matched_lanes::add`.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Chosen, warp W, class Base>
+WARPAGG_HD void check_base(const W& w, Base base) {
     static_assert(
         requires { *(base + 0); } || requires { *base(0u, 0u); },
         "the base is a pointer to the record of key 0, or an accessor base(key, i) -> T*");
-    static_assert(!std::is_same_v<typename chosen::commit, commit::staged>,
+    static_assert(!std::is_same_v<typename Chosen::commit, commit::staged>,
                   "warp_match_reduce_atomic takes the stage's copy as its base: staged says nothing here");
     static_assert(
-        !std::is_same_v<typename chosen::idle, idle::add_zeros>,
+        !std::is_same_v<typename Chosen::idle, idle::add_zeros>,
         "an idle warp has no keys, so warp_match_reduce_atomic has nowhere to add zeros: take skip");
+    if constexpr (requires { w.require_uniform(base); }) w.require_uniform(base);
+}
 
+/// Implements `warp_match_reduce_atomic` for the accumulator `native`.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Policy, warp W, class Base, class Key, class V, int N>
+WARPAGG_HD void match_and_commit(const W& w, Base base, const Key& key, const V (&values)[N],
+                                 const mask_t<W>& active, call_site at) {
+    using chosen = resolved_policy<scalar_t<V>, N, Policy>;
     const library_call<W> call(w, at);
     if constexpr (requires { w.observe(active); }) w.observe(active);
-    if constexpr (requires { w.require_uniform(base); }) w.require_uniform(base);
+    check_base<chosen>(w, base);
     if constexpr (std::is_same_v<typename chosen::idle, idle::assume_busy>) {
         if constexpr (requires { w.require_busy(active); }) w.require_busy(active);
     }
     const mask_t<W> adds = opaque(w, active);
-    mask_t<W> commits = adds;
-    V results[N];
-    WARPAGG_UNROLL
-    for (int i = 0; i < N; ++i) results[i] = values[i];
-
-    if constexpr (!std::is_same_v<typename chosen::reduce, reduce::per_lane>) {
-        const std::uint32_t everyone = w.ballot(adds);
-        if (everyone == 0) return;
-        bool dense = true;
-        // mutate: match_gate_more_than
-        if constexpr (is_gated<typename chosen::gate>) dense = popcount(everyone) >= chosen::gate::lanes;
-        if (dense) {
-            if (!keys_rise(w, key, adds, everyone)) {
-                // mutate: match_without_active_mask
-                const bits peers = select(adds, w.match(key) & everyone, bits(0u));
-                if (!w.any(adds && peers != everyone)) {
-                    // mutate: match_key_of_lane_0
-                    const unsigned only = uniform(w.shfl(key, countr_zero(everyone)));
-                    reduce_and_commit<chosen>(w, record_of_key<N>(base, only), values, adds);
-                    return;
-                }
-                combine_peers<operation>(w, results, peers);
-                commits = adds && countr_zero(peers) == w.lane();  // mutate: match_idle_lane_commits
-            }
-        }
+    if constexpr (std::is_same_v<typename chosen::reduce, reduce::per_lane>) {
+        commit_by_key<typename chosen::operation, commit_of_keys<chosen, Policy, N>>(w, base, key, values,
+                                                                                     adds);
+    } else {
+        commit_by_relation<Policy>(w, compare_keys(w, key, adds, chosen::gate::lanes), base, values);
     }
-    using commit_rule = commit_of_keys<chosen, Policy, N>;
-    commit_by_key<operation, commit_rule>(w, base, key, results, commits);
 }
 
 }  // namespace detail
@@ -207,7 +268,8 @@ WARPAGG_HD void match_and_commit(const W& w, Base base, const value_t<W, unsigne
 /// @param w       a model of `warp`
 /// @param base    `T*` to the record of key 0, or an accessor `base(key, i) -> T*`. With an
 ///                accumulator, `accumulator<...>` takes the place of T
-/// @param key     index of this lane's record, 32 bits; ignored for an inactive lane
+/// @param key     index of this lane's record, an integer of up to 64 bits; ignored for an inactive
+///                lane
 /// @param values  N values per lane; values of inactive lanes are ignored, even if they are NaN
 /// @param active  whether this lane has values to add
 /// @param how     a policy. Its reduce tag applies if all active lanes have one key; `per_lane`
@@ -227,9 +289,9 @@ WARPAGG_HD void match_and_commit(const W& w, Base base, const value_t<W, unsigne
 /// are committed by `packed` if `base` is a pointer to float that is aligned to 16 bytes (N a multiple
 /// of 4) or to 8 bytes (other even N).
 WARPAGG_EXEC_CHECK_DISABLE
-template <warp W, class Base, class V, int N, class Policy = policy<>>
-WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W, unsigned>& key,
-                                         const V (&values)[N], const mask_t<W>& active, Policy how = {},
+template <warp W, class Base, class Key, class V, int N, class Policy = policy<>>
+WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const Key& key, const V (&values)[N],
+                                         const mask_t<W>& active, Policy how = {},
                                          call_site at = call_site::here("warp_match_reduce_atomic")) {
     static_assert(detail::is_policy<Policy>,
                   "warp_match_reduce_atomic takes one policy: put the tags into policy{...}");
@@ -247,15 +309,15 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const value_t<W,
         warp_match_reduce_atomic(w, detail::base_of_limbs<accumulation>(base), key, limbs, active,
                                  typename detail::policy_of_limbs<Policy>::type{}, at);
     } else {
-        detail::match_and_commit<Policy>(w, base, key, values, active, at);
+        detail::match_and_commit<Policy>(w, base, detail::unsigned_key<W>(key), values, active, at);
     }
 }
 
 /// Works as above for an aggregate, a user's type, at `base[key]`: see aggregate.hpp. Requires a model
 /// whose value type is a scalar, so it does not compile on `emulator::lanes`.
 WARPAGG_EXEC_CHECK_DISABLE
-template <warp W, aggregate R, class Policy = policy<>>
-WARPAGG_HD void warp_match_reduce_atomic(const W& w, R* base, const value_t<W, unsigned>& key, const R& value,
+template <warp W, aggregate R, class Key, class Policy = policy<>>
+WARPAGG_HD void warp_match_reduce_atomic(const W& w, R* base, const Key& key, const R& value,
                                          const mask_t<W>& active, Policy how = {},
                                          call_site at = call_site::here("warp_match_reduce_atomic")) {
     const detail::components_of<R> components(value);
@@ -263,18 +325,78 @@ WARPAGG_HD void warp_match_reduce_atomic(const W& w, R* base, const value_t<W, u
                              how, at);
 }
 
-/// Does not compile: a key has 32 bits, and a wider key would lose its upper bits.
-template <warp W, class Base, class Key, class V, int N, class... More>
-requires(std::is_integral_v<Key> && sizeof(Key) > sizeof(unsigned)) void warp_match_reduce_atomic(
-    const W&, Base, const Key&, const V (&)[N], const mask_t<W>&, More...) = delete;
-
 /// Does not compile: put several tags into one policy.
-template <warp W, class Base, class V, class Tag, class Next, class... More>
+template <warp W, class Base, class Key, class V, class Tag, class Next, class... More>
 requires(!std::is_same_v<Next, call_site>)
-    WARPAGG_HD void warp_match_reduce_atomic(const W&, Base, const value_t<W, unsigned>&, const V&,
-                                             const mask_t<W>&, Tag, Next, More...) {
+    WARPAGG_HD void warp_match_reduce_atomic(const W&, Base, const Key&, const V&, const mask_t<W>&, Tag,
+                                             Next, More...) {
     static_assert(std::is_same_v<Next, call_site>,
                   "warp_match_reduce_atomic takes one policy: put the tags into policy{...}");
+}
+
+/// The lanes of a warp, grouped by key. `match` returns it. It refers to the warp, which must outlive
+/// it.
+template <warp W, class Key>
+class matched_lanes {
+  public:
+    WARPAGG_HD matched_lanes(const W& w, const detail::lanes_by_key<W, Key>& lanes) : w_(w), lanes_(lanes) {}
+
+    /// Adds the values of each active lane to the record of its key, as `warp_match_reduce_atomic`
+    /// does with the key and the active lanes that `match` has compared. All lanes of the warp call
+    /// this together. The gate of the policy has no effect. Cost: that of `warp_match_reduce_atomic`
+    /// without its comparison of keys.
+    ///
+    /// @param base    `T*` to the record of key 0, or an accessor `base(key, i) -> T*`; the same in all
+    ///                lanes
+    /// @param values  N values per lane; values of inactive lanes are ignored, even if they are NaN
+    /// @param how     a policy with the accumulator `native`
+    /// @param at      the call site; leave it at its default
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class Base, class V, int N, class Policy = policy<>>
+    WARPAGG_HD void add(Base base, const V (&values)[N], [[maybe_unused]] Policy how = {},
+                        call_site at = call_site::here("add")) const {
+        static_assert(detail::is_policy<Policy>, "add takes one policy: put the tags into policy{...}");
+        static_assert(!detail::is_accumulated<typename Policy::accumulate>,
+                      "add takes the accumulator native: for others, call warp_match_reduce_atomic");
+        using chosen = detail::resolved_policy<scalar_t<V>, N, Policy>;
+        const detail::library_call<W> call(w_, at);
+        detail::check_base<chosen>(w_, base);
+        if constexpr (std::is_same_v<typename chosen::reduce, reduce::per_lane>) {
+            detail::commit_by_key<typename chosen::operation, detail::commit_of_keys<chosen, Policy, N>>(
+                w_, base, lanes_.key, values, lanes_.active);
+        } else {
+            detail::commit_by_relation<Policy>(w_, lanes_, base, values);
+        }
+    }
+
+  private:
+    const W& w_;
+    detail::lanes_by_key<W, Key> lanes_;
+};
+
+/// Groups the active lanes by key, so that several calls of `add` compare the keys only once. Use it in
+/// loops over the attributes of a record.
+///
+/// @snippet warp_match_reduce_atomic.cpp match
+///
+/// @param w       a model of `warp`
+/// @param key     index of this lane's record, an integer of up to 64 bits; ignored for an inactive
+///                lane
+/// @param active  whether this lane has values to add
+/// @param at      the call site; leave it at its default
+///
+/// @pre All lanes of the warp call this together.
+///
+/// Cost: one shuffle and two votes if the keys of the active lanes rise from lane to lane; otherwise
+/// also one `match` and one vote.
+WARPAGG_EXEC_CHECK_DISABLE
+template <warp W, class Key>
+WARPAGG_HD auto match(const W& w, const Key& key, const mask_t<W>& active,
+                      call_site at = call_site::here("match")) {
+    const detail::library_call<W> call(w, at);
+    if constexpr (requires { w.observe(active); }) w.observe(active);
+    const auto index = detail::unsigned_key<W>(key);
+    return matched_lanes(w, detail::compare_keys(w, index, detail::opaque(w, active), 0));
 }
 
 }  // namespace warpagg

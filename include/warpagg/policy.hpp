@@ -135,6 +135,9 @@ struct policy : detail::optional_member<detail::named_t<axis::accumulate, Tags..
     // mutate: two_gates_accepted
     static_assert(count<axis::gate> <= 1, "a policy takes one gate tag: always or at_least<K>");
 
+    static_assert(count<axis::scope> <= 1,
+                  "a policy takes one scope: block_scope, device_scope or system_scope");
+
     /// The type of the tag on this axis, or the placeholder `unset`.
     /// @{
     using operation = detail::named_t<axis::operation, Tags...>;
@@ -143,6 +146,7 @@ struct policy : detail::optional_member<detail::named_t<axis::accumulate, Tags..
     using commit = detail::named_t<axis::commit, Tags...>;
     using idle = detail::named_t<axis::idle, Tags...>;
     using gate = detail::named_t<axis::gate, Tags...>;
+    using scope = detail::named_t<axis::scope, Tags...>;
     /// @}
 
     static_assert(

@@ -12,6 +12,7 @@
 #include "detail/commit/commit.hpp"
 #include "detail/reduce/scatter.hpp"
 #include "detail/reduce/tree.hpp"
+#include "fields.hpp"
 #include "policy.hpp"
 #include "stage.hpp"
 #include "warp/concept.hpp"
@@ -68,34 +69,53 @@ WARPAGG_HD void reduce_and_commit(const W& w, Record record, const V (&values)[N
     commit::results<op, reduction, typename Resolved::commit>(w, record, results);
 }
 
+/// Commits each active lane's own values if too few lanes are active to reduce. Returns whether it has.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Resolved, warp W, class Record, class V, int N>
+WARPAGG_HD bool commit_ungated(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
+    using op = typename Resolved::operation;
+    using gate = typename Resolved::gate;
+    using ungated = typename Resolved::ungated_commit;
+    constexpr bool may_pack = commit::detail::packs<op, ungated, W, Record, V>;
+    constexpr unsigned most =
+        may_pack && gate::lanes_if_packed > gate::lanes ? gate::lanes_if_packed : gate::lanes;
+    if constexpr (most > 1) {
+        const unsigned lanes = math::popcount(w.ballot(active));
+        if (lanes < most) [[unlikely]] {
+            const unsigned least =
+                // mutate: gate_thresholds_swapped
+                commit::is_packed<op, ungated, V>(w, record) ? gate::lanes_if_packed : gate::lanes;
+            if (lanes < least) {  // mutate: gate_at_most
+                V own[N];  // a copy, because indexing by lanes would move `values` from registers to memory
+                WARPAGG_UNROLL
+                for (int i = 0; i < N; ++i) own[i] = values[i];
+                commit::each_lane<op, ungated>(w, record, own, active);
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 /// Implements `warp_reduce_atomic` for an accessor and a resolved policy.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Resolved, warp W, class Record, class V, int N>
 WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], const mask_t<W>& active) {
     using op = typename Resolved::operation;
-    using commit_rule = typename Resolved::commit;
     if constexpr (requires { w.observe(active); }) w.observe(active);  // mutate: calls_not_observed
     // mutate: destination_not_checked
     if constexpr (requires { w.require_uniform(record(0u)); }) w.require_uniform(record(0u));
+    if constexpr (requires { Record::components; })
+        static_assert(Record::components == N, "the fields must have as many components as there are values");
     if constexpr (std::is_same_v<typename Resolved::reduce, reduce::per_lane>) {
-        commit::each_lane<op, commit_rule>(w, record, values, active);
-    } else if constexpr (is_gated<typename Resolved::gate>) {
-        using gate = typename Resolved::gate;
-        using ungated = typename Resolved::ungated_commit;
-        const unsigned least =
-            // mutate: gate_thresholds_swapped
-            commit::is_packed<op, ungated, V>(w, record) ? gate::lanes_if_packed : gate::lanes;
-        if (math::popcount(w.ballot(active)) < least) [[unlikely]] {  // mutate: gate_at_most
-            V own[N];  // a copy, because indexing by lanes would move `values` from registers to memory
-            WARPAGG_UNROLL
-            for (int i = 0; i < N; ++i) own[i] = values[i];
-            commit::each_lane<op, ungated>(w, record, own, active);
-            return;
-        }
-        reduce_and_commit<Resolved>(w, record, values, active);
+        commit::each_lane<op, typename Resolved::commit>(w, record, values, active);
     } else {
+        // Most warps of a rasterizer are idle, so this test comes before the gate's.
         if constexpr (std::is_same_v<typename Resolved::idle, idle::skip>) {
             if (!w.any(active)) return;  // mutate: idle_warp_not_skipped
+        }
+        if constexpr (is_gated<typename Resolved::gate>) {
+            if (commit_ungated<Resolved>(w, record, values, active)) return;
         }
         reduce_and_commit<Resolved>(w, record, values, active);
     }
@@ -114,7 +134,7 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
 ///
 /// @snippet warp_reduce_atomic.cpp policy
 /// @snippet warp_reduce_atomic.cpp operation
-/// @snippet warp_reduce_atomic.cpp structure of arrays
+/// @snippet warp_reduce_atomic.cpp fields
 /// @snippet warp_reduce_atomic.cpp accessor
 ///
 /// This example names an accumulator. The sum is rounded once and does not depend on the order of
@@ -123,8 +143,8 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
 /// @snippet accumulate.cpp exact
 ///
 /// @param w       a model of `warp`
-/// @param dst     `T*`, a span, an accessor `dst(i) -> T*`, or a record of a `stage` with
-///                `policy{staged}`. With an accumulator, `accumulator<...>` takes the place of T
+/// @param dst     `T*`, a span, `fields`, an accessor `dst(i) -> T*`, or a record of a `stage`
+///                with `policy{staged}`. With an accumulator, `accumulator<...>` takes the place of T
 /// @param values  N values per lane; values of inactive lanes are ignored, even if they are NaN
 /// @param active  whether this lane has values to add
 /// @param how     a policy; defaults fill the axes without a tag: see default_policy.hpp
@@ -143,8 +163,8 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
 /// Error of a float sum of n values with condition number k: at most (n/32 + 5) u k if all lanes are
 /// active, u = 2^-24, and n u k otherwise.
 ///
-/// Cost by default on 32 lanes: one vote, about N - 1 + log2(32/N) shuffles (N `redux` instructions
-/// for 32-bit integers and N up to 32), and one atomic instruction per 32 components.
+/// Cost by default on 32 lanes: one vote (two with a gate), about N - 1 + log2(32/N) shuffles (N `redux`
+/// instructions for 32-bit integers and N up to 32), and one atomic instruction per 32 components.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class T, int N, warp W, class Dst, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&values)[N],

@@ -169,8 +169,56 @@ struct by_pointer {
     }
 };
 
+/// The ways of calling.
+struct by_one_call {
+    template <class W, class Base, class V, int N, class Policy>
+    WARPAGG_HD static void call(const W& w, Base base, const value_t<W, unsigned>& key, const V (&v)[N],
+                                const mask_t<W>& active, Policy how) {
+        warpagg::warp_match_reduce_atomic(w, base, key, v, active, how);
+    }
+};
+/// Keys of 64 bits that differ in their upper half as well.
+constexpr std::uint64_t first_wide_key = std::uint64_t{1} << 40;
+constexpr WARPAGG_HD std::uint64_t widened(unsigned key) {
+    return first_wide_key + (std::uint64_t{key} << 20);
+}
+template <class Base>
+struct by_wide_key {
+    Base base;
+    WARPAGG_HD auto operator()(std::uint64_t key, unsigned i) const {
+        return base(static_cast<unsigned>((key - first_wide_key) >> 20), i);
+    }
+};
+struct with_keys_of_64_bits {
+    template <class W, class Base, class V, int N, class Policy>
+    WARPAGG_HD static void call(const W& w, Base base, const value_t<W, unsigned>& key, const V (&v)[N],
+                                const mask_t<W>& active, Policy how) {
+        using warpagg::math::convert;
+        const value_t<W, std::uint64_t> wide = (convert<std::uint64_t>(key) << 20u) + first_wide_key;
+        warpagg::warp_match_reduce_atomic(w, by_wide_key<Base>{base}, wide, v, active, how);
+    }
+};
+/// A call per component, with keys that are compared once.
+template <class Base>
+struct one_component {
+    Base base;
+    unsigned component;
+    WARPAGG_HD auto operator()(unsigned key, unsigned) const { return base(key, component); }
+};
+struct with_keys_compared_once {
+    template <class W, class Base, class V, int N, class Policy>
+    WARPAGG_HD static void call(const W& w, Base base, const value_t<W, unsigned>& key, const V (&v)[N],
+                                const mask_t<W>& active, Policy how) {
+        const auto lanes = warpagg::match(w, key, active);
+        for (unsigned i = 0; i < N; ++i) {
+            const V one[1] = {v[i]};
+            lanes.add(one_component<Base>{base, i}, one, how);
+        }
+    }
+};
+
 /// Adds every case's values to the records that its keys name.
-template <class T, int N, class Base, class Policy>
+template <class T, int N, class Base, class Policy, class Call>
 struct match_all {
     const T* values;
     const unsigned* active;
@@ -189,19 +237,19 @@ struct match_all {
             for (unsigned i = 0; i < N; ++i) v[i] = w.load(values + (c * N + i) * W::size, lane, everyone);
             const auto mine = w.load(key + c * W::size, lane, everyone);
             const mask_t<W> adds = w.load(active + c * W::size, lane, everyone) != 0u;
-            warpagg::warp_match_reduce_atomic(w, Base{}(memory, where, c), mine, v, adds, Policy{});
+            Call::call(w, Base{}(memory, where, c), mine, v, adds, Policy{});
         }
     }
 };
 
-template <class Policy, int N, class Base, class T, class Op>
+template <class Policy, int N, class Base, class Call = by_one_call, class T, class Op>
 void check_match(const match_problem<T, Op>& p, const char* what, unsigned alone_below) {
     backend::memory<T> values(p.values);
     backend::memory<unsigned> active(p.active);
     backend::memory<unsigned> key(p.key);
     backend::memory<T> memory(p.before);
-    backend::launch(match_all<T, N, Base, Policy>{values.data(), active.data(), key.data(), memory.data(),
-                                                  p.where, p.cases});
+    backend::launch(match_all<T, N, Base, Policy, Call>{values.data(), active.data(), key.data(),
+                                                        memory.data(), p.where, p.cases});
     INFO(std::string(what), ", N = ", N);
     CHECK(p.first_difference(memory.download(), alone_below) == "");
 }
@@ -239,6 +287,19 @@ TEST_CASE_TEMPLATE("lanes with equal keys add as one, in the documented tree", T
     check_match_default<4, by_pointer>(match_problem<T>(4, dense));
     check_match_default<6, by_pointer>(match_problem<T>(6, dense));
     check_match_default<33, by_accessor>(match_problem<T>(33, guarded));
+}
+
+TEST_CASE_TEMPLATE("keys of 64 bits", T, TEST_VALUES) {
+    const match_problem<T> p(3, guarded);
+    check_match<policy<reduce::scatter>, 3, by_accessor, with_keys_of_64_bits>(p, "scatter", 0);
+    check_match<policy<reduce::per_lane>, 3, by_accessor, with_keys_of_64_bits>(p, "per_lane", 33);
+}
+
+TEST_CASE_TEMPLATE("match compares keys once for several calls of add", T, TEST_VALUES) {
+    const match_problem<T> p(3, guarded);
+    check_match<policy<>, 3, by_accessor, with_keys_compared_once>(p, "no tags", 0);
+    check_match<policy<reduce::scatter>, 3, by_accessor, with_keys_compared_once>(p, "scatter", 0);
+    check_match<policy<reduce::per_lane>, 3, by_accessor, with_keys_compared_once>(p, "per_lane", 33);
 }
 
 TEST_CASE("other operations than the sum, by keys") {

@@ -79,9 +79,9 @@ TEST_CASE("the tags of an axis are found, or none is") {
 }
 
 TEST_CASE("what no tag names follows from what one names") {
-    using measured = gate::at_least<2, 4>;  // as measured for nine floats
+    using measured = gate::at_least<2, 6>;  // the gate of four floats
     const auto floats = []<class Policy>(Policy) {
-        return warpagg::detail::resolved_policy<float, 9, Policy>{};
+        return warpagg::detail::resolved_policy<float, 4, Policy>{};
     };
     using scattered = decltype(floats(policy<>{}));
     CHECK(chooses<scattered, reduce::scatter, commit::contiguous, idle::skip, measured>);
@@ -126,6 +126,20 @@ TEST_CASE("tag objects spell the same types") {
                          policy<idle::add_zeros, reduce::shfl_down, gate::always>>);
     CHECK(std::is_same_v<decltype(policy{warpagg::scatter}), policy<reduce::scatter>>);
     CHECK(std::is_empty_v<written>);
+    CHECK(std::is_same_v<decltype(policy{warpagg::block_scope, warpagg::scatter})::scope,
+                         warpagg::scope::block>);
+}
+
+TEST_CASE("a scope becomes part of the operation, and device is the default") {
+    const auto operation_of = []<class Policy>(Policy) {
+        return typename warpagg::detail::resolved_policy<float, 9, Policy>::operation{};
+    };
+    using block = decltype(operation_of(policy{warpagg::block_scope}));
+    using system = decltype(operation_of(policy{warpagg::maximum, warpagg::system_scope}));
+    CHECK(std::is_same_v<block, operation::scoped<operation::sum, warpagg::scope::block>>);
+    CHECK(std::is_same_v<system, operation::scoped<operation::maximum, warpagg::scope::system>>);
+    CHECK(std::is_same_v<decltype(operation_of(policy{warpagg::device_scope})), operation::sum>);
+    CHECK(std::is_same_v<decltype(operation_of(policy<>{})), operation::sum>);
 }
 
 TEST_CASE("the default for floats, as docs/reference/policies.md has it") {
@@ -134,12 +148,11 @@ TEST_CASE("the default for floats, as docs/reference/policies.md has it") {
     CHECK(scatters<float, 2, gate::at_least<3, 5>>);
     CHECK(scatters<float, 3, gate::at_least<2, 3>>);
     CHECK(scatters<float, 4, gate::at_least<2, 6>>);
-    CHECK(scatters<float, 8, gate::at_least<2, 5>>);
-    CHECK(scatters<float, 11, gate::at_least<2, 4>>);
-    CHECK(scatters<float, 12, gate::at_least<1, 4>>);
-    CHECK(scatters<float, 23, gate::at_least<1, 4>>);
-    CHECK(scatters<float, 24, gate::at_least<1, 3>>);
-    CHECK(scatters<float, 40, gate::at_least<1, 3>>);
+    CHECK(scatters<float, 5, gate::always>);
+    CHECK(scatters<float, 9, gate::always>);
+    CHECK(scatters<float, 15, gate::always>);
+    CHECK(scatters<float, 16, gate::at_least<8, 16>>);
+    CHECK(scatters<float, 40, gate::at_least<8, 16>>);
 }
 
 TEST_CASE_TEMPLATE("the default for 64 bits", T, double, std::int64_t, std::uint64_t, long long) {

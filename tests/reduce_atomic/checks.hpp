@@ -140,6 +140,18 @@ struct as_accessor {
     }
 };
 
+/// Fields of 2, 4 and the other components.
+template <int N>
+struct as_fields {
+    static constexpr bool contiguous = false;
+    template <class T>
+    WARPAGG_HD auto operator()(T* memory, const layout& where, unsigned c) const {
+        using warpagg::at;
+        T* const first = memory + where.at(c, 0);
+        return warpagg::fields(at<2>(first), at<4>(first + 2), at<N - 6>(first + 6));
+    }
+};
+
 /// The ways of calling.
 template <class Policy>
 struct with {
@@ -220,6 +232,7 @@ namespace reduce = warpagg::reduce;
 namespace commit = warpagg::commit;
 namespace idle = warpagg::idle;
 namespace gate = warpagg::gate;
+namespace scope = warpagg::scope;
 using warpagg::policy;
 
 /// shfl_down, butterfly and scatter against one another, without the oracle.

@@ -10,13 +10,14 @@
 namespace {
 
 /// Numbers of values that leave a rest of 1, 2 and 3 beyond groups of four, or none.
-template <unsigned K, class Destination, int N, class T>
+template <unsigned K, class Destination, int N, class T, class Scope = scope::device>
 void check_packed(const problem<T>& p, const char* what) {
     using packed = commit::packed<K>;
-    check<with<policy<packed>>, N, Destination>(p, what, as_chosen<T, N, policy<packed>>);
-    check<with<policy<packed, reduce::shfl_down>>, N, Destination>(p, what, {});
-    check<with<policy<packed, reduce::butterfly, idle::add_zeros>>, N, Destination>(p, what, {0, 0, true});
-    check<with<policy<packed, reduce::per_lane>>, N, Destination>(p, what, always_alone);
+    check<with<policy<packed, Scope>>, N, Destination>(p, what, as_chosen<T, N, policy<packed>>);
+    check<with<policy<packed, Scope, reduce::shfl_down>>, N, Destination>(p, what, {});
+    check<with<policy<packed, Scope, reduce::butterfly, idle::add_zeros>>, N, Destination>(p, what,
+                                                                                           {0, 0, true});
+    check<with<policy<packed, Scope, reduce::per_lane>>, N, Destination>(p, what, always_alone);
 }
 
 /// A record at each alignment: every fourth can be packed by fours.
@@ -109,6 +110,18 @@ TEST_CASE_TEMPLATE("packed commits of records that are not contiguous", T, TEST_
     check_packed<4, as_accessor, 5>(p, "packed<4>, structure of arrays");
     const problem<T> q(6, records);
     check_packed<4, as_span<6>, 6>(q, "packed<4>, spans");
+}
+
+TEST_CASE_TEMPLATE("packed commits of fields", T, TEST_VALUES) {
+    const problem<T> p(9, records);
+    check_packed<4, as_fields<9>, 9>(p, "packed<4>, fields");
+}
+
+TEST_CASE_TEMPLATE("commits in a scope", T, TEST_VALUES) {
+    const problem<T> p(9, records);
+    check<with<policy<scope::block>>, 9>(p, "block", as_chosen<T, 9, policy<scope::block>>);
+    check<with<policy<scope::system, reduce::scatter>>, 9>(p, "system", {});
+    check_packed<4, as_pointer, 9, T, scope::block>(p, "packed<4>, block");
 }
 
 TEST_CASE_TEMPLATE("staged commits", T, TEST_VALUES) {

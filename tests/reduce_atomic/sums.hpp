@@ -118,6 +118,7 @@ TEST_CASE_TEMPLATE("a destination is a pointer, a span or an accessor", T, TEST_
     check_destination<as_pointer>(rows, "pointer");
     check_destination<as_span<9>>(rows, "span");
     check_destination<as_accessor>(rows, "accessor of a record");
+    check_destination<as_fields<9>>(rows, "fields");
     const problem<T> columns(9, structure_of_arrays, 6);
     check_destination<as_accessor>(columns, "accessor of a structure of arrays");
 }

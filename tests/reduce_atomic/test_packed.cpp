@@ -26,7 +26,7 @@ struct packing : warpagg::emulator::serial {
         return reinterpret_cast<std::uintptr_t>(to) % (K * sizeof(float)) == 0;
     }
     template <unsigned K>
-    void atomic_add_packed(float* to, const float* v, bool active) const {
+    void atomic_add_packed(warpagg::operation::sum, float* to, const float* v, bool active) const {
         if (!active) return;
         groups->push_back(K);
         for (unsigned i = 0; i < K; ++i) to[i] += v[i];

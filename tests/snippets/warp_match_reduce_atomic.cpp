@@ -23,3 +23,22 @@ TEST_CASE("warp_match_reduce_atomic") {
     CHECK(histogram[3] == 101);
     CHECK(did.atomics == 4);
 }
+
+TEST_CASE("match") {
+    const warpagg::emulator::lanes w;
+    //! [match]
+    const simd_value<unsigned, 32> vertex = w.lane() / 8u;  // 4 vertices, 8 lanes each
+    const simd_value<float, 32> weight[3] = {0.5f, 0.25f, 0.125f};
+    float gradient[4][3] = {};
+    const auto peers = warpagg::match(w, vertex, w.lane() != 31u);
+    for (unsigned attribute = 0; attribute < 3; ++attribute) {
+        const simd_value<float, 32> value[1] = {weight[attribute]};
+        peers.add([&](unsigned v, unsigned) { return &gradient[v][attribute]; }, value);
+    }
+    // gradient[0]: 4, 2, 1; gradient[3]: 3.5, 1.75, 0.875
+    //! [match]
+    CHECK(gradient[0][0] == 4);
+    CHECK(gradient[2][1] == 2);
+    CHECK(gradient[3][0] == 3.5f);
+    CHECK(gradient[3][2] == 0.875f);
+}

@@ -12,14 +12,6 @@ using warpagg::simd_value;
 using warpagg::emulator::counted_lanes;
 using warpagg::emulator::counters;
 
-//! [structure of arrays]
-struct separate {  // component i of the record lies in an array of its own
-    float* array[3];
-    unsigned record;
-    float* operator()(unsigned i) const { return array[i] + record; }
-};
-//! [structure of arrays]
-
 }  // namespace
 
 //! [a type of yours]
@@ -81,18 +73,34 @@ TEST_CASE("warp_reduce_atomic with another operation") {
     CHECK(most == 31);
 }
 
-TEST_CASE("warp_reduce_atomic into a structure of arrays") {
+TEST_CASE("warp_reduce_atomic into several arrays") {
+    const warpagg::emulator::lanes w;
+    const simd_value<float, 32> values[5] = {1.0f, 2.0f, 3.0f, 4.0f, 5.0f};
+    //! [fields]
+    float color[3 * 8] = {}, mean[2 * 8] = {};
+    const unsigned id = 5;
+    using warpagg::at;
+    warpagg::warp_reduce_atomic(w, warpagg::fields(at<3>(color + 3 * id), at<2>(mean + 2 * id)), values,
+                                w.lane() < 4u);
+    // color[15..17]: 4, 8, 12; mean[10..11]: 16, 20
+    //! [fields]
+    for (unsigned i = 0; i < 3; ++i) CHECK(color[15 + i] == 4.0f * static_cast<float>(i + 1));
+    CHECK(mean[10] == 16);
+    CHECK(mean[11] == 20);
+    CHECK(color[14] + color[18] + mean[9] + mean[12] == 0);
+}
+
+TEST_CASE("warp_reduce_atomic to addresses that a function computes") {
     const warpagg::emulator::lanes w;
     const simd_value<float, 32> values[3] = {1.0f, 2.0f, 3.0f};
     //! [accessor]
-    float a[8] = {}, b[8] = {}, c[8] = {};
-    warpagg::warp_reduce_atomic(w, separate{{a, b, c}, 5}, values, w.lane() < 4u);
-    // a[5]: 4, b[5]: 8, c[5]: 12
+    float planes[3][8] = {};  // component i of record 5 lies in plane i
+    warpagg::warp_reduce_atomic(
+        w, [&](unsigned i) { return planes[i] + 5; }, values, w.lane() < 4u);
+    // planes[0][5]: 4, planes[1][5]: 8, planes[2][5]: 12
     //! [accessor]
-    CHECK(a[5] == 4);
-    CHECK(b[5] == 8);
-    CHECK(c[5] == 12);
-    CHECK(a[4] + b[4] + c[6] == 0);
+    for (unsigned i = 0; i < 3; ++i) CHECK(planes[i][5] == 4.0f * static_cast<float>(i + 1));
+    CHECK(planes[0][4] + planes[1][6] == 0);
 }
 
 TEST_CASE("warp_reduce_atomic of a type of yours") {

@@ -108,12 +108,21 @@ T combined(operation::sum, T a, T b) {
         return a + b;
     }
 }
+/// Of floats as in IEEE 754-2019: NaN wins, and -0 is smaller than +0.
 template <class T>
 T combined(operation::minimum, T a, T b) {
+    if constexpr (std::is_floating_point_v<T>) {
+        if (std::isnan(a) || std::isnan(b)) return std::numeric_limits<T>::quiet_NaN();
+        if (a == b) return std::signbit(a) ? a : b;
+    }
     return std::min(a, b);
 }
 template <class T>
 T combined(operation::maximum, T a, T b) {
+    if constexpr (std::is_floating_point_v<T>) {
+        if (std::isnan(a) || std::isnan(b)) return std::numeric_limits<T>::quiet_NaN();
+        if (a == b) return std::signbit(a) ? b : a;
+    }
     return std::max(a, b);
 }
 template <class T>

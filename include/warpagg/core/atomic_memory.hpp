@@ -18,8 +18,8 @@ inline void atomic(Op, T* to, T v) {
     while (!memory.compare_exchange_weak(before, Op::combine(before, v), std::memory_order_relaxed)) {
     }
 }
-template <class T>
-inline void atomic(operation::sum, T* to, T v) {
+template <operation::is_sum Op, class T>
+inline void atomic(Op, T* to, T v) {
     std::atomic_ref<T>(*to).fetch_add(v, std::memory_order_relaxed);  // mutate: atomic_sum_is_a_plain_one
 }
 

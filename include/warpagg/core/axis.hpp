@@ -22,6 +22,7 @@ enum class axis {
     commit,      ///< how the results reach memory
     idle,        ///< behavior of an idle warp
     gate,        ///< how many active lanes a reduction needs
+    scope,       ///< the threads that see the atomics
 };
 
 }  // namespace warpagg

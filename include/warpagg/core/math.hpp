@@ -53,6 +53,30 @@ requires std::is_arithmetic_v<T> WARPAGG_HD T min(T a, T b) { return b < a ? b :
 template <class T>
 requires std::is_arithmetic_v<T> WARPAGG_HD T max(T a, T b) { return a < b ? b : a; }
 /// @}
+/// Returns the smaller or the larger of two values. Floats compare as in IEEE 754-2019: the result is NaN
+/// if either is NaN, and -0 is smaller than +0.
+/// @{
+template <class T>
+requires std::is_arithmetic_v<T> WARPAGG_HD T ieee_minimum(T a, T b) {
+    if constexpr (std::is_integral_v<T>) {
+        return b < a ? b : a;
+    } else {
+        if (a != a) return a;
+        if (a == b) return __builtin_signbit(a) ? a : b;
+        return a < b ? a : b;
+    }
+}
+template <class T>
+requires std::is_arithmetic_v<T> WARPAGG_HD T ieee_maximum(T a, T b) {
+    if constexpr (std::is_integral_v<T>) {
+        return a < b ? b : a;
+    } else {
+        if (a != a) return a;
+        if (a == b) return __builtin_signbit(a) ? b : a;
+        return a > b ? a : b;
+    }
+}
+/// @}
 /// Limits a to an upper or a lower bound; returns the bound if a is NaN. Cost for a float on CUDA: one
 /// instruction, where `min` and `max` take two. Precondition: the bound is not NaN.
 /// @{
@@ -115,6 +139,19 @@ WARPAGG_HD double divide(double a, double b) { return a / b; }
 template <class To, class From>
 requires std::is_arithmetic_v<From> WARPAGG_HD To convert(From a) { return static_cast<To>(a); }
 
+/// Is satisfied by the 16-bit floats of CUDA and by pairs of them. They add by functions, because
+/// PyTorch's compiler flags remove the operators.
+/// @{
+template <class T>
+concept is_half = !std::is_arithmetic_v<T> && sizeof(T) == 2 && requires(T a) {
+    { __hadd(a, a) } -> std::same_as<T>;
+};
+template <class T>
+concept is_half_pair = !std::is_arithmetic_v<T> && sizeof(T) == 4 && requires(T a) {
+    { __hadd2(a, a) } -> std::same_as<T>;
+};
+/// @}
+
 /// Returns a + b. Integers wrap modulo 2^bits, signed ones too.
 template <class T>
 WARPAGG_HD T wrapping_add(const T& a, const T& b) {
@@ -122,6 +159,10 @@ WARPAGG_HD T wrapping_add(const T& a, const T& b) {
         return static_cast<T>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
     } else if constexpr (std::is_integral_v<T> && sizeof(T) == 8) {
         return static_cast<T>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+    } else if constexpr (is_half<T>) {
+        return __hadd(a, b);
+    } else if constexpr (is_half_pair<T>) {
+        return __hadd2(a, b);
     } else {
         return a + b;
     }

@@ -11,6 +11,25 @@
 
 namespace warpagg {
 
+/// Tags that select which threads see the atomics. A wider scope may be slower.
+namespace scope {
+
+/// The threads of the block. Use it for destinations in shared memory, or in global memory that only
+/// this block uses.
+struct block {
+    static constexpr auto axis = warpagg::axis::scope;
+};
+/// The threads of the GPU; the default.
+struct device {
+    static constexpr auto axis = warpagg::axis::scope;
+};
+/// The threads of all GPUs and of the CPU. Use it for destinations in memory that they share.
+struct system {
+    static constexpr auto axis = warpagg::axis::scope;
+};
+
+}  // namespace scope
+
 /// Each operation has three members. `combine(a, b)` combines scalars or SIMD values, lane by lane.
 /// `identity<T>()` is the contribution of an inactive lane. `suits<T>` tells whether an atomic
 /// exists for T.
@@ -42,29 +61,46 @@ struct for_integers {
     static constexpr T least = std::is_signed_v<T> ? static_cast<T>(T{1} << (8 * sizeof(T) - 1)) : T{};
 };
 
+/// The base class of `minimum` and `maximum`, for floats and for integers of 32 and 64 bits. Floats
+/// compare as in IEEE 754-2019: NaN wins over every number, and -0 is smaller than +0.
+struct for_ordered : for_integers {
+    template <class T>
+    static constexpr bool is_float = std::is_same_v<T, float> || std::is_same_v<T, double>;
+    template <class T>
+    static constexpr bool suits = is_float<T> || for_integers::suits<T>;
+};
+
 /// Takes the smaller value.
-struct minimum : for_integers {
+struct minimum : for_ordered {
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {
-        using math::min;
-        return min(a, b);
+        using math::ieee_minimum;
+        return ieee_minimum(a, b);
     }
     template <class T>
     WARPAGG_HD static T identity() {
-        return static_cast<T>(~least<T>);  // mutate: minimum_from_zero
+        if constexpr (is_float<T>) {
+            return static_cast<T>(__builtin_huge_val());
+        } else {
+            return static_cast<T>(~least<T>);  // mutate: minimum_from_zero
+        }
     }
 };
 
 /// Takes the larger value.
-struct maximum : for_integers {
+struct maximum : for_ordered {
     template <class V>
     WARPAGG_HD static V combine(const V& a, const V& b) {
-        using math::max;
-        return max(a, b);
+        using math::ieee_maximum;
+        return ieee_maximum(a, b);
     }
     template <class T>
     WARPAGG_HD static T identity() {
-        return least<T>;  // mutate: maximum_from_zero
+        if constexpr (is_float<T>) {
+            return static_cast<T>(-__builtin_huge_val());
+        } else {
+            return least<T>;  // mutate: maximum_from_zero
+        }
     }
 };
 
@@ -133,6 +169,31 @@ struct bit_xor : for_integers {
     }
 };
 
+/// An operation whose atomics are visible to the threads of a scope. Models without scopes, such as
+/// the emulators, treat it as `Op`.
+template <class Op, class Scope>
+struct scoped : Op {
+    using scope = Scope;
+};
+
+namespace detail {
+template <class Op>
+struct scope_of {
+    using type = warpagg::scope::device;
+};
+template <class Op, class Scope>
+struct scope_of<scoped<Op, Scope>> {
+    using type = Scope;
+};
+}  // namespace detail
+/// The scope of an operation: `scope::device`, unless the operation is `scoped`.
+template <class Op>
+using scope_of = typename detail::scope_of<Op>::type;
+
+/// Is satisfied by the sum, also by a `scoped` one.
+template <class Op>
+concept is_sum = std::convertible_to<Op, sum>;
+
 }  // namespace operation
 
 /// An operation as an object, for `policy{...}`.
@@ -142,6 +203,13 @@ WARPAGG_TAG operation::maximum maximum{};
 WARPAGG_TAG operation::bit_and bit_and{};
 WARPAGG_TAG operation::bit_or bit_or{};
 WARPAGG_TAG operation::bit_xor bit_xor{};
+/// @}
+
+/// A scope as an object, for `policy{...}`.
+/// @{
+WARPAGG_TAG scope::block block_scope{};
+WARPAGG_TAG scope::device device_scope{};
+WARPAGG_TAG scope::system system_scope{};
 /// @}
 
 }  // namespace warpagg

@@ -97,7 +97,7 @@ struct skip {
     static constexpr auto axis = warpagg::axis::idle;
 };
 /// Assumes that the warp is busy. Precondition: at least one lane is active. `emulator::checked`,
-/// and CUDA with WARPAGG_CHECKS, verify this. Cost: none; a gate still takes its vote.
+/// and CUDA with WARPAGG_CHECKS, verify this. Cost: none.
 struct assume_busy {
     static constexpr auto axis = warpagg::axis::idle;
 };
@@ -120,8 +120,8 @@ struct always {
 };
 /// Reduces only if at least K lanes are active. Otherwise each active lane commits its own values,
 /// the ungated commit: by `packed<4>`, unless the policy names `packed<2>` or `scalar`. If that
-/// commit packs neighbors, the limit is Packed instead of K. Cost: one vote, which also replaces the
-/// vote of `skip`.
+/// commit packs neighbors, the limit is Packed instead of K. Cost: one vote and a count, in busy warps
+/// only.
 template <unsigned K, unsigned Packed = K>
 struct at_least {
     static_assert(K > 0, "at_least<K> takes K > 0: without a gate, say always");

@@ -14,6 +14,25 @@ struct contiguous_record {
     WARPAGG_HD T* operator()(unsigned i) const { return first + i; }
 };
 
+/// An accessor to a record whose components are in several arrays: the first `First` components are
+/// at `first`, and the others in `rest`. See `warpagg::fields`.
+template <class T, int First, int... Rest>
+struct field_list {
+    T* first;
+    field_list<T, Rest...> rest;
+    static constexpr int components = (First + ... + Rest);
+    WARPAGG_HD T* operator()(unsigned i) const {
+        constexpr unsigned here = First;
+        return i < here ? first + i : rest(i - here);
+    }
+};
+template <class T, int First>
+struct field_list<T, First> {
+    T* first;
+    static constexpr int components = First;
+    WARPAGG_HD T* operator()(unsigned i) const { return first + i; }
+};
+
 /// Returns a destination as an accessor. The destination is a pointer, a span (an object with a const
 /// `data()` that gives write access), or already an accessor, as for a structure of arrays.
 /// @{

@@ -4,61 +4,17 @@
 
 #include "../core/operation.hpp"
 #include "concept.hpp"
+#include "cuda_atomics.hpp"
 
 namespace warpagg {
 
 namespace detail::cuda_memory {
-
-/// The parameter type of CUDA's atomics: unsigned for 64-bit integers, T otherwise. Signed sums are
-/// correct in two's complement.
-template <class T>
-using bits = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, unsigned long long, T>;
-template <class T>
-using integer = std::conditional_t<sizeof(T) == 8,
-                                   std::conditional_t<std::is_signed_v<T>, long long, unsigned long long>, T>;
 
 /// Four values. If they have 32 bits each, one instruction loads or stores all four.
 template <class T>
 struct alignas(16) four {
     T at[4];
 };
-
-template <class T>
-__device__ __forceinline__ void atomic(operation::sum, T* to, T v) {
-    atomicAdd(reinterpret_cast<bits<T>*>(to), static_cast<bits<T>>(v));
-}
-template <class T>
-__device__ __forceinline__ void atomic(operation::minimum, T* to, T v) {
-    atomicMin(reinterpret_cast<integer<T>*>(to), static_cast<integer<T>>(v));
-}
-template <class T>
-__device__ __forceinline__ void atomic(operation::maximum, T* to, T v) {
-    atomicMax(reinterpret_cast<integer<T>*>(to), static_cast<integer<T>>(v));
-}
-template <class T>
-__device__ __forceinline__ void atomic(operation::bit_and, T* to, T v) {
-    atomicAnd(reinterpret_cast<bits<T>*>(to), static_cast<bits<T>>(v));
-}
-template <class T>
-__device__ __forceinline__ void atomic(operation::bit_or, T* to, T v) {
-    atomicOr(reinterpret_cast<bits<T>*>(to), static_cast<bits<T>>(v));
-}
-template <class T>
-__device__ __forceinline__ void atomic(operation::bit_xor, T* to, T v) {
-    atomicXor(reinterpret_cast<bits<T>*>(to), static_cast<bits<T>>(v));
-}
-
-template <class Op, class T>
-requires Op::by_exchange __device__ __forceinline__ void atomic(Op, T* to, T v) {
-    auto* word = reinterpret_cast<unsigned long long*>(to);
-    for (unsigned long long before = *static_cast<volatile unsigned long long*>(word);;) {
-        const unsigned long long after = Op::combine(static_cast<T>(before), v);
-        if (after == before) return;
-        const unsigned long long seen = atomicCAS(word, before, after);
-        if (seen == before) return;
-        before = seen;
-    }
-}
 
 }  // namespace detail::cuda_memory
 
@@ -105,7 +61,14 @@ struct cuda_warp {
         return __shfl_xor_sync(all, v, static_cast<int>(distance));
     }
 
-    __device__ __forceinline__ std::uint32_t match(unsigned key) const { return __match_any_sync(all, key); }
+    template <class Key>
+    __device__ __forceinline__ std::uint32_t match(Key key) const {
+        if constexpr (sizeof(Key) == 8) {
+            return __match_any_sync(all, static_cast<unsigned long long>(key));
+        } else {
+            return __match_any_sync(all, static_cast<unsigned>(key));
+        }
+    }
 
     template <class T>
     __device__ __forceinline__ T load(const T* from, unsigned index, bool active) const {
@@ -151,13 +114,16 @@ struct cuda_warp {
     }
     /// @}
 
-    /// Sets `*dst(index) = Op::combine(*dst(index), v)` in active lanes, relaxed. Sums take float,
-    /// double, integers of 32 and 64 bits, `__half2` and `__nv_bfloat162`; the other operations take
-    /// integers of 32 and 64 bits. Cost: one RED instruction, an atomic without a result; operations on
-    /// words take a compare-and-swap loop.
-    template <class Op, class Dst, class T>
-    __device__ __forceinline__ void atomic(Op op, Dst dst, unsigned index, T v, bool active) const {
-        if (active) detail::cuda_memory::atomic(op, dst(index), v);  // mutate: cuda_inactive_lanes_commit
+    /// Sets `*dst(index) = Op::combine(*dst(index), v)` in active lanes, relaxed, in the scope of the
+    /// operation. Sums take float, double, integers of 32 and 64 bits, 16-bit floats and pairs of
+    /// them; minimum and maximum take float, double and integers of 32 and 64 bits; the other
+    /// operations take integers of 32 and 64 bits. Cost: one RED instruction, an atomic without a
+    /// result; operations on words, and pairs of bfloat16 below compute capability 9.0, take a
+    /// compare-and-swap loop.
+    template <class Op, class Dst, class Index, class T>
+    __device__ __forceinline__ void atomic(Op op, Dst dst, Index index, T v, bool active) const {
+        // mutate: cuda_inactive_lanes_commit
+        if (active) detail::cuda_memory::atomic<operation::scope_of<Op>>(op, dst(index), v);
     }
     /// Returns whether `atomic_add_packed<K>` may add to to[0..K): the address is in global memory and
     /// aligned to K floats, and the compute capability is 9.0 or more.
@@ -171,19 +137,16 @@ struct cuda_warp {
     }
     /// Adds v[0..K) to to[0..K) in active lanes. Cost: one RED instruction. Precondition:
     /// `packs<K>(to)`, or K = 1.
-    template <unsigned K>
-    __device__ __forceinline__ void atomic_add_packed(float* to, const float* v, bool active) const {
+    template <unsigned K, class Op>
+    __device__ __forceinline__ void atomic_add_packed(Op op, float* to, const float* v, bool active) const {
+        using memory = detail::cuda_memory::scope_atomics<operation::scope_of<Op>>;
         if (!active) return;
         if constexpr (K == 4) {
-            asm volatile("red.global.add.v4.f32 [%0], {%1, %2, %3, %4};" ::"l"(__cvta_generic_to_global(to)),
-                         "f"(v[0]), "f"(v[1]), "f"(v[2]), "f"(v[3])
-                         : "memory");
+            memory::add_4(__cvta_generic_to_global(to), v);
         } else if constexpr (K == 2) {
-            asm volatile("red.global.add.v2.f32 [%0], {%1, %2};" ::"l"(__cvta_generic_to_global(to)),
-                         "f"(v[0]), "f"(v[1])
-                         : "memory");
+            memory::add_2(__cvta_generic_to_global(to), v);
         } else {
-            atomicAdd(to, v[0]);
+            detail::cuda_memory::atomic<operation::scope_of<Op>>(op, to, v[0]);
         }
     }
 

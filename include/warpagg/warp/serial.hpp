@@ -21,7 +21,10 @@ struct serial {
     std::uint32_t ballot(bool p) const { return p ? 1u : 0u; }
     bool any(bool p) const { return p; }
 
-    std::uint32_t match(unsigned) const { return 1u; }
+    template <class Key>
+    std::uint32_t match(Key) const {
+        return 1u;
+    }
 
     template <class T>
     T shfl(T v, unsigned) const {
@@ -65,8 +68,8 @@ struct serial {
     void store_row(T* to, std::ptrdiff_t first, T v, bool active) const {
         if (active) to[first] = v;
     }
-    template <class Op, class Dst, class T>
-    void atomic(Op op, Dst dst, unsigned index, T v, bool active) const {
+    template <class Op, class Dst, class Index, class T>
+    void atomic(Op op, Dst dst, Index index, T v, bool active) const {
         if (active) detail::atomic(op, dst(index), v);
     }
     /// @}

@@ -65,11 +65,12 @@ struct basic_lanes : Counting {
         for (int i = 0; i < static_cast<int>(size); ++i) r.set(i, v[static_cast<int>(from[i] % size)]);
         return r;
     }
-    WARPAGG_HD value<std::uint32_t> match(const value<unsigned>& key) const {
+    template <class Key>
+    WARPAGG_HD value<std::uint32_t> match(const value<Key>& key) const {
         count([](counters& c) { ++c.votes; });
         value<std::uint32_t> r;
         WARPAGG_UNROLL
-        for (int i = 0; i < static_cast<int>(size); ++i) r.set(i, bits(key == value<unsigned>(key[i])));
+        for (int i = 0; i < static_cast<int>(size); ++i) r.set(i, bits(key == value<Key>(key[i])));
         return r;
     }
     template <class T>
@@ -233,8 +234,8 @@ struct basic_lanes : Counting {
                 if (active[i * v.width + k]) p[k] = v[i * v.width + k];
         }
     }
-    template <class Op, class Dst, class T>
-    WARPAGG_HD void atomic(Op op, Dst dst, const value<unsigned>& index, const value<T>& v,
+    template <class Op, class Dst, class Index, class T>
+    WARPAGG_HD void atomic(Op op, Dst dst, const value<Index>& index, const value<T>& v,
                            const mask& active) const {
         const std::uint32_t who = bits(active);
         count([&](counters& c) { count_commit(c, dst, index, who); });
@@ -257,8 +258,8 @@ struct basic_lanes : Counting {
     WARPAGG_HD void count_shuffle() const {
         count([](counters& c) { c.shuffles += (sizeof(T) + 3) / 4; });  // mutate: shuffles_counted_by_value
     }
-    template <class Dst>
-    static void count_commit(counters& c, Dst dst, const value<unsigned>& index, std::uint32_t who) {
+    template <class Dst, class Index>
+    static void count_commit(counters& c, Dst dst, const value<Index>& index, std::uint32_t who) {
         if (who == 0) return;
         ++c.commits;
         std::uintptr_t sectors[size];

@@ -251,6 +251,33 @@ requires(!std::is_same_v<T, bool>)
     return max(a, simd_value<T, L>(b));
 }
 
+template <class T, int L>
+requires(!std::is_same_v<T, bool>)
+    WARPAGG_HD simd_value<T, L> ieee_minimum(const simd_value<T, L>& a, const simd_value<T, L>& b) {
+    if constexpr (std::is_integral_v<T>) {
+        return min(a, b);
+    } else {
+        T all[L];  // an array, because GCC reports a vector that is set lane by lane as uninitialized
+        for (int lane = 0; lane < L; ++lane) all[lane] = math::ieee_minimum(T{a[lane]}, T{b[lane]});
+        simd_value<T, L> r;
+        std::memcpy(r.part, all, sizeof all);
+        return r;
+    }
+}
+template <class T, int L>
+requires(!std::is_same_v<T, bool>)
+    WARPAGG_HD simd_value<T, L> ieee_maximum(const simd_value<T, L>& a, const simd_value<T, L>& b) {
+    if constexpr (std::is_integral_v<T>) {
+        return max(a, b);
+    } else {
+        T all[L];
+        for (int lane = 0; lane < L; ++lane) all[lane] = math::ieee_maximum(T{a[lane]}, T{b[lane]});
+        simd_value<T, L> r;
+        std::memcpy(r.part, all, sizeof all);
+        return r;
+    }
+}
+
 /// Returns a * b + c, rounded once.
 template <class T, int L>
 WARPAGG_HD simd_value<T, L> fma(const simd_value<T, L>& a, const simd_value<T, L>& b,

@@ -15,23 +15,23 @@ namespace detail {
 /// Is true if the types allow one atomic instruction per group of neighbors.
 template <class Op, class Commit, class W, class Dst, class V>
 inline constexpr bool packs = false;
-template <unsigned K, class W, class T>
-inline constexpr bool packs<operation::sum, packed<K>, W, contiguous_record<T>, T> =
-    requires(const W& w, T* to, const T* v, bool active) {
+template <operation::is_sum Op, unsigned K, class W, class T>
+inline constexpr bool packs<Op, packed<K>, W, contiguous_record<T>, T> = requires(const W& w, T* to,
+                                                                                  const T* v, bool active) {
     w.template packs<K>(to);
-    w.template atomic_add_packed<K>(to, v, active);
+    w.template atomic_add_packed<K>(Op{}, to, v, active);
 };
 
 /// Commits v[I] to v[N - 1] of active lanes in groups of K, and the remainder in smaller groups.
 WARPAGG_EXEC_CHECK_DISABLE
-template <unsigned K, int I, warp W, class T, int N>
+template <class Op, unsigned K, int I, warp W, class T, int N>
 WARPAGG_HD void by_groups(const W& w, T* to, const T (&v)[N], bool active) {
     constexpr int group = static_cast<int>(K);
     if constexpr (I + group <= N) {
-        w.template atomic_add_packed<K>(to + I, v + I, active);  // mutate: packed_first_values_again
-        by_groups<K, I + group>(w, to, v, active);
+        w.template atomic_add_packed<K>(Op{}, to + I, v + I, active);  // mutate: packed_first_values_again
+        by_groups<Op, K, I + group>(w, to, v, active);
     } else if constexpr (I < N) {  // mutate: packed_remainder_lost
-        by_groups<K / 2, I>(w, to, v, active);
+        by_groups<Op, K / 2, I>(w, to, v, active);
     }
 }
 
@@ -55,7 +55,7 @@ template <class Op, class Commit, warp W, class Dst, class V, int N>
 WARPAGG_HD void each_lane(const W& w, Dst dst, const V (&v)[N], const mask_t<W>& active) {
     if constexpr (detail::packs<Op, Commit, W, Dst, V>) {
         if (is_packed<Op, Commit, V>(w, dst)) {
-            detail::by_groups<Commit::neighbors, 0>(w, dst(0), v, active);
+            detail::by_groups<Op, Commit::neighbors, 0>(w, dst(0), v, active);
             return;
         }
     }
@@ -63,6 +63,18 @@ WARPAGG_HD void each_lane(const W& w, Dst dst, const V (&v)[N], const mask_t<W>&
     for (int i = 0; i < N; ++i)
         warpagg::detail::commit_value<Op>(w, dst, value_t<W, unsigned>(static_cast<unsigned>(i)), v[i],
                                           active);
+}
+
+/// Commits each active lane's own values to fields, each as a record of its own.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, class Commit, int I = 0, warp W, class T, int First, int... Rest, class V, int N>
+WARPAGG_HD void each_lane(const W& w, const field_list<T, First, Rest...>& dst, const V (&v)[N],
+                          const mask_t<W>& active) {
+    V own[First];
+    WARPAGG_UNROLL
+    for (int i = 0; i < First; ++i) own[i] = v[I + i];  // mutate: fields_first_values_again
+    each_lane<Op, Commit>(w, contiguous_record<T>{dst.first}, own, active);
+    if constexpr (sizeof...(Rest) > 0) each_lane<Op, Commit, I + First>(w, dst.rest, v, active);
 }
 
 /// Commits N uniform values: lane i commits v[i]. Cost: one atomic instruction per W values.

@@ -48,7 +48,8 @@ class checked {
         return vote(all_lanes, p, at);
     }
     bool any(bool p, call_site at = call_site::here("any")) const { return vote(all_lanes, p, at) != 0; }
-    std::uint32_t match(unsigned key, call_site at = call_site::here("match")) const {
+    template <class Key>
+    std::uint32_t match(Key key, call_site at = call_site::here("match")) const {
         return equal(all_lanes, key, at);
     }
 
@@ -69,8 +70,8 @@ class checked {
 
     /// Commits the values of active lanes. All lanes call this. Active lanes commit one after another,
     /// in an order drawn from the seed, in which lanes of other warps may intervene.
-    template <class Op, class Dst, class T>
-    WARPAGG_OUT_OF_LINE void atomic(Op op, Dst dst, unsigned index, T v, bool active,
+    template <class Op, class Dst, class Index, class T>
+    WARPAGG_OUT_OF_LINE void atomic(Op op, Dst dst, Index index, T v, bool active,
                                     call_site at = call_site::here("atomic")) const {
         T* const to = active ? dst(index) : nullptr;
         commit mine{to};
