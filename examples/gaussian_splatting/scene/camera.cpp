@@ -9,13 +9,14 @@
 namespace gs {
 namespace {
 
-/// The derivative of `fisheye::radius`.
+/// Returns the derivative of `fisheye::radius`.
 double slope(const std::array<double, 4>& k, double angle) {
     const double w = angle * angle;
     return 1 + w * (3 * k[0] + w * (5 * k[1] + w * (7 * k[2] + w * 9 * k[3])));
 }
 
-/// The position where a condition ends to hold that holds at `from` and not at `to`.
+/// Returns the position between `from` and `to` where a condition stops holding. Precondition: it
+/// holds at `from` and does not hold at `to`.
 template <class Condition>
 double bisect(double from, double to, const Condition& holds) {
     for (int i = 0; i < 60; ++i) {
@@ -28,7 +29,7 @@ double bisect(double from, double to, const Condition& holds) {
 }  // namespace
 
 fisheye::fisheye(const std::array<double, 4>& k) : k_(k), end_(widest) {
-    constexpr int steps = 300;  // a valid lens does not turn back and forth between two steps
+    constexpr int steps = 300;  // finer than any bend of a valid lens
     const auto grows = [&](double t) { return slope(k, t) > 0; };
     for (int i = 1; i <= steps && end_ == widest; ++i)
         if (!grows(widest * i / steps)) end_ = bisect(widest * (i - 1) / steps, widest * i / steps, grows);
@@ -41,7 +42,7 @@ double fisheye::radius(double angle) const {
 
 double fisheye::angle(double radius) const {
     if (radius >= this->radius(end_)) return end_;
-    // Newton's method, with bisection where it leaves the bracket.
+    // Newton's method. Bisects if a step would leave the bracket.
     double low = 0, high = end_, angle = std::min(radius, end_);
     for (int step = 0; step < 60; ++step) {
         const double off = this->radius(angle) - radius;

@@ -13,21 +13,24 @@
 namespace gs {
 
 /// A fisheye lens (Kannala and Brandt 2006; the model of COLMAP and OpenCV). It projects a ray at
-/// the angle t from the axis to t (1 + k[0] t^2 + k[1] t^4 + k[2] t^6 + k[3] t^8) focal lengths
-/// from the center.
+/// the angle t from the axis to the distance t (1 + k[0] t^2 + k[1] t^4 + k[2] t^6 + k[3] t^8) from
+/// the center, in focal lengths. Angles are in radians.
 class fisheye {
   public:
     explicit fisheye(const std::array<double, 4>& k);
 
     const std::array<double, 4>& k() const { return k_; }
-    /// The distance from the center, in focal lengths, of a ray at this angle.
+    /// Returns the distance from the center, in focal lengths, of a ray at this angle.
     double radius(double angle) const;
-    /// The angle at which `radius` stops growing, where the model ends; at most `widest`.
+    /// Returns the angle at which `radius` stops growing, where the model ends. It is at most
+    /// `widest`.
     double end() const { return end_; }
-    /// The inverse of `radius`; `end()` for distances beyond its range.
+    /// Returns the angle of a ray at this distance, the inverse of `radius`. Distances beyond the
+    /// range of `radius` give `end()`.
     double angle(double radius) const;
 
-    /// 172 degrees from the axis: near 180 degrees a whole circle of pixels shows the same point.
+    /// The largest angle of a ray, 172 degrees. Near 180 degrees, a whole circle of pixels would
+    /// show the same point.
     static constexpr double widest = 3;
 
   private:
@@ -35,9 +38,9 @@ class fisheye {
     double end_;
 };
 
-/// A camera. The point p of the world is q = `rotation * p + translation` in camera space (x right,
+/// A camera. It maps a world point p to q = `rotation * p + translation` in camera space (x right,
 /// y down, z forward). A pinhole camera projects q to the pixel coordinates (fx q.x/q.z + cx, fy
-/// q.y/q.z + cy), where the center of the top left pixel is (0.5, 0.5).
+/// q.y/q.z + cy). The center of the top left pixel is (0.5, 0.5).
 struct camera {
     int width = 0;
     int height = 0;
@@ -50,15 +53,15 @@ struct camera {
 
     struct image_point {
         double x, y;   ///< pixels
-        double depth;  ///< z for a pinhole camera, the distance for a fisheye
+        double depth;  ///< z for a pinhole camera, distance from the camera for a fisheye
     };
-    /// Projects a point of the world; none if it is behind the camera, or beyond the end of a
-    /// fisheye lens.
+    /// Projects a world point. Returns nothing if the point is behind the camera, or beyond the end
+    /// of a fisheye lens.
     std::optional<image_point> see(const glm::dvec3& point) const;
-    /// The direction in the world, of length one, that projects to these pixel coordinates.
+    /// Returns the unit vector in world space that projects to these pixel coordinates.
     glm::dvec3 ray(double x, double y) const;
 
-    /// The same camera for an image that was scaled to another size.
+    /// Returns the camera of the same image after it is scaled to another size.
     camera resized(int new_width, int new_height) const;
 };
 

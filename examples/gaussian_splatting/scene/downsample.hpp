@@ -6,11 +6,11 @@
 
 namespace gs {
 
-/// The camera of an image with its sides divided by `divisor` and rounded to the nearest pixel, at
-/// least 1.
+/// Returns the camera of the image with its sides divided by `divisor`. The sides are rounded to
+/// the nearest pixel and are at least 1.
 camera downsampled(const camera& full, int divisor);
 
-/// The view with that camera; the photo and the depth map are averaged over areas.
+/// Returns the view with this camera. Averages the photo and the depth map over areas.
 view downsampled(const view& full, int divisor);
 
 }  // namespace gs

@@ -10,10 +10,11 @@
 
 namespace gs {
 
-/// The training views at each size, the full size first.
+/// The training views at each size. The full size comes first.
 using image_pyramid = std::vector<std::span<const view>>;
 
-/// `views` at `downscales` smaller sizes, each half of the one before. Runs in parallel.
+/// Returns the views at `downscales` smaller sizes, with sides divided by 2, 4, 8 and so on. Runs
+/// in parallel.
 inline std::vector<std::vector<view>> downsampled_levels(std::span<const view> views, int downscales) {
     std::vector<std::vector<view>> levels(static_cast<std::size_t>(downscales),
                                           std::vector<view>(views.size()));

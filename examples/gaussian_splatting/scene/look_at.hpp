@@ -9,9 +9,9 @@
 
 namespace gs {
 
-/// A camera at `from` that sees `to` in the middle of its image, and `up` pointing upwards. The
-/// image has `size` pixels per side; the focal length is in pixels. Precondition: `up` is not
-/// parallel to the viewing direction.
+/// Returns a camera at `from` that shows `to` in the center of its image, with `up` pointing
+/// upward. The image has `size` pixels per side; the focal length is in pixels. Precondition: `up`
+/// is not parallel to the viewing direction.
 inline camera look_at(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& up, int size,
                       double focal) {
     const glm::dvec3 z = glm::normalize(to - from);

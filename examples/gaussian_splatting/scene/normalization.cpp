@@ -19,7 +19,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// The median over `things` of `measure`.
+/// Returns the median of `measure` over all `things`.
 template <class Things, class Measure>
 double median_of(const Things& things, const Measure& measure) {
     std::vector<double> values;
@@ -68,7 +68,7 @@ double scene::extent() const {
 
 std::optional<glm::dvec3> scene::looked_at() const {
     if (train.empty()) return std::nullopt;
-    // Relative to the cameras, so that a distant origin costs no precision.
+    // Uses positions relative to the cameras, so that a distant origin costs no precision.
     const glm::dvec3 mean = mean_of_cameras(*this), origin = normalization.to_internal(glm::dvec3(0)) - mean;
     constexpr double pull = 1e-10;  // above rounding, below the effect of axes 0.01 degrees apart
     const auto axis_of = [](const camera& c) { return glm::transpose(c.rotation)[2]; };
@@ -85,7 +85,7 @@ std::optional<glm::dvec3> scene::looked_at() const {
     const double depth = median_of(train, [&](const view& v) {
         return glm::dot(axis_of(v.camera), point - (v.camera.center() - mean));
     });
-    // A nearer point results from the pull alone.
+    // A nearer point results only from the pull toward the origin.
     if (!(depth > 100 * pull * glm::length(origin))) return std::nullopt;
     return mean + point;
 }

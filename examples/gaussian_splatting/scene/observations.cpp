@@ -14,7 +14,7 @@ namespace gs {
 namespace {
 
 constexpr std::size_t most_points = 6000;
-constexpr double spacings = 2.5;                  ///< points this close in the image may hide each other
+constexpr double spacings = 2.5;                  ///< points this close may hide each other
 constexpr double nearer = 0.03;                   ///< relative difference in depth
 constexpr int least_value = 6, most_value = 249;  ///< of a channel that is not saturated
 
@@ -28,8 +28,8 @@ std::vector<place_in_photo> project(const camera& c, const std::vector<colored_p
     return seen;
 }
 
-/// The depth of the nearest point in each cell of the image. Cells are as wide as the distance at
-/// which points hide each other.
+/// The depth of the nearest point in each cell of the image. The side of a cell is the distance, in
+/// pixels, at which points may hide each other.
 class nearest_depths {
   public:
     nearest_depths(const camera& c, const std::vector<place_in_photo>& seen)
@@ -42,7 +42,7 @@ class nearest_depths {
             d = std::min(d, p.depth);
         }
     }
-    /// Whether no point of this cell and its neighbors is clearly nearer.
+    /// Returns whether no point in this cell and its neighbors is clearly nearer.
     bool shows(const place_in_photo& p) const {
         for (int dy = -1; dy <= 1; ++dy)
             for (int dx = -1; dx <= 1; ++dx)

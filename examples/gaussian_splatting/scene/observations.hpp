@@ -10,31 +10,31 @@
 
 namespace gs {
 
-/// A point of a scene as one of its photos shows it.
+/// The appearance of one scene point in one photo.
 struct observation {
     std::uint32_t view = 0;
     glm::vec3 color{0};      ///< mean of the 3×3 pixels around it, as displayed, in [0, 1]
     glm::vec3 direction{0};  ///< from the camera to the point, of length one
-    float footprint = 0;     ///< width of a pixel at the point's depth, in the scene's unit
+    float footprint = 0;     ///< width of a pixel at the point's depth, in units of the scene
     float roughness = 0;     ///< (brightest - darkest) / brightest of these pixels
 };
 
 /// The observations of each point.
 using observed_points = std::vector<std::vector<observation>>;
 
-/// The pixel coordinates and the depth of a point in a photo, see `camera::image_point`.
+/// The pixel coordinates and the depth of a point in a photo: see `camera::image_point`.
 struct place_in_photo {
     std::uint32_t point;
     double x, y, depth;
 };
 
-/// Projects the points that a camera sees. A point does not count if a clearly nearer one, a few
-/// spacings away in the image, may hide it.
+/// Projects the points that a camera sees. Leaves out a point if a clearly nearer one may hide it,
+/// up to a few point spacings away in the image.
 std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<colored_point>& points);
 
-/// For a sample of some thousands of the scene's points, the observations in the training photos.
-/// Skips points that are not `points_in_sight`, or where the photo is transparent or a channel is
-/// saturated. Projects all points into all photos.
+/// Returns the observations of a sample of the points, at most 6000, in the training photos. Skips
+/// observations of points that are not `points_in_sight`, and those where the photo is transparent
+/// or a color channel is saturated. Cost: projects all points into all photos.
 observed_points observe_points(const scene& of);
 
 }  // namespace gs

@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::size_t least_points_of_photo = 20;
 
-/// Least squares of log2(brightness) = point + photo, the points eliminated, with a weight each. It is not
-/// written out: photos may be thousands.
+/// The weighted least-squares problem log2(brightness) = point + photo, with the unknowns of the
+/// points eliminated. The matrix is not stored, because there may be thousands of photos.
 class photo_equations {
   public:
     explicit photo_equations(std::size_t views)
         : right_(views, 0.0), information_(views, 0.0), diagonal_(views, held) {}
 
-    /// The observations of one point.
+    /// Adds the observations of one point, with their log2 of brightness and their weights.
     void add(const std::vector<observation>& seen, const std::vector<double>& logs,
              const std::vector<double>& weights) {
         double sum = 0, mean = 0;
@@ -40,7 +40,9 @@ class photo_equations {
         points_.push_back({std::move(terms), sum});
     }
 
-    /// By conjugate gradients with Jacobi's preconditioner, to twelve digits, from x on.
+    /// Solves the equations by conjugate gradients with a Jacobi preconditioner, starting from x.
+    /// Stops if the residual is 1e-12 relative to the right-hand side, or after ten steps per
+    /// photo.
     std::vector<double> solve(std::vector<double> x) const {
         const std::size_t n = x.size();
         const auto dot = [&](const std::vector<double>& a, const std::vector<double>& b) {
@@ -68,8 +70,9 @@ class photo_equations {
     const std::vector<double>& information() const { return information_; }
 
   private:
-    /// To zero, in observations: all photos together are of no exposure. So little that it does not hold back
-    /// what drifts along a walk of thousands.
+    /// The weight, in observations, of a term that pulls each photo's unknown toward zero. The
+    /// other terms do not determine the common brightness of all photos. The weight is small, so
+    /// that it does not suppress a slow drift over thousands of photos.
     static constexpr double held = 1e-9;
     struct term {
         std::size_t view;
@@ -101,7 +104,7 @@ double brightness(const observation& o) { return (o.color.r + o.color.g + o.colo
 
 photo_brightness estimate_brightness(const observed_points& points, std::size_t photos) {
     constexpr int rounds = 10;
-    constexpr double huber = 2;  // standard deviations, from which a residual counts less
+    constexpr double huber = 2;  // standard deviations; larger residuals have a smaller weight
     std::vector<double> found_log2(photos, 0.0), information(photos, 0.0), off;
     double deviation = 0;
     for (int round = 0; round < rounds; ++round) {

@@ -9,15 +9,16 @@
 
 namespace gs {
 
-/// How much brighter than the others each photo shows the points that they share, as log2 of a factor on
-/// displayed values. The mean over photos that share points is zero.
+/// The relative brightness of each photo, measured at the points that it shares with other photos:
+/// log2 of a factor on displayed values. Its mean over photos that share points is zero.
 struct photo_brightness {
-    std::vector<double> log2;   ///< one per photo; zero for photos that share too few points with others
-    std::vector<double> error;  ///< standard error of each; zero for those photos
+    std::vector<double> log2;   ///< one per photo; zero for photos with too few points
+    std::vector<double> error;  ///< standard errors; zero for photos with too few points
 };
 
-/// Least squares over points and photos with Huber's weights, in ten rounds of conjugate gradients. `points`
-/// holds the observations of each point, `photos` is the number of photos.
+/// Estimates the brightness by least squares over points and photos with Huber weights, in ten
+/// rounds of reweighting. `points` holds the observations of each point, and `photos` is the number
+/// of photos.
 photo_brightness estimate_brightness(const std::vector<std::vector<observation>>& points, std::size_t photos);
 
 }  // namespace gs

@@ -16,10 +16,10 @@ namespace gs {
 
 /// One photo with its camera, both at the resolution of training.
 struct view {
-    std::string name;  ///< relative to the images folder, with its ending
+    std::string name;  ///< path relative to the images folder, with its ending
     gs::camera camera;
     image pixels;
-    depth_map depths{};  ///< of the photo's size, or empty
+    depth_map depths{};  ///< has the photo's size, or is empty
 };
 
 struct colored_point {
@@ -30,24 +30,26 @@ struct colored_point {
 struct scene {
     std::vector<view> train;
     std::vector<view> test;
-    std::vector<colored_point> points;  ///< from structure from motion; may be empty
-    bool has_alpha = false;             ///< some photo has transparent, unmasked pixels
-    /// The cameras look at one object, so that scenes without points begin with Gaussians around
-    /// it.
+    std::vector<colored_point> points;  ///< points from structure from motion, or empty
+    bool has_alpha = false;             ///< whether a photo has transparent, unmasked pixels
+    /// Whether the cameras look at one object. A scene without points then begins with Gaussians
+    /// around that object.
     bool object_centered = false;
-    gs::normalization normalization;  ///< of cameras and points; the identity until `normalize`
+    gs::normalization normalization;  ///< of cameras and points; the identity before `normalize`
 
-    /// 1.1 times the largest distance of a training camera from the mean of all: the unit of the
-    /// learning rate of positions and of densification (Kerbl et al. 2023, reference
-    /// implementation). If all cameras are at one place (up to a millionth of the following
-    /// distances), it is the median distance of the points from there; without points, the distance
-    /// of `looked_at`; and without that, 1 in world units.
+    /// Returns the extent: 1.1 times the largest distance of a training camera from the mean of all
+    /// training cameras. It is the unit of the learning rate of positions and of densification
+    /// (Kerbl et al. 2023, reference implementation).
+    ///
+    /// If all cameras are at one place (up to a millionth of the following distances), returns the
+    /// median distance of the points from this place. Without points, returns the distance of
+    /// `looked_at`. If that does not exist either, returns 1 in world units.
     double extent() const;
 
-    /// The point nearest to the optical axes of the training cameras, by least squares. In
-    /// directions that the axes do not determine (a single camera, parallel axes) it is nearest to
-    /// the origin of the world, where scenes without points have their object. None if it is not in
-    /// front of at least half of the cameras.
+    /// Returns the point nearest to the optical axes of the training cameras, by least squares. The
+    /// axes may leave directions undetermined (a single camera, parallel axes). In these directions
+    /// the point is nearest to the world origin, where scenes without points have their object.
+    /// Returns nothing if the point is not in front of at least half of the cameras.
     std::optional<glm::dvec3> looked_at() const;
 };
 

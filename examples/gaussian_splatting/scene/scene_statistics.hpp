@@ -12,21 +12,24 @@
 
 namespace gs {
 
-/// What several features look at in the photos of a scene. Each part is computed on first use and kept.
+/// Statistics of a scene's photos that several features share. Each one is computed on first use
+/// and kept. Not thread-safe.
 class scene_statistics {
   public:
-    /// Fewer observations of a point say nothing about it.
+    /// The smallest number of observations of a point that is used.
     static constexpr std::size_t least_photos_of_point = 5;
 
     explicit scene_statistics(const scene& of) : scene_(of) {}
 
     const gs::scene& scene() const { return scene_; }
-    /// The observations of each point; see `observe_points`.
+    /// Returns the observations of each point: see `observe_points`.
     const observed_points& points() const;
-    /// Those in smooth parts of the photos, of points that keep enough of them: where the photo is rough, a
-    /// point's color depends on where exactly it is. The smoothest tenth tells what is noise.
+    /// Returns the observations in smooth parts of the photos, of points that keep at least
+    /// `least_photos_of_point` of them. In rough parts, the color depends too much on the exact
+    /// position of the point. The threshold follows the noise, estimated from the smoothest tenth.
     const observed_points& smooth_points() const;
-    /// Empty lists if there are no smooth points.
+    /// Returns the relative brightness of the photos. The lists are empty if there are no smooth
+    /// points.
     const photo_brightness& brightness() const;
 
   private:

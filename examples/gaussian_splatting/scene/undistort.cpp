@@ -18,9 +18,9 @@ glm::dvec2 to_photo(const camera& taken_with, const lens& distortion, glm::dvec2
     return {taken_with.fx * distorted.x + taken_with.cx, taken_with.fy * distorted.y + taken_with.cy};
 }
 
-/// Rays through the centers of pixels along the border, including the four that are nearest to the
-/// camera's axis. There and in the corners the border of a distorted photo reaches farthest inwards
-/// and outwards.
+/// Returns rays through the centers of pixels along the border, including the four pixels that are
+/// nearest to the camera's axis. At these pixels and in the corners, the border of a distorted
+/// photo reaches farthest inward and outward.
 std::vector<glm::dvec2> border_rays(const camera& pinhole) {
     constexpr int steps = 64;
     const double left = 0.5, top = 0.5, right = pinhole.width - 0.5, bottom = pinhole.height - 0.5;
@@ -48,7 +48,8 @@ bool lies_inside(const camera& taken_with, glm::dvec2 pixel) {
            pixel.y >= 0.5 - rounding && pixel.y <= taken_with.height - 0.5 + rounding;
 }
 
-/// Whether everything between the axis and these rays is inside the photo, and not folded over.
+/// Returns whether the image plane between the axis and these rays lies inside the photo and does
+/// not fold over.
 bool photo_covers(const camera& taken_with, const lens& distortion, const std::vector<glm::dvec2>& rays,
                   double zoom) {
     constexpr int steps = 16;
@@ -61,7 +62,7 @@ bool photo_covers(const camera& taken_with, const lens& distortion, const std::v
     return true;
 }
 
-/// Clamps to 0 to `last`. NaN becomes a number, too, unlike with std::clamp.
+/// Clamps a value to [0, last]. Unlike `std::clamp`, it turns NaN into a number.
 double into_range(double value, double last) { return std::fmin(std::fmax(value, 0.0), last); }
 
 void sample(const image& photo, glm::dvec2 position, std::uint8_t* result) {
@@ -94,7 +95,7 @@ glm::dvec2 lens::distort(glm::dvec2 ray) const {
 double lens::area_scale(glm::dvec2 ray) const {
     const double u = ray.x, v = ray.y, r2 = u * u + v * v;
     const double radial = 1 + r2 * (k1 + r2 * k2);
-    const double slope = k1 + 2 * k2 * r2;  // of `radial`, by r2
+    const double slope = k1 + 2 * k2 * r2;  // d radial / d r2
     const double u_by_u = radial + 2 * u * u * slope + 2 * p1 * v + 6 * p2 * u;
     const double v_by_v = radial + 2 * v * v * slope + 2 * p2 * u + 6 * p1 * v;
     const double across = 2 * u * v * slope + 2 * p1 * u + 2 * p2 * v;
@@ -105,7 +106,7 @@ std::optional<camera> undistorted_camera(const camera& taken_with, const lens& d
     if (distortion.is_none()) return taken_with;
     const std::vector<glm::dvec2> rays = border_rays(taken_with);
     const auto fits = [&](double zoom) { return photo_covers(taken_with, distortion, rays, zoom); };
-    double too_wide = 0.5, wide_enough = 5;  // COLMAP's limits, 2 and 0.2, of a size's growth
+    double too_wide = 0.5, wide_enough = 5;  // inverses of COLMAP's limits for sizes: 2, 0.2
     if (!fits(wide_enough)) return std::nullopt;
     if (fits(too_wide)) wide_enough = too_wide;
     for (int i = 0; i < 48 && too_wide < wide_enough; ++i) {

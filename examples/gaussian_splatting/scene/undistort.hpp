@@ -16,22 +16,22 @@ struct lens {
 
     bool is_none() const { return k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0; }
 
-    /// The distorted position of the ray through (x/z, y/z) in the image plane.
+    /// Returns the distorted position of the ray through (x/z, y/z) in the image plane.
     glm::dvec2 distort(glm::dvec2 ray) const;
 
-    /// The determinant of the derivative of `distort`. Where it is not positive, the image plane
-    /// folds over.
+    /// Returns the determinant of the derivative of `distort`. The image plane folds over where it
+    /// is not positive.
     double area_scale(glm::dvec2 ray) const;
 };
 
-/// The pinhole camera with the same size and center that shows as much of the photo as possible,
-/// but nothing outside of it. Its focal lengths are those of `taken_with` times one factor from 0.5
-/// to 5. None if no such camera exists because the distortion is too strong.
+/// Returns the pinhole camera with the same size and center that shows as much of the photo as
+/// possible, but nothing outside of it. Its focal lengths are those of `taken_with` times one
+/// factor from 0.5 to 5. Returns nothing if the distortion is too strong for such a camera.
 std::optional<camera> undistorted_camera(const camera& taken_with, const lens& distortion);
 
-/// The photo as the pinhole camera `wanted` would have taken it, with bilinear interpolation.
+/// Resamples a photo to the pinhole camera `wanted`, with bilinear interpolation.
 image undistort(const image& photo, const camera& taken_with, const lens& distortion, const camera& wanted);
-/// The same for its depth map, from the nearest pixels.
+/// Resamples a depth map from the nearest pixels.
 depth_map undistort(const depth_map& depths, const camera& taken_with, const lens& distortion,
                     const camera& wanted);
 
