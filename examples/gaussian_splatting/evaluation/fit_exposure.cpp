@@ -30,7 +30,7 @@ std::optional<double> psnr_after_fit(const std::vector<float>& render, const ima
                 if (!shot.is_masked(pixel)) f(pixel);
             }
     };
-    // Regularizes toward the identity, in case the half has too few colors.
+    // Regularizes toward the identity, because the left half may have too few different colors.
     double ridge = 0;
     over(0, width, [&](std::size_t) { ridge += 1e-4; });
     glm::dmat4 normal(ridge);

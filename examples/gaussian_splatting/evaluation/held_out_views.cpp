@@ -60,7 +60,7 @@ held_out_report measure_held_out_views(train::engine& engine, const scene& scene
         std::filesystem::create_directories(folder / "gt");
     }
     const auto names = render_names(scene.test);
-    // Compressing PNGs takes longer than rendering, so each thread compresses one.
+    // Each thread compresses one PNG at a time, because compression takes longer than rendering.
     std::vector<std::vector<float>> renders(static_cast<std::size_t>(omp_get_max_threads()));
     for (std::size_t first = 0; first < scene.test.size(); first += renders.size()) {
         const std::size_t count = std::min(renders.size(), scene.test.size() - first);

@@ -17,21 +17,21 @@ struct view_quality {
     std::optional<double> fitted_psnr;  ///< see fit_exposure.hpp
 };
 
-/// The file names, without a folder, for renders of views: "a/b.jpg" becomes "a_b.png". They are
-/// distinct.
+/// Returns the file names, without a folder, for renders of views: "a/b.jpg" becomes "a_b.png". No
+/// two names are equal.
 std::vector<std::string> render_names(const std::vector<view>& views);
 
-/// Measurements of the held-out views of a scene.
+/// The measurements of a scene's held-out views.
 struct held_out_report {
     std::vector<view_quality> views;
-    double psnr() const;  ///< mean over the views of their values in dB
+    double psnr() const;  ///< mean of the views' values, in dB
     double ssim() const;
     std::optional<double> fitted_psnr() const;
 };
 
 /// Measures every held-out view of `scene`, which `engine` must hold. Unless `folder` is empty,
-/// writes each render to `folder/renders` and its photo to `folder/gt`, see `render_names`. `fits`
-/// adds the PSNR after fitting exposures.
+/// writes each render to `folder/renders` and its photo to `folder/gt`: see `render_names`. If
+/// `fits` is set, also reports the PSNR after fitting exposures.
 held_out_report measure_held_out_views(train::engine& engine, const scene& scene,
                                        const std::array<float, 3>& background,
                                        const std::filesystem::path& folder, bool fits = false);
