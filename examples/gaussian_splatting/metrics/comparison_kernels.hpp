@@ -12,7 +12,7 @@
 
 namespace gs::train {
 
-/// Intermediate results of a comparison of a render x with a target y, as framed planes.
+/// The intermediate results of a comparison of a render x with a target y, as framed planes.
 ///
 /// The SSIM at a pixel p depends on the values under its window w. Its derivative with respect to
 /// the render's value at q is
@@ -34,10 +34,10 @@ struct comparison_maps {
     }
 };
 
-/// First pass: writes the sum and the difference of the render and the target in front of its
-/// background. The SSIM is simplest in terms of these. Also writes zeros to the frames of all maps
-/// and to the values after their end. The sum and the difference are zero where the mask excludes a
-/// pixel. One warp per `W::size` consecutive values of a line.
+/// First pass: writes the sum and the difference of the render and of the target on its background.
+/// The SSIM is simplest in terms of these two. They are zero at masked pixels. Also writes zeros to
+/// the frames of all maps and to the values after their end. One warp per `W::size` consecutive
+/// values of a line.
 template <class Real, bool Masked>
 struct sum_and_difference {
     const std::uint32_t* target;  ///< premultiplied RGBA bytes
@@ -86,7 +86,7 @@ struct sum_and_difference {
     }
 };
 
-/// The totals of a comparison over all pixels and color channels. The last one is the number of
+/// The totals of a comparison over all pixels and color channels. `total_values` is the number of
 /// values.
 enum comparison_total {
     total_absolute_error,
@@ -96,16 +96,16 @@ enum comparison_total {
     comparison_total_count
 };
 
-/// Second pass: computes the SSIM at each pixel and the coefficients of its derivative, and adds to
-/// `totals` unless the lists of the view did not fit. Pixels that the mask excludes do not count.
-/// One warp per strip.
+/// Second pass: computes the SSIM at each pixel and the coefficients of its derivative. Adds to
+/// `totals` unless the tile lists of the view did not fit. Masked pixels do not count. One warp per
+/// strip.
 template <class Real, bool Masked>
 struct ssim_compare {
     const std::uint32_t* target;
     comparison_maps<Real> maps;
     ssim_window<Real> window;
-    int rows;                        ///< per strip
-    double* totals;                  ///< by `comparison_total`
+    int rows;                        ///< rows per strip
+    double* totals;                  ///< one sum per `comparison_total`
     raster::list_capacity capacity;  // knob: ssim_capacity
 
     WARPAGG_EXEC_CHECK_DISABLE
@@ -130,9 +130,10 @@ struct ssim_compare {
             window.add_row(differences, along[1]);
             if (below < strip.first + radius) continue;
 
-            // SSIM = (2 mx my + C1) (2 cov + C2) / ((mx^2 + my^2 + C1) (vx + vy + C2)) by Wang et
-            // al. (2004), with the means m, variances v and covariance cov of x and y under the
-            // window. In terms of the moments of u = 2 (x + y) and v = 2 (x - y), rounding keeps
+            // With the means m, variances v and covariance cov of x and y under the window (Wang et
+            // al. 2004),
+            //     SSIM = (2 mx my + C1) (2 cov + C2) / ((mx^2 + my^2 + C1) (vx + vy + C2)).
+            // This code uses the moments of u = 2 (x + y) and v = 2 (x - y). Rounding then keeps
             // each of the two factors in [-1, 1].
             constexpr auto C1 = static_cast<Real>(8 * 0.01 * 0.01), C2 = static_cast<Real>(8 * 0.03 * 0.03);
             const real mu = sums[size - 1].mean, mv = differences[size - 1].mean;
@@ -165,7 +166,7 @@ struct ssim_compare {
     }
 
   private:
-    /// The value, or zero where the mask excludes the pixel; counts such pixels in `excluded`.
+    /// Returns the value, or zero at masked pixels, which it counts in `excluded`.
     template <class W, class real>
     WARPAGG_HD real counted(const W& w, const ssim_strip<W>& strip, int row, const real& value,
                             real& excluded) const {

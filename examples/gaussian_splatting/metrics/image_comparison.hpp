@@ -12,8 +12,8 @@
 
 namespace gs::train {
 
-/// Measures on a device how close renders are to their targets. PSNR and SSIM of held-out views
-/// come from here whatever the training loss is.
+/// Compares renders with their targets on a device. It is the source of the PSNR and SSIM of
+/// held-out views, independent of the training loss.
 template <device::device Device, class Real>
 class image_comparison {
     using strip = ssim_strip<typename Device::warp>;
@@ -27,7 +27,7 @@ class image_comparison {
         device_.zero(totals_.data(), comparison_total_count);
     }
 
-    /// The target of the next comparisons.
+    /// Sets the target of the next comparisons.
     void set_target(const target_image& target) {
         static_assert(std::endian::native == std::endian::little);
         target_ = target;
@@ -36,16 +36,17 @@ class image_comparison {
         maps_ = comparison_maps<Real>::in(memory_.data(), planes);
     }
 
-    /// Compares a render, three planes on the device, with the target, and adds the result to the
-    /// totals unless the lists of the view did not fit. Pixels that a mask excludes do not count.
+    /// Compares a render, three planes on the device, with the target. Adds the result to the
+    /// totals unless the tile lists of the view did not fit. Masked pixels do not count.
     void compare(const Real* render, const raster::list_capacity& capacity = {}) {  // knob: compare_image
         // knob: compare_masked
         target_.masked ? compare_with<true>(render, capacity) : compare_with<false>(render, capacity);
     }
 
-    /// The totals since the last `take`, on the device: one sum per `comparison_total`.
+    /// Returns the totals since the last `take`, on the device: one sum per `comparison_total`.
     std::span<const double> totals() const { return {totals_.data(), totals_.size()}; }
-    /// The means over all renders compared since the last call. Waits for the device.
+    /// Returns the means over all renders since the last call, and sets the totals to zero. Waits
+    /// for the device.
     image_quality take() {
         double totals[comparison_total_count];
         device_.download(totals, totals_.data(), comparison_total_count);
@@ -54,7 +55,7 @@ class image_comparison {
         return {totals[total_absolute_error] / n, totals[total_square_error] / n, totals[total_ssim] / n};
     }
 
-    /// What the last `compare` leaves for a gradient of the SSIM.
+    /// The results of the last `compare` that a gradient of the SSIM needs.
     /// @{
     const comparison_maps<Real>& maps() const { return maps_; }
     const ssim_window<Real>& window() const { return window_; }
@@ -62,7 +63,8 @@ class image_comparison {
     bool is_masked() const { return target_.masked; }
     /// @}
 
-    /// Rows per `ssim_strip`, and number of strips, with which the device is busy.
+    /// The number of rows per `ssim_strip` and the number of strips. They are chosen to keep the
+    /// device busy.
     /// @{
     int rows() const { return strip::rows_for(target_.width, target_.height, device_.resident_warps() / 4); }
     std::size_t strips() const { return strip::count(target_.width, target_.height, rows()); }

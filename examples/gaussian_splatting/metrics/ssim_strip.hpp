@@ -9,10 +9,9 @@
 
 namespace gs::train {
 
-/// Three planes of an image's size, surrounded by frames of zeros that are as wide as the radius of
+/// Three planes of an image's size, each surrounded by a frame of zeros as wide as the radius of
 /// the SSIM's window. Rows and planes share their frames: the zeros to the left of a row are those
-/// at the end of the row before it, and the zeros above a plane are those below the plane before
-/// it.
+/// at the end of the previous row, and the zeros above a plane are those below the previous plane.
 struct framed_planes {
     static constexpr int frame = ssim_window<float>::radius, alignment = 32;
     int width, height;
@@ -20,15 +19,15 @@ struct framed_planes {
     WARPAGG_HD std::ptrdiff_t pitch() const {
         return (width + frame + alignment - 1) / alignment * alignment;
     }
-    /// Number of lines of `pitch()` values: one for the frame to the left of the first row, then
-    /// each plane with the frame above it, then the frame below the last plane.
+    /// Returns the number of lines of `pitch()` values: one for the frame to the left of the first
+    /// row, then each plane with the frame above it, then the frame below the last plane.
     WARPAGG_HD int lines() const { return 1 + 3 * (frame + height) + frame; }
-    /// The index of a row's first pixel.
+    /// Returns the index of a row's first pixel.
     WARPAGG_HD std::ptrdiff_t at(int channel, int row) const {
         return (1 + channel * (frame + height) + frame + row) * pitch();
     }
-    /// Number of values, including those after the end that the last lanes of a warp read and
-    /// ignore.
+    /// Returns the number of values, including padding at the end that the last lanes of a warp
+    /// read and ignore.
     std::size_t size() const { return static_cast<std::size_t>(lines() * pitch() + alignment); }
 };
 
@@ -38,8 +37,8 @@ struct ssim_strip {
     int channel, left, first, last;  ///< the rows are [first, last)
     mask_t<W> inside;                ///< lanes whose column is in the image
 
-    /// Rows per strip if about `wanted` strips are to cover the image, but at least 12: lower
-    /// strips would spend too much time on the rows above and below them.
+    /// Returns the number of rows per strip for about `wanted` strips, at least 12. In lower
+    /// strips, the rows above and below them would take too much of the time.
     static int rows_for(int width, int height, std::size_t wanted) {
         constexpr int least = 12;
         const auto chunks = static_cast<int>(std::max<std::size_t>(wanted / (3 * across(width)), 1));

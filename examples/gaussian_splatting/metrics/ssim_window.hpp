@@ -12,27 +12,28 @@ using warpagg::value_t;
 using warpagg::math::fma;
 using warpagg::math::select;
 
-/// The weighted mean of a group of values and the weighted sum of their squared deviations from it.
-/// That sum is the variance when the weights add up to 1.
+/// The weighted mean of a group of values, and the weighted sum of their squared deviations from
+/// it. This sum is the variance if the weights add up to 1.
 template <class V>
 struct moments {
     V mean, square;
 };
 
 /// The window of the SSIM (Wang et al. 2004): a normalized Gaussian with a standard deviation of
-/// 1.5 and 11 taps in each direction. The moments of the values under it are merged group by group.
+/// 1.5 pixels and 11 taps in each direction. The moments of the values in the window are merged
+/// group by group.
 template <class Real>
 struct ssim_window {
     static constexpr int radius = 5, size = 2 * radius + 1;
 
-    /// The factors that merge a group of weight w with the groups before it, of total weight W
-    /// (Chan et al. 1979): w, w / (W + w) and w W / (W + w). A variance merged this way is a sum of
-    /// squares, so rounding never makes it negative.
+    /// The factors that merge a group of weight w with the previous groups of total weight W (Chan
+    /// et al. 1979): w, w / (W + w) and w W / (W + w). A variance that is merged in this way is a
+    /// sum of squares, so rounding never makes it negative.
     struct step {
         Real weight, share, between;
     };
 
-    Real tap[radius + 1];   ///< by distance from the center
+    Real tap[radius + 1];   ///< taps by distance from the center
     step pair[radius + 1];  ///< from the center outward, two neighbors at a time
     step row[size];         ///< from the first row to the last
 
@@ -66,9 +67,9 @@ struct ssim_window {
                 fma(V(by.between) * delta, delta, fma(V(by.weight), group.square, before.square))};
     }
 
-    /// For each of N maps, and for each lane's pixel, the moments along the row of *twice* the
-    /// values from from[-radius] to from[radius]. Reads all maps together, so that a GPU waits for
-    /// their loads only once.
+    /// Computes the moments along a row of *twice* the values from from[-radius] to from[radius],
+    /// for each of N maps and for the pixel of each lane. Reads all maps together, so that a GPU
+    /// waits for their loads only once.
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W, int N>
     WARPAGG_HD void moments_along(const W& w, const Real* const (&from)[N],
@@ -90,7 +91,8 @@ struct ssim_window {
             }
         }
     }
-    /// For each of N maps the weighted mean of the values from from[-radius] to from[radius].
+    /// Computes the weighted mean of the values from from[-radius] to from[radius], for each of N
+    /// maps.
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W, int N>
     WARPAGG_HD void mean_along(const W& w, const Real* const (&from)[N], value_t<W, Real> (&mean)[N]) const {
@@ -105,8 +107,8 @@ struct ssim_window {
         }
     }
 
-    /// Adds a row to the windows that contain it. Afterwards, `windows[k]` contains the last k + 1
-    /// rows, so that `windows[size - 1]` is complete.
+    /// Adds a row to the windows that contain it. Afterward, `windows[k]` contains the last k + 1
+    /// rows, so `windows[size - 1]` is complete.
     template <class V>
     WARPAGG_HD void add_row(moments<V> (&windows)[size], const moments<V>& values) const {
         WARPAGG_UNROLL

@@ -7,14 +7,14 @@
 
 namespace gs::train {
 
-/// A photo on the device that renders are compared with.
+/// A photo on the device, with which renders are compared.
 struct target_image {
-    /// Premultiplied RGBA, 4 bytes per pixel, aligned to 4 bytes. Must stay on the device while it
-    /// is in use.
+    /// Premultiplied RGBA, 4 bytes per pixel, aligned to 4 bytes. The memory must exist while the
+    /// target is in use.
     const std::uint8_t* rgba = nullptr;
     int width = 0, height = 0;
-    std::array<float, 3> background{};  ///< the photo is shown in front of this color
-    bool masked = false;                ///< some pixels are excluded: see image/masked_pixel.hpp
+    std::array<float, 3> background{};  ///< color behind transparent pixels
+    bool masked = false;                ///< whether pixels are masked: see image/masked_pixel.hpp
 };
 
 }  // namespace gs::train

@@ -9,9 +9,9 @@
 
 namespace gs::train {
 
-/// The values, in [0, 1], that a render should have at target pixels (premultiplied RGBA) in front
-/// of a background. `channel` is 0 for red, 1 for green and 2 for blue; `background` is the value
-/// of that channel.
+/// Returns the values, in [0, 1], that a render should have at target pixels (premultiplied RGBA).
+/// `channel` is 0 for red, 1 for green and 2 for blue; `background` is the value of this channel
+/// behind the target.
 template <class W, class Real>
 WARPAGG_HD warpagg::value_t<W, Real> target_value(const warpagg::value_t<W, unsigned>& rgba, int channel,
                                                   const Real& background) {
@@ -29,7 +29,7 @@ WARPAGG_HD warpagg::value_t<W, Real> target_value(const warpagg::value_t<W, unsi
     return fraction((rgba >> shift) & 255u) + transparency * background;
 }
 
-/// Which of the target pixels that start at `pixel`, one per lane, the mask of the target excludes.
+/// Returns whether each target pixel is masked. The pixels start at `pixel`, one per lane.
 template <class W>
 WARPAGG_HD warpagg::mask_t<W> is_masked(const W& w, const std::uint32_t* target, std::ptrdiff_t pixel,
                                         const warpagg::mask_t<W>& inside) {
