@@ -16,25 +16,25 @@ using warpagg::value_t;
 using warpagg::math::select;
 
 /// One step of Adam (Kingma and Ba 2015, algorithm 1) for the gradients from `project_backward`.
-/// The bias corrections are folded into the rate.
+/// The bias corrections are folded into the learning rate.
 ///
-/// Only Gaussians that the view shows are updated. A Gaussian that missed k steps had gradients of
-/// zero in them: its moments decayed by beta1^k and beta2^k, and its value moved by the sum of a
-/// geometric series. The step makes up for these k steps first, with the present rate and bias
-/// corrections, which is an approximation if k is large.
+/// Updates only the Gaussians that the view shows. A Gaussian that missed k steps had zero
+/// gradients in them: its moments decayed by beta1^k and beta2^k, and its value moved by the sum of
+/// a geometric series. The step first catches up on these k steps, with the current learning rate
+/// and bias corrections. This is an approximation if k is large.
 ///
-/// If a gradient is not finite, or too large to square, or if the new value would not be finite,
-/// then value and moments stay as they are, and the missed steps are forgotten. (The square of such
-/// a gradient would keep its value from ever moving again.) Missed steps are also forgotten for SH
-/// coefficients that this step does not update.
+/// A value and its moments stay as they are if the gradient is not finite or too large to square,
+/// or if the new value would not be finite. The missed steps are then forgotten. (The square of
+/// such a gradient would prevent all later updates of the value.) Missed steps are also forgotten
+/// for SH coefficients that this step does not update.
 template <class Real>
 struct adam {
     parameter_arrays<Real> values, first, second;  ///< parameters, first and second moments
-    std::uint32_t* last_step;                      ///< in which each Gaussian was updated
-    std::uint32_t step;                            ///< number t of this step, from 1
+    std::uint32_t* last_step;                      ///< last step that updated each Gaussian
+    std::uint32_t step;                            ///< number t of this step, counted from 1
     Real rates[parameter_count];                   ///< alpha / (1 - beta1^t)
     Real correction;                               ///< 1 / sqrt(1 - beta2^t)
-    raster::list_capacity capacity;                ///< of the view
+    raster::list_capacity capacity;                ///< capacity of the view's tile lists
     finite_check check;
 
     static constexpr double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-15;
@@ -51,7 +51,7 @@ struct adam {
         const W& w;
         const raster::gaussian_row<W>& row;
         real first_left, second_left;  ///< decay during the missed steps: beta1^k, beta2^k
-        real drift;                    ///< movement meanwhile, in units of rate m / sqrt(v)
+        real drift;                    ///< movement in these steps, in units of rate m / sqrt(v)
 
         template <int N>
         WARPAGG_HD void operator()(parameter p, std::size_t k, std::size_t width,
@@ -106,8 +106,8 @@ struct adam {
     }
 
   private:
-    /// m / sqrt(v + epsilon^2), with v corrected for bias. Its magnitude is that of the paper's
-    /// m / (sqrt(v) + epsilon), or larger by at most a factor of sqrt(2).
+    /// Returns m / sqrt(v + epsilon^2), with v corrected for bias. Its magnitude is between 1 and
+    /// sqrt(2) times that of the paper's m / (sqrt(v) + epsilon).
     template <class V>
     WARPAGG_HD V relative(const V& m, const V& v) const {
         const V variance = warpagg::math::fma(v, V(correction * correction), constant<V>(epsilon * epsilon));

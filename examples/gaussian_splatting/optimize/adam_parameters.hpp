@@ -10,8 +10,9 @@
 
 namespace gs::train {
 
-/// Rows of `Width` parameters on the device, such as one row per image. Adam (Kingma and Ba 2015)
-/// optimizes each row from gradients that are sums over an image, and counts steps per row.
+/// Rows of `Width` parameters on the device, for example one row per image. Adam (Kingma and Ba
+/// 2015) optimizes each row from gradients that are sums over an image, and counts the steps of
+/// each row.
 template <device::device Device, unsigned Width>
 class adam_parameters {
     template <class T>
@@ -20,7 +21,7 @@ class adam_parameters {
   public:
     explicit adam_parameters(Device& device) : device_(device) {}
 
-    /// Sets all rows, one after another, and forgets earlier steps. Waits for the device.
+    /// Sets all rows, one after another, and resets the state of Adam. Waits for the device.
     void set(const std::vector<float>& values) {
         for (auto* memory : {&values_, &first_, &second_}) memory->resize(values.size());
         device_.upload(values_.data(), values.data(), values.size());
@@ -29,7 +30,7 @@ class adam_parameters {
         device_.wait();
         steps_.assign(values.size() / Width, 0);
     }
-    /// All rows, one after another. Waits for the device.
+    /// Returns all rows, one after another. Waits for the device.
     std::vector<float> get() const {
         std::vector<float> values(Width * rows());
         device_.download(values.data(), values_.data(), values.size());
@@ -37,10 +38,10 @@ class adam_parameters {
     }
 
     std::size_t rows() const { return steps_.size(); }
-    /// On the device.
+    /// Returns a pointer to row i, in device memory.
     float* row(std::size_t i) { return values_.data() + i * Width; }
 
-    /// Sums of zero to which this many warps add a row's gradient, before `learn`.
+    /// Returns sums of zero. `warps` warps add the gradient of a row to them before `learn`.
     ordered_sums sums(std::size_t warps) {
         if (Width * warps > sums_.size()) {
             sums_.resize(Width * warps);
@@ -48,7 +49,7 @@ class adam_parameters {
         }
         return {sums_.data(), warps};
     }
-    /// A step of row i, unless the lists of the view did not fit. Sets the sums to zero.
+    /// Makes a step of row i, unless the tile lists of the view did not fit. Sets the sums to zero.
     void learn(std::size_t i, const ordered_sums& sums, float rate, const raster::list_capacity& capacity) {
         const int t = ++steps_[i];
         const double by_first = 1 - std::pow(static_cast<double>(adam_from_sums::beta1), t);
@@ -63,7 +64,7 @@ class adam_parameters {
     Device& device_;
     buffer<float> values_, first_, second_;
     buffer<float> sums_;      ///< zero between steps
-    std::vector<int> steps_;  ///< so far, by row
+    std::vector<int> steps_;  ///< number of steps of each row
 };
 
 }  // namespace gs::train

@@ -10,12 +10,12 @@
 
 namespace gs::train {
 
-/// Lets kernels record faults in device memory, so that the host need not wait for each step. For
-/// each kind it counts the faults and keeps the earliest one as a number: iteration, parameter and
-/// Gaussian, in 24, 8 and 32 bits from the highest bit down.
+/// Records faults of kernels in device memory, so that the host need not wait for each step. Counts
+/// the faults of each kind. Keeps the earliest one as an integer: iteration, parameter and Gaussian
+/// in 24, 8 and 32 bits, from the highest bit down.
 struct finite_check {
     struct memory {
-        unsigned long long first[fault_kind_count];  ///< at first `none`
+        unsigned long long first[fault_kind_count];  ///< initially `none`
         unsigned long long count[fault_kind_count];
     };
     static constexpr unsigned long long none = ~0ull;
@@ -29,7 +29,7 @@ struct finite_check {
         device::atomic_add(&found->count[static_cast<int>(kind)], 1);
     }
 
-    /// Records `times[lane]` faults for each lane. Lane i has the Gaussian `gaussian + i`.
+    /// Records `times[lane]` faults for each lane. Lane i holds Gaussian `gaussian + i`.
     template <class W>
     WARPAGG_HD void note(const W& w, fault_kind kind, parameter p, std::size_t gaussian,
                          const warpagg::value_t<W, unsigned>& times) const {
@@ -45,7 +45,7 @@ struct finite_check {
             warpagg::math::convert<number>(times), active);
     }
 
-    /// The memory before any fault.
+    /// Returns the initial memory, without faults.
     static memory clean() {
         memory m{};
         for (auto& f : m.first) f = none;

@@ -9,8 +9,8 @@
 
 namespace gs::train {
 
-/// Sums over an image whose result does not depend on which warp finishes first. Each sum has one
-/// part per warp, and the parts are added in a fixed order.
+/// Sums over an image that do not depend on the order in which warps finish. Each sum has one part
+/// per warp, and the parts are added in a fixed order.
 struct ordered_sums {
     float* parts;
     std::size_t warps;
@@ -19,9 +19,9 @@ struct ordered_sums {
 };
 
 /// One step of Adam (Kingma and Ba 2015, algorithm 1) for parameters whose gradients are
-/// `ordered_sums`, and sets these to zero. A parameter stays as it is if its gradient is not
-/// finite, or is too large to square; all do if the lists of the view did not fit. One warp per
-/// parameter.
+/// `ordered_sums`. Sets these sums to zero. A parameter stays as it is if its gradient is not
+/// finite or too large to square. All parameters stay as they are if the tile lists of the view did
+/// not fit. One warp per parameter.
 struct adam_from_sums {
     ordered_sums sums;
     float *values, *first, *second;  ///< parameters, first and second moments

@@ -13,7 +13,7 @@ namespace gs::train {
 template <device::device Device>
 struct trained_parameters {
     parameter_memory<Device> values, first, second;  ///< `first` and `second`: Adam's moments
-    /// For each Gaussian, the step in which it was last updated.
+    /// The last step that updated each Gaussian.
     typename Device::template buffer<std::uint32_t> last_step;
 };
 
