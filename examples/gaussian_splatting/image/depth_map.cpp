@@ -13,7 +13,8 @@
 namespace gs {
 namespace {
 
-/// The pixels that pixel o of `output` covers on a side of `input` pixels, and how much of each.
+/// The pixels on a side of `input` pixels that output pixel o covers, and the covered length of
+/// each one, when the side is scaled to `output` pixels.
 struct covered {
     std::size_t first;
     std::vector<double> lengths;

@@ -8,8 +8,8 @@
 namespace gs {
 namespace {
 
-/// The input pixels that one output pixel covers. Lengths are in units of 1/output of an input
-/// pixel, so that they are whole numbers, and those of one output pixel add up to `input`.
+/// The input pixels that one output pixel covers on one axis. Lengths are whole numbers in units of
+/// 1/output of an input pixel. The lengths of one output pixel sum to `input`.
 struct coverage {
     std::size_t first;
     std::vector<std::uint32_t> lengths;
@@ -62,8 +62,8 @@ image average(const image& source, int width, int height) {
     return result;
 }
 
-/// The average of the pixels that are not masked: the average with zeros for masked pixels, divided
-/// by the share of the others.
+/// Averages the pixels that are not masked: averages with zeros in place of masked pixels, and
+/// divides by the share of the other pixels.
 image masked_average(const image& source, int width, int height) {
     image kept = source, share = source;
     for (std::size_t i = 0; i < source.rgba.size() / 4; ++i) {

@@ -33,10 +33,11 @@ namespace {
 constexpr std::uint64_t largest_side = 65536;
 constexpr std::uint64_t largest_decoded_bytes = std::uint64_t{1} << 31;
 
-// A 1-bit PNG at the best ratio of deflate, 1032 to 1, which is the densest format that is read.
+// The densest format that is read is a 1-bit PNG with the best ratio of deflate, 1032 to 1.
 constexpr std::uint64_t most_pixels_per_byte = 8 * 1032;
 
-// Each scan of a progressive JPEG visits all pixels. This is the largest number that cjpeg writes.
+// Each scan of a progressive JPEG visits all pixels, so a small file could take a long time. This
+// is the largest number of scans that cjpeg writes.
 constexpr int most_scans = 100;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
@@ -64,7 +65,8 @@ void check_size(const std::filesystem::path& file, std::uint64_t width, std::uin
         refuse(file, "its size, " + size + ", is too large");
 }
 
-// Refuses a header that promises a huge image with hardly any data, before it costs gigabytes.
+// Refuses a header that promises a huge image although the file is tiny, before memory is
+// allocated.
 void check_density(const std::filesystem::path& file, std::uint64_t width, std::uint64_t height) {
     std::error_code ignored;
     if (width * height / most_pixels_per_byte > std::filesystem::file_size(file, ignored))
@@ -91,8 +93,8 @@ void premultiply(image& pixels) {
 
 // PNG
 //
-// libpng and libjpeg leave by longjmp. Each call into them is therefore made from a function whose
-// frame holds no object with a destructor; the frames above it own all resources.
+// libpng and libjpeg report errors by longjmp. So each function that calls them has no objects with
+// destructors in its frame; its callers own all resources.
 
 struct png_failure {
     std::array<char, 256> message{};
@@ -153,7 +155,7 @@ class png_reader {
   private:
     void begin(std::FILE* file) {
         png_set_user_limits(png_, largest_side, largest_side);
-        // Keep only the chunks for pixels. Texts and profiles may be compressed, and expand to
+        // Keeps only the chunks for pixels. Texts and profiles may be compressed and expand to
         // megabytes each.
         png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
         png_init_io(png_, file);
@@ -206,8 +208,7 @@ class png_writer {
         png_set_IHDR(png_, info_, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
                      PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                      PNG_FILTER_TYPE_DEFAULT);
-        // For filtered photos run-length coding compresses as well as the search of zlib, and
-        // faster.
+        // On filtered photos, run-length coding compresses as well as zlib's search, and is faster.
         png_set_compression_strategy(png_, Z_RLE);
         png_write_info(png_, info_);
         png_write_image(png_, rows);
@@ -230,7 +231,7 @@ class png_writer {
 };
 
 std::uint8_t to_byte(float value) {
-    if (!(value > 0)) return 0;  // or NaN
+    if (!(value > 0)) return 0;  // includes NaN
     return static_cast<std::uint8_t>(std::lround(255.0F * std::min(value, 1.0F)));
 }
 
@@ -265,7 +266,7 @@ bool means_lost_pixels(int message_code) {
     }
 }
 
-// libjpeg would continue after lost data and paint the rest gray, which must not pass for a photo.
+// Treats lost data as an error. By default, libjpeg continues and paints the rest gray.
 void heed_jpeg_warning(j_common_ptr jpeg, int level) {
     if (level < 0 && means_lost_pixels(jpeg->err->msg_code)) leave_jpeg(jpeg);
 }
@@ -304,7 +305,7 @@ class jpeg_reader {
     std::uint64_t height() const { return jpeg_.image_height; }
     bool is_cmyk() const { return jpeg_.jpeg_color_space == JCS_CMYK || jpeg_.jpeg_color_space == JCS_YCCK; }
 
-    /// `pixels` has room for width * height * 4 bytes.
+    /// Precondition: `pixels` has space for width * height * 4 bytes.
     bool read_rgba(std::uint8_t* pixels) {
         if (setjmp(errors_.escape)) return false;
         jpeg_.out_color_space = JCS_EXT_RGBA;
@@ -348,7 +349,8 @@ image read_jpeg(const std::filesystem::path& file, std::FILE* opened) {
 
 // PNG or JPEG
 
-/// The format by the first bytes, and for a PNG the size, which has a fixed position.
+/// The format according to the first bytes of a file. For a PNG also the size, which has a fixed
+/// position.
 struct first_bytes {
     bool is_png = false;
     std::uint64_t png_width = 0, png_height = 0;

@@ -6,8 +6,8 @@
 
 namespace gs {
 
-/// A pixel that a mask excludes, as a little-endian word of RGBA. White and transparent is not a
-/// premultiplied color, so no other pixel has this value.
+/// The value of a masked pixel, as a little-endian word of RGBA. No other pixel has this value,
+/// because a transparent white is not a premultiplied color.
 inline constexpr std::uint32_t masked_pixel = 0x00ffffff;
 
 }  // namespace gs
