@@ -13,8 +13,8 @@
 
 namespace gs::features {
 
-/// A training step, as the hooks of features see it. Renders and their gradients are three planes on the
-/// device.
+/// A training step, as the hooks of features see it. Renders and their gradients are three planes
+/// on the device.
 template <class Renderer>
 struct step {
     const train::step_plan& plan;
@@ -30,8 +30,8 @@ struct step {
 };
 
 /// The part of a feature that runs in steps on a device. A step first calls `memory_key` and
-/// `gradient_scale`, and then the hooks from `before_blend` to `learn` in the order of their declaration.
-/// None of them may wait for the device.
+/// `gradient_scale`, and then the hooks from `before_blend` to `learn` in the order of their
+/// declaration. None of them may wait for the device.
 template <class Renderer>
 class device_feature : public train::feature_state {
   public:
@@ -43,25 +43,25 @@ class device_feature : public train::feature_state {
     virtual void set_model(const gaussians&) {}
     virtual void get_model(gaussians&) {}
 
-    /// Returns the memory key. In steps with equal keys, the hooks below must launch the same kernels over
-    /// the same ranges and allocate nothing: see `device::graph_key`. The key must have each host value that
-    /// affects this, except the number of Gaussians, the capacity of the tile lists, and the size, lens and
-    /// mask of the view.
+    /// Returns the memory key. In steps with equal keys, the hooks below must launch the same
+    /// kernels over the same ranges and allocate nothing: see `device::graph_key`. The key must
+    /// have each host value that affects this, except the number of Gaussians, the capacity of the
+    /// tile lists, and the size, lens and mask of the view.
     virtual std::size_t memory_key(const step&) const { return 0; }
 
-    /// Returns the largest magnitude of a gradient per pixel that the feature itself passes to the renderer:
-    /// see `loss::gradient_scale`.
+    /// Returns the largest magnitude of a gradient per pixel that the feature itself passes to the
+    /// renderer: see `loss::gradient_scale`.
     virtual float gradient_scale(const step&) const { return 0; }
 
     /// Runs after the tile lists are made and before colors are blended.
     virtual void before_blend(const step&) {}
     /// Returns the learned background of a camera, or null.
     virtual const float* background(const camera&) { return nullptr; }
-    /// Applies the effect to a render, so that it matches the target. The hooks of several features are
-    /// chained in the order of the table.
+    /// Applies the effect to a render, so that it matches the target. The hooks of several features
+    /// are chained in the order of the table.
     virtual const float* show(const step&, const float* render) { return render; }
-    /// Takes the gradient with respect to the result of `show`, and returns the gradient with respect to its
-    /// render. Updates the learned values. The hooks are chained in reverse order.
+    /// Takes the gradient with respect to the result of `show`, and returns the gradient with
+    /// respect to its render. Updates the learned values. The hooks are chained in reverse order.
     virtual const float* backward(const step&, const float* gradient) { return gradient; }
     /// Updates learned values from the gradient with respect to the render of the Gaussians.
     virtual void learn(const step&, const float* /*render_gradient*/) {}

@@ -34,15 +34,15 @@ struct selected_feature {
     std::string name;
     bool on = false;
     std::string reason;
-    std::vector<float> values{};  ///< initial values if it is on; each feature defines their meaning
+    std::vector<float> values{};  ///< initial values if it is on: see each feature
 };
 
 /// A function that changes the render of a training view: see `feature::show_on_host`.
 using show_function = std::function<void(std::size_t view, std::vector<float>& render)>;
 
-/// An effect that training can simulate. This class is the host part of a feature: its detection, initial
-/// values, schedule and output files. `device_feature` is the part that runs in each step. One object serves
-/// all runs, so it must not keep state.
+/// An effect that training can simulate. This class is the host part of a feature: its detection,
+/// initial values, schedule and output files. `device_feature` is the part that runs in each step.
+/// One object serves all runs, so it must not keep state.
 class feature {
   public:
     virtual ~feature() = default;
@@ -56,7 +56,8 @@ class feature {
 
     /// Returns the finding for a scene. Cost: up to a second per thousand photos.
     virtual finding analyze(const scene_statistics& statistics) const = 0;
-    /// Returns whether the initial values come from `analyze` even if the user has turned the effect on.
+    /// Returns whether the initial values come from `analyze` even if the user adds the effect to
+    /// the recommended effects.
     virtual bool begins_from_photos() const { return false; }
     /// Returns the initial values if `analyze` is not called.
     virtual std::vector<float> neutral_values(const scene&) const { return {}; }
@@ -67,13 +68,15 @@ class feature {
     virtual void prepare(const selected_feature&, scene&, gaussians&) const {}
     /// Adds its actions to the training loop. Called whether the effect is on or off.
     virtual void schedule(const selected_feature&, train::training&) const {}
-    /// Returns a function that applies the effect to the render of a training view, or an empty function if
-    /// it changes no renders. The function takes the view's index and three planes of its size; several
-    /// threads may call it. Called during training if the effect is on.
+    /// Returns a function that applies the effect to the render of a training view, or an empty
+    /// function if it changes no renders. The function takes the view's index and three planes of
+    /// its size; several threads may call it. Called during training if the effect is on.
     virtual show_function show_on_host(train::engine&, const scene&) const { return {}; }
-    /// Sets the effect's values for held-out views. Called before they are measured, if the effect is on.
+    /// Sets the effect's values for held-out views. Called before they are measured, if the effect
+    /// is on.
     virtual void before_evaluation(train::engine&, const scene&) const {}
-    /// Writes the effect's files to the output folder. If it is off, removes those of an earlier run.
+    /// Writes the effect's files to the output folder. If it is off, removes those of an earlier
+    /// run.
     virtual void write_results(const selected_feature&, train::engine&, const scene&,
                                const std::filesystem::path& /*folder*/) const {}
 };

@@ -30,7 +30,8 @@ const selected_feature* find(const std::vector<selected_feature>& all, std::stri
     return found == all.end() ? nullptr : &*found;
 }
 
-/// The decision about one feature that no option fixes.
+/// Decides whether a feature is on, from the selection and the scene statistics, and sets its
+/// initial values.
 selected_feature decide(const feature& f, const scene_statistics& statistics, const selection& selection) {
     const bool automatic = selection.from == selection::base::recommended;
     const auto choice = selection.explicit_choice(f.name());

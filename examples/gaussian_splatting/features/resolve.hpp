@@ -24,12 +24,14 @@ struct selection {
     std::map<std::string, bool, std::less<>> explicit_choices;
 
     std::optional<bool> explicit_choice(std::string_view name) const;
-    /// Returns whether the feature may be on. Masks and depth maps are read only if this is true for them.
+    /// Returns whether the feature may be on. Masks and depth maps are read only if this is true
+    /// for them.
     bool allows(std::string_view name) const;
 };
 
-/// Parses "auto", "all", "none", a list of features, or any of the first three followed by features to add or
-/// remove: "auto,+exposure,-direction", or "+exposure" for short. Throws `error` for all other texts.
+/// Parses "auto", "all", "none", a list of features, or any of the first three followed by features
+/// to add or remove: "auto,+exposure,-direction", or "+exposure" for short. Throws `error` for all
+/// other texts.
 selection parse_selection(const std::string& text);
 
 /// The features of one training run.
@@ -60,9 +62,10 @@ class feature_set {
     std::vector<selected_feature> all_;
 };
 
-/// Decides which selectable features a training simulates. Precondition: `scene` has masks and depth maps if
-/// the selection allows them. `explicit_features` overrides the decision for those features, as --sh-degree
-/// does. Analyzes the photos only if a decision or initial values depend on them.
+/// Decides which selectable features a training simulates. Precondition: `scene` has masks and
+/// depth maps if the selection allows them. `explicit_features` overrides the decision for those
+/// features, as --sh-degree does. Analyzes the photos only if a decision or initial values depend
+/// on them.
 feature_set resolve(const scene& scene, const selection& selection,
                     const std::vector<selected_feature>& explicit_features = {});
 

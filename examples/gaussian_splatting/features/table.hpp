@@ -15,8 +15,9 @@
 
 namespace gs::features {
 
-/// All features, in the order in which `inspect` prints them and a step calls their hooks. A feature with a
-/// device part has a member template `on_device<Renderer>`, which derives from `device_feature<Renderer>`.
+/// All features, in the order in which `inspect` prints them and a step calls their hooks. A
+/// feature with a device part has a member template `on_device<Renderer>`, which derives from
+/// `device_feature<Renderer>`.
 using table = std::tuple<sh_degree_feature, exposure_feature, antialiasing_feature, sky_feature,
                          masks_feature, depth_feature, lens_feature, background_feature>;
 

@@ -16,7 +16,7 @@ std::string text(const char* format, Values... values) {
     return line;
 }
 
-/// The smallest number of points from which conclusions about a scene are drawn.
+/// The smallest number of points from which a feature draws conclusions about a scene.
 inline constexpr std::size_t enough_points = 50;
 
 inline std::string too_few_points(std::size_t points, const char* where) {

@@ -6,8 +6,8 @@
 
 namespace gs::features {
 
-/// The constant background: white for photos with transparent parts, otherwise black. `--background`
-/// overrides it.
+/// The constant background: white for photos with transparent parts, otherwise black.
+/// `--background` overrides it.
 class background_feature final : public feature {
   public:
     std::string_view name() const override { return "background"; }

@@ -23,7 +23,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// The median of a number, and how far the median pair is from it.
+/// Returns the median of a member of the pairs, and the median distance from it.
 std::pair<double, double> spread_of(const std::vector<depth_pair>& pairs, double depth_pair::*number) {
     std::vector<double> values;
     for (const depth_pair& p : pairs) values.push_back(p.*number);
@@ -32,7 +32,8 @@ std::pair<double, double> spread_of(const std::vector<depth_pair>& pairs, double
     return {middle, median(values)};
 }
 
-/// Nothing where too few points tell.
+/// Fits the line of one photo. Returns nothing if it has no depth map, or if too few points have
+/// values.
 std::optional<depth_line> line_of(const view& photo, const std::vector<colored_point>& points) {
     if (!photo.depths.is_there()) return std::nullopt;
     std::vector<depth_pair> pairs;
@@ -52,7 +53,7 @@ depth_line fit_line(const std::vector<depth_pair>& pairs) {
     constexpr double outlier = 3;  // standard deviations
     const auto [x0, x_apart] = spread_of(pairs, &depth_pair::inverse_depth);
     const auto [y0, y_apart] = spread_of(pairs, &depth_pair::value);
-    if (!(x_apart > 0 && y_apart > 0)) return {};  // more than half is of one depth
+    if (!(x_apart > 0 && y_apart > 0)) return {};  // half of the pairs or more have equal values
     depth_line line{x_apart / y_apart, x0 - x_apart / y_apart * y0, 0};
     std::vector<double> off(pairs.size());
     for (int round = 0; round < rounds; ++round) {

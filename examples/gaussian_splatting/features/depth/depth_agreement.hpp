@@ -14,9 +14,9 @@ namespace gs::features {
 struct depth_agreement {
     std::size_t photos = 0, with_map = 0;
     std::size_t told = 0;         ///< number of maps with values at 10 visible points or more
-    std::size_t agreeing = 0;     ///< number of these whose correlation with inverse depths is 0.5 or more
+    std::size_t agreeing = 0;     ///< number of these with a correlation of 0.5 or more
     double correlation = 0;       ///< median correlation of the `told` maps
-    std::vector<depth_fit> fits;  ///< by photo, from values to inverse depths; scale 0 if not agreeing
+    std::vector<depth_fit> fits;  ///< by photo, values to inverse depths; scale 0: not agreeing
 };
 /// Compares the depth maps of all training photos with the scene's points.
 depth_agreement compare_depths(const scene& of);
@@ -30,12 +30,12 @@ struct depth_pair {
 /// An increasing line from values to inverse depths.
 struct depth_line {
     double scale = 0, offset = 0;
-    double correlation = 0;  ///< correlation without outliers; 0, with scale 0, if no line increases
+    double correlation = 0;  ///< without outliers; 0, with scale 0, if no line increases
 };
-/// Fits a line to pairs. Begins with medians, as Kerbl et al. 2024 (hierarchical 3D Gaussians) find a scale.
-/// Then repeats 10 times a least-squares fit over the pairs within 3 standard deviations of the line. The fit
-/// minimizes errors of the values, because the points are accurate; noise in the values would otherwise make
-/// the line too flat. Precondition: `pairs` is not empty.
+/// Fits a line to pairs. Begins with medians, as Kerbl et al. 2024 (hierarchical 3D Gaussians) find
+/// a scale. Then repeats 10 times a least-squares fit over the pairs within 3 standard deviations
+/// of the line. The fit minimizes errors of the values, because the points are accurate; noise in
+/// the values would otherwise make the line too flat. Precondition: `pairs` is not empty.
 depth_line fit_line(const std::vector<depth_pair>& pairs);
 
 }  // namespace gs::features

@@ -20,7 +20,7 @@ bool is_used(const std::vector<float>& values, std::size_t photo) { return value
 }  // namespace
 
 finding depth_feature::analyze(const scene_statistics& statistics) const {
-    constexpr double least_share = 0.5;  // of the photos with depth maps
+    constexpr double least_share = 0.5;  // share of the photos with depth maps
     const depth_agreement found = compare_depths(statistics.scene());
     const bool agree = found.agreeing > 0 && static_cast<double>(found.agreeing) >=
                                                  least_share * static_cast<double>(found.with_map);

@@ -7,8 +7,8 @@
 
 namespace gs::features {
 
-/// Training with the depth maps of photos as a second target. Values: for each training photo, the scale and
-/// offset from the map's values to inverse depths. A map with scale zero is not used.
+/// Training with the depth maps of photos as a second target. Values: for each training photo, the
+/// scale and offset from the map's values to inverse depths. A map with scale zero is not used.
 class depth_feature final : public feature {
   public:
     template <class Device>

@@ -68,8 +68,9 @@ class depth_on_device final : public device_feature<Renderer> {
     bool has_target(const step& s) const {
         return !fits_.empty() && fits_[s.plan.view].scale > 0 && first_[s.level][s.plan.view] != none;
     }
-    /// Returns the weight of the mean error of inverse depths in internal coordinates. It decays from 1 to
-    /// 0.01, as in the implementation of Kerbl et al. 2024, which uses units of structure from motion.
+    /// Returns the weight of the mean error of inverse depths in internal coordinates. It decays
+    /// from 1 to 0.01, as in the implementation of Kerbl et al. 2024, which uses units of structure
+    /// from motion.
     float weight_at(int iteration) const {
         return static_cast<float>(std::pow(0.01, static_cast<double>(iteration) / iterations_));
     }
@@ -81,7 +82,7 @@ class depth_on_device final : public device_feature<Renderer> {
     typename Renderer::device_type& device_;
     buffer<std::uint16_t> maps_;
     buffer<float> gradient_;
-    std::vector<std::vector<std::size_t>> first_;  ///< index of the first value in `maps_`, by level and view
+    std::vector<std::vector<std::size_t>> first_;  ///< index in `maps_`, by level and view
     std::vector<depth_fit> fits_;                  ///< one per training view if the feature is on
     int iterations_ = 7000;
 };

@@ -15,8 +15,8 @@
 namespace gs::features {
 namespace {
 
-constexpr double least_spread = 0.1;  ///< log2 of a factor, root mean square over the photos
-constexpr double least_errors = 3;    ///< times the standard error of a photo's
+constexpr double least_spread = 0.1;  ///< root mean square of log2 of the brightness
+constexpr double least_errors = 3;    ///< smallest spread, in standard errors
 
 std::vector<float> values_of(const photo_brightness& brightness, std::size_t photos) {
     std::vector<exposure> all(photos, identity_exposure);

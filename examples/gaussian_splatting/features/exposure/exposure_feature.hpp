@@ -7,8 +7,8 @@
 
 namespace gs::features {
 
-/// An affine map of colors for each training photo (Kerbl et al. 2024, hierarchical 3D Gaussians). Values: 12
-/// per training view, see exposure_kernels.hpp.
+/// An affine map of colors for each training photo (Kerbl et al. 2024, hierarchical 3D Gaussians).
+/// Values: 12 per training view, see exposure_kernels.hpp.
 class exposure_feature final : public feature {
   public:
     template <class Device>
@@ -25,7 +25,8 @@ class exposure_feature final : public feature {
     void schedule(const selected_feature& selected, train::training& training) const override;
     show_function show_on_host(train::engine& engine, const scene& scene) const override;
     void before_evaluation(train::engine& engine, const scene& scene) const override;
-    /// Writes exposures.json: three rows of four numbers per photo, as the reference implementation does.
+    /// Writes exposures.json: three rows of four numbers per photo, as the reference implementation
+    /// does.
     void write_results(const selected_feature& selected, train::engine& engine, const scene& scene,
                        const std::filesystem::path& folder) const override;
 };

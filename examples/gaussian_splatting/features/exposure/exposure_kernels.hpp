@@ -12,8 +12,9 @@
 
 namespace gs::features {
 
-/// The number of values of an exposure, which maps a rendered color c to `A c + b`. It has three rows, each
-/// with three elements of A and one of b, as in Kerbl et al. 2024 (hierarchical 3D Gaussians).
+/// The number of values of an exposure, which maps a rendered color c to `A c + b`. It has three
+/// rows, each with three elements of A and one of b, as in Kerbl et al. 2024 (hierarchical 3D
+/// Gaussians).
 inline constexpr unsigned exposure_width = 12;
 
 /// Returns the index of element k of row `channel` of A, or of its element of b for k = 3.
@@ -54,8 +55,8 @@ struct expose {
     }
 };
 
-/// Computes the gradients with respect to the render and the exposure, from the gradient with respect to the
-/// exposed render. One warp handles `rounds` pixels per lane.
+/// Computes the gradients with respect to the render and the exposure, from the gradient with
+/// respect to the exposed render. One warp handles `rounds` pixels per lane.
 struct expose_backward {
     static constexpr unsigned rounds = 8;
 
@@ -107,8 +108,8 @@ struct expose_backward {
     }
 };
 
-/// Shifts all exposures by the same amount, so that their mean is the identity. Otherwise all exposures could
-/// become brighter and the scene darker. One index per value of an exposure.
+/// Shifts all exposures by the same amount, so that their mean is the identity. Otherwise all
+/// exposures could become brighter and the scene darker. One index per value of an exposure.
 struct normalize_exposures {
     float* exposures;
     std::size_t views;

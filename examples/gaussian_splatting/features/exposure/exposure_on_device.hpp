@@ -53,8 +53,9 @@ class exposure_on_device final : public device_feature<Renderer> {
         of_training_.set(flattened(std::vector<exposure>(views_, identity_exposure)));
         of_held_out_.set({});
     }
-    /// Returns Adam's learning rate, which decays to a tenth. It is higher if fewer steps use each view, so
-    /// that exposures can change by 0.6 if at least 30 steps use a view. Kerbl et al. 2024 begin at 0.01.
+    /// Returns Adam's learning rate, which decays to a tenth. It is higher if fewer steps use each
+    /// view, so that exposures can change by 0.6 if at least 30 steps use a view. Kerbl et al. 2024
+    /// begin at 0.01.
     float rate_at(int iteration) const {
         const double first =
             std::min(0.05, 1.5 * static_cast<double>(views_) / static_cast<double>(iterations_));

@@ -10,7 +10,8 @@
 
 namespace gs::features {
 
-/// The exposures of a list of views on the device. Adam trains each exposure in the steps that use its view.
+/// The exposures of a list of views on the device. Adam trains each exposure in the steps that use
+/// its view.
 template <device::device Device>
 class exposures {
     template <class T>
@@ -26,15 +27,16 @@ class exposures {
 
     std::size_t count() const { return numbers_.rows(); }
 
-    /// Returns the render with the exposure of a view: three planes on the device, valid until the next call.
+    /// Returns the render with the exposure of a view: three planes on the device, valid until the
+    /// next call.
     const float* show(std::size_t view, const float* render, std::size_t pixels) {
         exposed_.resize(3 * pixels);
         device_.for_each_index(pixels, expose{render, numbers_.row(view), pixels, exposed_.data()});
         return exposed_.data();
     }
 
-    /// Returns the gradient with respect to the render, from the gradient with respect to the result of
-    /// `show`. Also trains the exposure.
+    /// Returns the gradient with respect to the render, from the gradient with respect to the
+    /// result of `show`. Also trains the exposure.
     const float* learn(std::size_t view, const float* render, const float* by_exposed, std::size_t pixels,
                        float rate, const raster::list_capacity& capacity) {
         by_render_.resize(3 * pixels);

@@ -23,7 +23,8 @@ double square_distance(const exposure& a, const exposure& b) {
     return sum;
 }
 
-/// `in_order`: exposures of photos in the order of their names.
+/// Returns whether the mean of both neighbors predicts exposures better than the identity does.
+/// `in_order`: the exposures of the photos in the order of their names.
 bool neighbors_are_alike(const std::vector<exposure>& in_order) {
     double by_neighbors = 0, by_identity = 0;
     for (std::size_t i = 1; i + 1 < in_order.size(); ++i) {

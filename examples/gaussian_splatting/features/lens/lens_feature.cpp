@@ -12,7 +12,7 @@ namespace gs::features {
 
 finding lens_feature::analyze(const scene_statistics& statistics) const {
     std::size_t photos = 0;
-    double widest = 0;  // degrees from corner to corner
+    double widest = 0;  // largest angle from corner to corner, in degrees
     for (const view& v : statistics.scene().train) {
         const camera& c = v.camera;
         if (!c.fisheye) continue;

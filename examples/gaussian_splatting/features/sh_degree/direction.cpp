@@ -15,16 +15,16 @@
 namespace gs::features {
 namespace {
 
-constexpr double ridges[] = {0.3, 1, 3, 10};  ///< on all but the constant, in units of an observation
+constexpr double ridges[] = {0.3, 1, 3, 10};  ///< penalties in observations; none on degree 0
 constexpr float one_size = 1.6f;
-constexpr double outlier = 4.0;  ///< in standard deviations: something else was in front
+constexpr double outlier = 4.0;  ///< standard deviations; another object hid the point
 
 constexpr std::size_t some_points = 10;
-constexpr double least_share = 0.03;       ///< of the unexplained mean square, for each further degree
-constexpr double least_amplitude = 0.002;  ///< and this root mean square, of full brightness
+constexpr double least_share = 0.03;       ///< smallest gain of a degree, relative to degree 0
+constexpr double least_amplitude = 0.002;  ///< smallest gain of a degree, root mean square
 
-/// Of a point's observations the most that have it about as large: from another distance its surroundings
-/// blur into it.
+/// Keeps the largest set of observations in which the footprints differ by at most a factor of
+/// `one_size`. From a larger distance, the color of a point mixes with its surroundings.
 void keep_one_size(std::vector<observation>& seen) {
     std::ranges::sort(seen, {}, [](const observation& o) { return std::pair(o.footprint, o.view); });
     std::size_t first = 0, most = 0;
@@ -39,8 +39,9 @@ void keep_one_size(std::vector<observation>& seen) {
             seen.begin() + static_cast<std::ptrdiff_t>(first + most)};
 }
 
-/// Squares of what is left of each observation by degree 0 to 3, summed over its channels; observations of
-/// one point.
+/// Appends the squared residuals of the observations of one point, for SH degrees 0 to 3. A
+/// residual is the difference between an observation and its leave-one-out prediction. Each square
+/// is the mean over color channels.
 void add_residuals(const std::vector<observation>& seen, double ridge,
                    std::vector<std::array<double, 4>>& residuals) {
     const std::size_t n = seen.size();
@@ -52,13 +53,13 @@ void add_residuals(const std::vector<observation>& seen, double ridge,
         sh_basis<double>(3, glm::dvec3(seen[i].direction), rows[i].data());
         for (std::size_t k = 0; k < 16; ++k) center[k] += rows[i][k] / double(n);
     }
-    // About their means, so that the constant is not held back.
+    // Subtracts the means, so that the ridge penalty does not affect the constant.
     for (auto& row : rows)
         for (std::size_t k = 0; k < 16; ++k) row[k] -= center[k];
     std::vector<std::array<double, 4>> left(n);
     for (int degree = 0; degree <= 3; ++degree) {
         const auto size = static_cast<std::size_t>((degree + 1) * (degree + 1) - 1);
-        // The normal equations' Cholesky factor, bands 1 to `degree`.
+        // The Cholesky factor of the normal equations, for degrees 1 to `degree`.
         double factor[15][15] = {};
         for (std::size_t a = 0; a < size; ++a)
             for (std::size_t b = 0; b <= a; ++b) {
@@ -67,7 +68,8 @@ void add_residuals(const std::vector<observation>& seen, double ridge,
                 for (std::size_t k = 0; k < b; ++k) sum -= factor[a][k] * factor[b][k];
                 factor[a][b] = a == b ? std::sqrt(sum) : sum / factor[b][b];
             }
-        // Each row by the inverse factor: the hat matrix is W W^T, besides 1/n of the constant.
+        // Multiplies each row by the inverse factor. With these rows W, the hat matrix is W W^T
+        // plus 1/n for the constant.
         std::vector<std::array<double, 15>> whitened(n);
         std::array<glm::dvec3, 15> projected{};
         for (std::size_t i = 0; i < n; ++i)
@@ -78,7 +80,7 @@ void add_residuals(const std::vector<observation>& seen, double ridge,
                 projected[a] += whitened[i][a] * (glm::dvec3(seen[i].color) - mean);
             }
         for (std::size_t i = 0; i < n; ++i) {
-            double own = 1 / double(n);  // what an observation adds to its own prediction
+            double own = 1 / double(n);  // weight of an observation in its own prediction
             glm::dvec3 rest = glm::dvec3(seen[i].color) - mean;
             for (std::size_t a = 0; a < size; ++a) {
                 own += whitened[i][a] * whitened[i][a];

@@ -14,20 +14,20 @@ struct direction_statistics {
     bool has_points = false;  ///< whether the scene has points
     std::size_t points = 0;   ///< number of points with enough observations
     /// For each SH degree d, the mean square of an observation minus its prediction from the other
-    /// observations of its point by spherical harmonics of degree d. Colors are in [0, 1]. Zeros if `points`
-    /// is 0.
+    /// observations of its point by spherical harmonics of degree d. Colors are in [0, 1]. Zeros if
+    /// `points` is 0.
     std::array<double, 4> unexplained{};
 
     /// Returns whether `points` is large enough for a decision.
     bool is_known() const;
-    /// Returns the SH degree that colors need, 0 to 3. If `points` is too small for a decision, this is 3. If
-    /// it is almost zero although the scene has points, this is 0: the photos are then too few or too far
-    /// apart to separate view-dependent color from other effects.
+    /// Returns the SH degree that colors need, 0 to 3. If `points` is too small for a decision,
+    /// this is 3. If it is almost zero although the scene has points, this is 0: the photos are
+    /// then too few or too far apart to separate view-dependent color from other effects.
     int degree() const;
 };
 
-/// Computes the statistics by ridge regression for each point, after differences of exposure are removed. The
-/// prediction of an observation does not use that observation.
+/// Computes the statistics by ridge regression for each point, after differences of exposure are
+/// removed. The prediction of an observation does not use that observation.
 direction_statistics measure_direction(const scene_statistics& statistics);
 
 /// Computes `direction_statistics::unexplained` by ridge regression.

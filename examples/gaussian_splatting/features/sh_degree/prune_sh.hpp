@@ -15,8 +15,8 @@
 
 namespace gs::train {
 
-/// Rates Gaussians by their `sh_error`, and marks all of them to keep their SH coefficients. One index per
-/// Gaussian.
+/// Rates Gaussians by their `sh_error`, and marks all of them to keep their SH coefficients. One
+/// index per Gaussian.
 struct rate_by_sh_error {
     const sh_error* errors;
     std::uint32_t* keeps;
@@ -30,7 +30,8 @@ struct rate_by_sh_error {
     }
 };
 
-/// Gives a Gaussian that loses its SH coefficients its mean color, if it was seen. One index per Gaussian.
+/// Gives a Gaussian that loses its SH coefficients its mean color, if it was seen. One index per
+/// Gaussian.
 struct take_mean_color {
     const sh_error* errors;
     const std::uint32_t* keeps;
@@ -42,8 +43,8 @@ struct take_mean_color {
     }
 };
 
-/// Places Gaussians that keep their SH coefficients before the others. Both groups keep their order. One
-/// index per Gaussian.
+/// Places Gaussians that keep their SH coefficients before the others. Both groups keep their
+/// order. One index per Gaussian.
 struct place_sh_first {
     std::size_t count;
     const std::uint32_t* keeps;
@@ -58,7 +59,8 @@ struct place_sh_first {
     }
 };
 
-/// Removes the SH coefficients of Gaussians whose color hardly depends on direction, and frees their memory.
+/// Removes the SH coefficients of Gaussians whose color hardly depends on direction, and frees
+/// their memory.
 template <device::device Device>
 class sh_pruner {
     template <class T>
@@ -67,8 +69,8 @@ class sh_pruner {
   public:
     sh_pruner(Device& device, parameter_gather<Device>& gather) : device_(device), gather_(gather) {}
 
-    /// Measures the `sh_error` of `count` Gaussians over all views. Prunes as many Gaussians as change the
-    /// renders by a root mean square of at most `change`. Cost: renders each view once.
+    /// Measures the `sh_error` of `count` Gaussians over all views. Prunes as many Gaussians as
+    /// change the renders by a root mean square of at most `change`. Cost: renders each view once.
     void run(trained_parameters<Device>& all, std::size_t count, int sh_degree, score_views& views,
              double change) {
         buffer<sh_error> errors;
@@ -89,9 +91,10 @@ class sh_pruner {
         prune(all, count, sh_degree, errors.data(), change * change * static_cast<double>(values));
     }
 
-    /// Prunes as many of `count` Gaussians as possible, so that the `sh_error::squares` of all pruned ones
-    /// sum to at most `squares`. Pruned Gaussians take their mean color and come last. Prunes none if they
-    /// are less than a tenth of those with SH coefficients. Waits for the device once.
+    /// Prunes as many of `count` Gaussians as possible, so that the `sh_error::squares` of all
+    /// pruned ones sum to at most `squares`. Pruned Gaussians take their mean color and come last.
+    /// Prunes none if they are less than a tenth of those with SH coefficients. Waits for the
+    /// device once.
     void prune(trained_parameters<Device>& all, std::size_t count, int sh_degree, const sh_error* errors,
                double squares) {
         for (auto* b : {&keeps_, &rating_, &gaussian_of_}) b->resize(count);

@@ -17,8 +17,8 @@ namespace {
 
 float shown(float x) { return std::clamp(x, 0.0f, 1.0f); }
 
-/// A photo minus its image, as a photo: four times as large, since bytes are coarse, around a gray of a
-/// half.
+/// Replaces a photo by the residual: photo minus render, times four because bytes are coarse,
+/// around mid-gray.
 void leave_residual(image& photo, const std::vector<float>& render, const std::array<float, 3>& background) {
     const std::vector<float> expected = over_background(photo, background.data());
     const std::size_t n = render.size() / 3;
@@ -29,7 +29,7 @@ void leave_residual(image& photo, const std::vector<float>& render, const std::a
         }
 }
 
-/// The scene's points, and what the model leaves of its training photos.
+/// Returns a scene with the points of `of` and with the residuals of its training photos.
 scene residual_of(const scene& of, train::engine& engine, const show_function& show,
                   const std::array<float, 3>& background) {
     scene residual;
@@ -49,7 +49,8 @@ scene residual_of(const scene& of, train::engine& engine, const show_function& s
     return residual;
 }
 
-/// By what the images of some training views change if colors have only bands up to this degree.
+/// Returns the root mean square by which the renders of up to eight training views change if colors
+/// use only SH coefficients up to this degree.
 double change_above(int degree, train::engine& engine, const scene& of,
                     const std::array<float, 3>& background) {
     const std::size_t views = std::min<std::size_t>(of.train.size(), 8);
@@ -77,7 +78,7 @@ sh_review revise_sh_degree(train::engine& engine, const scene& scene, const show
         left = measure_direction(scene_statistics(residual));
     }
     review.unexplained = left.unexplained;
-    // Where too few points tell, no band is added.
+    // Adds no degree if there are too few points for a decision.
     const int recommended = left.is_known() ? left.degree() : 0;
     review.sh_degree = std::max(sh_degree, recommended);
     if (sh_degree > 0) review.change = change_above(sh_degree - 1, engine, scene, background);

@@ -20,7 +20,8 @@ train::sh_degree_state& state_of(train::engine& engine) {
     return dynamic_cast<train::sh_degree_state&>(engine.feature("direction"));
 }
 
-/// Revises the degree by what the model leaves of the photos, and reports the review.
+/// Determines the SH degree from the difference between photos and renders, and reports the
+/// figures.
 int revise(train::training& training, int sh_degree) {
     const train::train_options& options = training.options();
     const sh_review review =
@@ -94,7 +95,7 @@ void schedule_revision(train::training& training, std::function<int(int sh_degre
                       auto& report = training.result().feature_reports["direction"];
                       report["on"] = schedule.sh_degree > 0;
                       report["sh_degree"] = schedule.sh_degree;
-                      if (schedule.sh_degree > before)  // new bands need time to learn
+                      if (schedule.sh_degree > before)  // new coefficients need time to learn
                           *prune_after = std::max(*prune_after, iteration + schedule.sh_degree_interval);
                   }});
     if (!prune_change) return;

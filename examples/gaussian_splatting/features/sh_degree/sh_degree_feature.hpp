@@ -9,8 +9,8 @@
 
 namespace gs::features {
 
-/// View-dependent color by spherical harmonics. Values: the initial SH degree, and 1 if training revises it
-/// after half of the iterations.
+/// View-dependent color by spherical harmonics. Values: the initial SH degree, and 1 if training
+/// revises it after half of the iterations.
 class sh_degree_feature final : public feature {
   public:
     std::string_view name() const override { return "direction"; }
@@ -31,9 +31,9 @@ selected_feature explicit_sh_degree(int degree);
 /// Returns the initial SH degree from the values of the feature, or 0 if they are empty.
 int first_sh_degree(const std::vector<float>& values);
 
-/// Calls `revise` once, after half of the iterations, with the current SH degree, and sets the degree that it
-/// returns. If `prune_change` is set, also prunes SH coefficients when the number of Gaussians is final: see
-/// `sh_degree_state::prune`.
+/// Calls `revise` once, after half of the iterations, with the current SH degree, and sets the
+/// degree that it returns. If `prune_change` is set, also prunes SH coefficients when the number of
+/// Gaussians is final: see `sh_degree_state::prune`.
 void schedule_revision(train::training& training, std::function<int(int sh_degree)> revise,
                        std::optional<double> prune_change);
 

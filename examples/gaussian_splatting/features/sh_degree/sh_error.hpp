@@ -10,11 +10,12 @@
 
 namespace gs::train {
 
-/// The variation of a Gaussian's color between views. Each pixel counts with the Gaussian's weight w in it,
-/// alpha times transmittance. The variation bounds the error if the Gaussian takes its mean color: if the
-/// colors of Gaussians i change by d_i, a pixel changes by the sum of w_i d_i. All w_i of a pixel sum to at
-/// most 1, so the square of that change is at most the sum of w_i d_i^2 (Jensen's inequality). Therefore the
-/// squared changes of all pixels sum to at most the sum of the Gaussians' `squares`.
+/// The variation of a Gaussian's color between views. Each pixel counts with the Gaussian's weight
+/// w in it, alpha times transmittance. The variation bounds the error if the Gaussian takes its
+/// mean color: if the colors of Gaussians i change by d_i, a pixel changes by the sum of w_i d_i.
+/// All w_i of a pixel sum to at most 1, so the square of that change is at most the sum of w_i
+/// d_i^2 (Jensen's inequality). Therefore the squared changes of all pixels sum to at most the sum
+/// of the Gaussians' `squares`.
 struct sh_error {
     float weight;   ///< sum of w over pixels and views
     float mean[3];  ///< mean color

@@ -25,8 +25,8 @@ class sky {
     std::vector<float> get() const { return numbers_.get(); }
     bool exists() const { return numbers_.rows() > 0; }
 
-    /// Draws the background of a camera. Returns three planes on the device, or null without a learned
-    /// background.
+    /// Draws the background of a camera. Returns three planes on the device, or null without a
+    /// learned background.
     const float* draw(const camera& camera) {
         if (!exists()) return nullptr;
         raster::require_drawable(camera);
@@ -38,8 +38,8 @@ class sky {
         return planes_.data();
     }
 
-    /// Trains the coefficients from `by_render`, the gradient with respect to a render with this background.
-    /// `transmittance` is the share of the background's light in each pixel.
+    /// Trains the coefficients from `by_render`, the gradient with respect to a render with this
+    /// background. `transmittance` is the share of the background's light in each pixel.
     void learn(const camera& camera, const float* transmittance, const float* by_render, float rate,
                const raster::list_capacity& capacity) {
         const train::ordered_sums sums = numbers_.sums(patches(camera));

@@ -11,12 +11,13 @@ namespace gs::features {
 namespace {
 
 constexpr const char* has_alpha = "photos have transparent parts";
-constexpr double least_share = 0.02;       ///< of the photos' area
-constexpr double least_of_empty = 0.5;     ///< and of what is smooth and without points
-constexpr double least_brightness = 0.08;  ///< a darker sky may as well be black
+constexpr double least_share = 0.02;       ///< smallest share of the photos' area
+constexpr double least_of_empty = 0.5;     ///< smallest share of the smooth area without points
+constexpr double least_brightness = 0.08;  ///< a darker sky is treated as black
 
-/// With the photos as they are and, if their brightness differs, evened out. A sky that is overexposed is
-/// white in every photo, so the better of both counts.
+/// Fits the sky to the photos as they are and, if their brightness is known, to photos of equalized
+/// brightness. Returns the fit with the larger share, because an overexposed sky is white in every
+/// photo.
 sky_fit best_fit(const scene_statistics& statistics) {
     sky_fit found = fit_sky(statistics.scene(), {});
     const std::vector<double>& brightness = statistics.brightness().log2;

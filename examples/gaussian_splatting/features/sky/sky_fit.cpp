@@ -17,17 +17,17 @@ namespace gs::features {
 namespace {
 
 constexpr int cells_along = 32;
-constexpr double smooth = 0.04;  ///< standard deviation in a cell of what its noise leaves
+constexpr double smooth = 0.04;  ///< largest standard deviation within a cell, without noise
 constexpr std::size_t terms = sh_coefficients(sky_degree);
 
-/// A part of a photo without points.
+/// A square of a photo without points.
 struct cell {
     std::array<double, terms> basis{};
     glm::dvec3 color{0};
 };
 
-/// The mean color of a square, if it is smooth, opaque, and not left out. Rows and columns are averaged
-/// before they are asked whether they differ: noise alone makes no texture.
+/// Returns the mean color of a square, or nothing if it is not smooth or not opaque. Smoothness is
+/// measured on the averages of rows and columns, in which noise alone is small.
 std::optional<glm::dvec3> smooth_color(const image& photo, int left, int top, int side) {
     std::vector<glm::dvec3> columns(static_cast<std::size_t>(side)), rows(static_cast<std::size_t>(side));
     glm::dvec3 mean(0);
@@ -49,7 +49,7 @@ std::optional<glm::dvec3> smooth_color(const image& photo, int left, int top, in
     return mean;
 }
 
-/// Those of one photo, and how many cells it has.
+/// The smooth cells of one photo that have no points, and the number of all cells.
 struct photo_cells {
     std::vector<cell> empty;
     std::size_t all = 0;
@@ -61,7 +61,7 @@ photo_cells cells_of(const view& v, const std::vector<colored_point>& points) {
     const int across = c.width / side, down = c.height / side;
     photo_cells found;
     if (across < 1 || down < 1) return found;
-    // Whether points lie in a cell or beside it.
+    // Marks cells with points in them or in a neighbor.
     std::vector<char> near_points(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 0);
     for (const colored_point& point : points) {
         const auto p = c.see(point.position);
@@ -88,7 +88,7 @@ photo_cells cells_of(const view& v, const std::vector<colored_point>& points) {
     return found;
 }
 
-/// Normal equations of colors by harmonics.
+/// The normal equations of SH coefficients that predict the colors of cells.
 struct equations {
     std::array<std::array<double, terms>, terms> left{};
     std::array<glm::dvec3, terms> right{};
@@ -105,9 +105,10 @@ struct equations {
             for (std::size_t b = 0; b <= a; ++b) left[a][b] += weight * other.left[a][b];
         }
     }
-    /// By Cholesky's factorisation, with a little of no harmonics at all.
+    /// Solves the equations by Cholesky factorization, with a small ridge penalty on the
+    /// coefficients.
     std::array<glm::dvec3, terms> solve() const {
-        constexpr double ridge = 0.1;  // cells
+        constexpr double ridge = 0.1;  // in cells
         auto factor = left;
         auto x = right;
         for (std::size_t a = 0; a < terms; ++a) {
@@ -154,7 +155,8 @@ sky_fit fit_sky(const scene& of, const std::vector<double>& brighter) {
     }
     if (empty == 0) return found;
 
-    // Cells that others do not predict count less and less (Geman and McClure's weights).
+    // Reduces the weight of cells that the other photos do not predict (Geman and McClure's
+    // weights).
     equations sum;
     for (int round = 0; round < 12; ++round) {
         std::vector<equations> own(photos.size());

@@ -8,11 +8,11 @@
 
 namespace gs::features {
 
-/// The sky in the training images: smooth parts without points, whose color depends only on the direction.
-/// The other images therefore predict the color of such a part.
+/// The sky in the training images: smooth parts without points, whose color depends only on the
+/// direction. The other images therefore predict the color of such a part.
 struct sky_fit {
-    bool has_points = false;          ///< whether the scene has points; if not, nothing was measured
-    double share = 0;                 ///< share of the images' area that is predicted to `sky_tolerance`
+    bool has_points = false;          ///< whether the scene has points; if not, the rest is 0
+    double share = 0;                 ///< share of the images' area predicted to `sky_tolerance`
     double empty = 0;                 ///< share of their area that is smooth and has no points
     double brightness = 0;            ///< mean of the predicted part over its channels, in [0, 1]
     std::vector<float> coefficients;  ///< see `gaussians::sky`
@@ -20,8 +20,8 @@ struct sky_fit {
 inline constexpr double sky_tolerance = 0.06;  ///< root mean square over channels
 
 /// Fits SH coefficients of degree 3 to cells whose side is a 32nd of the images' longer side. The
-/// prediction of each image uses a fit without that image. `brighter` is the relative brightness of each
-/// image, see `photo_brightness`, or empty.
+/// prediction of each image uses a fit without that image. `brighter` is the relative brightness of
+/// each image, see `photo_brightness`, or empty.
 sky_fit fit_sky(const scene& of, const std::vector<double>& brighter);
 
 }  // namespace gs::features

@@ -12,12 +12,12 @@
 
 namespace gs::features {
 
-/// The number of SH coefficients per channel of a sky. Its color in a direction is 0.5 plus the sum of
-/// coefficients times harmonics, as for a Gaussian, but is not clamped.
+/// The number of SH coefficients per channel of a sky. Its color in a direction is 0.5 plus the sum
+/// of coefficients times harmonics, as for a Gaussian, but is not clamped.
 inline constexpr unsigned sky_coefficients = sh_coefficients(sky_degree);
 
-/// The pixels of an image that one warp handles: one column per lane, `rows` rows. `Fisheye` tells whether
-/// the camera has a fisheye lens.
+/// The pixels of an image that one warp handles: one column per lane, `rows` rows. `Fisheye` tells
+/// whether the camera has a fisheye lens.
 template <class W, bool Fisheye>
 struct sky_patch {
     using real = warpagg::value_t<W, float>;
@@ -81,8 +81,8 @@ struct draw_sky {
     }
 };
 
-/// Sums the gradient with respect to the sky's coefficients, from the gradient with respect to the render and
-/// the transmittance of each pixel. One warp per patch.
+/// Sums the gradient with respect to the sky's coefficients, from the gradient with respect to the
+/// render and the transmittance of each pixel. One warp per patch.
 template <class W, bool Fisheye>
 struct sky_backward {
     using real = warpagg::value_t<W, float>;
