@@ -8,7 +8,8 @@
 
 namespace gs {
 
-/// A camera model of COLMAP. Its parameters are f or fx fy, cx, cy, and the distortion coefficients.
+/// A camera model of COLMAP. Its parameters are f or fx fy, cx, cy, and the distortion
+/// coefficients.
 struct camera_model {
     int id;  ///< number in COLMAP's binary files
     const char* name;

@@ -25,7 +25,8 @@ bool uses(const reader& one, const reader_option& option) {
     return std::ranges::find(one.options, option.name, &reader_option::name) != one.options.end();
 }
 
-/// An option without effect is a mistake of the user, so it is refused rather than ignored.
+/// Throws `error` for options that the chosen reader does not use. An option without effect is a
+/// mistake of the user, so it is not ignored.
 void refuse_foreign_options(const load_options& options, const reader& chosen, reader_table readers) {
     for (const reader* other : readers)
         for (const reader_option& option : other->options)

@@ -30,7 +30,8 @@ std::string count_text(std::size_t count, const std::string& noun) {
                 size_text(record.camera.width, record.camera.height));
 }
 
-/// The camera at the size of its file. People often replace photos by smaller copies (`images_4`).
+/// Returns the camera scaled to the size of its image file. Scene folders often contain photos in
+/// smaller sizes, such as `images_4`.
 camera fitted_to_file(const image_record& record) {
     int width = 0, height = 0;
     read_image_size(record.file, width, height);
@@ -41,8 +42,8 @@ camera fitted_to_file(const image_record& record) {
     return recorded.resized(width, height);
 }
 
-/// Such copies all have the same scale, so a photo with another scale than most photos of the same
-/// recorded size is a wrong file.
+/// Throws `error` for photos of a wrong size. Smaller copies all have the same scale, so a photo
+/// with another scale than most photos of the same recorded size is a wrong file.
 void require_one_scale(const std::vector<image_record>& records, const std::vector<camera>& fitted) {
     const auto scale = [&](std::size_t i) {
         return static_cast<double>(fitted[i].width) / records[i].camera.width;
@@ -81,7 +82,7 @@ std::vector<camera> fit_to_files(const std::vector<image_record>& records, const
     return fitted;
 }
 
-/// Pinhole cameras in place of those with lens distortion.
+/// Finds pinhole cameras for cameras with lens distortion, and remembers them.
 class undistorted_cameras {
   public:
     camera pinhole_of(const camera& fitted, const image_record& record) {
@@ -114,7 +115,7 @@ class undistorted_cameras {
 
   private:
     using key = std::tuple<int, int, double, double, double, double, double, double, double, double>;
-    std::map<key, camera> known_;  ///< photos mostly share a camera, and finding its zoom is slow
+    std::map<key, camera> known_;  ///< most photos share a camera; finding its zoom is slow
     std::set<std::string> models_;
 };
 
@@ -129,8 +130,8 @@ std::vector<camera> undistort_cameras(const std::vector<image_record>& records,
     return pinholes;
 }
 
-/// Refuses fisheye lenses whose model ends before the photo does on all sides: their parameters are
-/// wrong. Corners may lie beyond the end.
+/// Throws `error` for a fisheye lens whose model ends inside the photo on all sides, because its
+/// parameters are wrong. Corners may lie beyond the end.
 void require_wide_lenses(const std::vector<image_record>& records, const std::vector<camera>& fitted) {
     for (std::size_t i = 0; i < fitted.size(); ++i) {
         const camera& c = fitted[i];
@@ -189,7 +190,7 @@ view load_view(const image_record& record, const camera& fitted, const camera& p
         if (!record.mask.empty()) mask = undistort(mask, fitted, distortion, pinhole);
         if (depths.is_there()) depths = undistort(depths, fitted, distortion, pinhole);
     }
-    apply_mask(mask, photo);  // before downsampling, so that no average includes masked pixels
+    apply_mask(mask, photo);  // before downsampling, to keep masked pixels out of averages
     clear_masked_depths(photo, depths);
     photo = downsample(photo, scaled.width, scaled.height);
     if (photo.is_all_masked())

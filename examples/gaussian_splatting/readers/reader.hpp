@@ -18,8 +18,8 @@ namespace gs {
 /// The scene to read, and the options of reading it.
 struct load_options {
     std::string data;        ///< a path, or a name that a reader knows, such as "synthetic:spheres"
-    int resolution = 1;      ///< divisor of the size, see `divides_size`, or the longer side in pixels
-    bool eval = false;       ///< hold out the test images, which are training images by default
+    int resolution = 1;      ///< divisor of the size, or longer side: see `divides_size`
+    bool eval = false;       ///< hold out test images; by default, train on all
     bool masks = true;       ///< apply the scene's masks
     bool depths = true;      ///< load the scene's depth maps
     std::uint64_t seed = 0;  ///< for readers that draw random points
@@ -44,8 +44,8 @@ inline constexpr reader_option images_option{
 inline constexpr reader_option test_every_option{
     "--test-every", [](const load_options& o) { return o.test_every != load_options().test_every; }};
 
-/// The description of one image of a scene. It names files, which `load_scene` loads later, or holds
-/// pixels that the reader has made.
+/// The description of one image of a scene. It names files, which `load_scene` loads later, or
+/// holds pixels that the reader has made.
 struct image_record {
     std::string name;       ///< unique within the scene; '/' separates folders
     gs::camera camera;      ///< calibrated for its own size, which is at least 1×1
@@ -73,7 +73,7 @@ struct scene_description {
 /// A kind of scene. To add one, write its folder and add a row to the table in readers.cpp.
 struct reader {
     std::string_view name;     ///< in messages, as in "COLMAP scenes"
-    std::string_view accepts;  ///< what `probe` looks for, as in "a COLMAP folder with sparse/0 or sparse"
+    std::string_view accepts;  ///< accepted data, such as "a COLMAP folder with sparse"
 
     /// Returns whether `load_options::data` is such a scene. Looks only at names. The first reader
     /// that returns true reads the scene and reports all its errors.

@@ -24,7 +24,7 @@ bool has_orthonormal_columns(const glm::dmat3& matrix, double tolerance) {
 
 }  // namespace
 
-// All conditions are written so that NaN fails too.
+// NaN fails all these conditions.
 bool has_valid_intrinsics(const camera& taken_with, const lens& distortion) {
     constexpr double least_focal_length = 1e-6, largest = 1e9;
     const auto k = taken_with.fisheye ? taken_with.fisheye->k() : std::array<double, 4>{};

@@ -15,7 +15,7 @@
 namespace gs {
 namespace {
 
-/// `stem.bin`, otherwise `stem.txt`, otherwise an empty path.
+/// Returns the path of `stem.bin` if it exists, otherwise of `stem.txt`, otherwise an empty path.
 std::filesystem::path find_part(const std::filesystem::path& folder, const std::string& stem) {
     for (const char* ending : {".bin", ".txt"})
         if (const auto file = folder / (stem + ending); std::filesystem::exists(file)) return file;

@@ -51,14 +51,14 @@ struct colmap_model {
     const char* name(const colmap_image& image) const { return names.c_str() + image.name_begins; }
 };
 
-/// Reads cameras, images and points3D from a folder. Each file is a `.bin`, or a `.txt` if the `.bin`
-/// does not exist. The points may be missing. Throws `error` with the file, and the line or record,
-/// that is malformed. Allocates at most four times the size of the files plus 64 KiB, also for
-/// malformed files.
+/// Reads cameras, images and points3D from a folder. Each file is a `.bin`, or a `.txt` if the
+/// `.bin` does not exist. The points may be missing. Throws `error` with the file, and the line or
+/// record, that is malformed. Allocates at most four times the size of the files plus 64 KiB, also
+/// for malformed files.
 colmap_model read_colmap_model(const std::filesystem::path& folder);
 
-/// Reads a folder with a COLMAP model in sparse/0 or sparse, with images, and possibly with masks and
-/// depth maps. The images are sorted by name. Every `test_every`-th image is held out.
+/// Reads a folder with a COLMAP model in sparse/0 or sparse, with images, and possibly with masks
+/// and depth maps. The images are sorted by name. Every `test_every`-th image is held out.
 extern const reader colmap_reader;
 
 }  // namespace gs

@@ -13,7 +13,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "COLMAP's binary files are read as they lie");
 
-/// Reads values one after another. Throws `error` at the end of the file.
+/// Reads values one after another. Throws `error` if the file ends too early.
 class binary_reader {
   public:
     explicit binary_reader(const std::filesystem::path& file)
@@ -35,15 +35,15 @@ class binary_reader {
         return values;
     }
 
-    /// The number of records that follow. Throws `error` if the file is too short for so many
-    /// records of at least `record_size` bytes.
+    /// Returns the number of records that follow. Throws `error` if the file is too short for this
+    /// number of records of at least `record_size` bytes.
     std::size_t take_count(std::size_t record_size) {
         const auto count = take<std::uint64_t>();
         if (count > remaining() / record_size) truncated();
         return static_cast<std::size_t>(count);
     }
 
-    /// Refers to memory of the reader.
+    /// Returns a view of memory that the reader owns.
     std::string_view take_name() {
         const std::size_t end = bytes_.find('\0', position_);
         if (end == std::string::npos) truncated();

@@ -13,8 +13,8 @@
 
 namespace gs {
 
-// Each reads one file into its part of the model. Throws `error` with the file, and the line of a
-// text file.
+// Each function reads one file into its part of the model. Throws `error` with the file, and with
+// the line of a text file.
 
 void read_binary_cameras(const std::filesystem::path& file, colmap_model& model);
 void read_binary_images(const std::filesystem::path& file, colmap_model& model);
@@ -24,8 +24,8 @@ void read_text_cameras(const std::filesystem::path& file, colmap_model& model);
 void read_text_images(const std::filesystem::path& file, colmap_model& model);
 void read_text_points(const std::filesystem::path& file, colmap_model& model);
 
-// Binary and text files share these functions, which check a record and add it. Messages begin with
-// `where`.
+// Binary and text files share these functions, which check a record and add it to the model.
+// Messages begin with `where`.
 
 using colmap_parameters = std::array<double, 8>;  ///< the first `parameter_count()` are used
 

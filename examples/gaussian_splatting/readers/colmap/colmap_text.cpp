@@ -21,13 +21,15 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// Reads a text file line by line, and a line word by word; throws `error` naming file and line.
+/// Reads a text file line by line, and a line word by word. Throws `error` with the file and the
+/// line.
 class text_reader {
   public:
     explicit text_reader(const std::filesystem::path& file) : file_(file) {}
 
-    /// Counts the records of the whole file, each of `lines` lines. The result is at most the
-    /// number of records that fit into the file if the given one is the shortest.
+    /// Counts the records of the whole file, each of `lines` lines, and returns to the beginning.
+    /// The argument is the shortest possible record. Returns at most the number of such records
+    /// that fit into the file.
     template <class Record, std::size_t Size>
     std::size_t count_records(int lines, const char (&)[Size]) {
         constexpr std::size_t shortest = Size - 1;
@@ -108,7 +110,7 @@ class text_reader {
 
   private:
     opened_file file_;
-    std::string text_;       ///< the line
+    std::string text_;       ///< the current line
     std::string_view rest_;  ///< its unread part
     std::size_t line_ = 0;
 };

@@ -37,7 +37,8 @@ using vec = glm::dvec3;
 
 enum class pattern { bands, checks };
 
-/// Two colors (linear light) that alternate smoothly along `wave`, in radians per unit of length.
+/// Two colors in linear light, which alternate smoothly along `wave`, in radians per unit of
+/// length.
 struct albedo {
     vec first;
     vec second;
@@ -60,7 +61,7 @@ struct ground_disc {
 struct world {
     std::vector<ball> balls;
     std::optional<ground_disc> ground;
-    bool transparent = false;  ///< the background is transparent; otherwise it is black
+    bool transparent = false;  ///< whether the background is transparent; otherwise it is black
     synthetic_parameters how;
 };
 
@@ -131,8 +132,8 @@ world world_of(const std::string& text) {
     throw error("there is no synthetic scene '" + how.world + "'; there are: " + known);
 }
 
-/// A square wave with rounded flanks: it looks like clear stripes, but has no edge finer than a
-/// pixel.
+/// Returns a square wave with rounded flanks. It looks like clear stripes, but no edge is finer
+/// than a pixel.
 double rounded_square_wave(double sine) { return sine / std::sqrt(sine * sine + 0.15) * std::sqrt(1.15); }
 
 vec color_at(const albedo& paint, const vec& p) {
@@ -145,8 +146,8 @@ vec color_at(const albedo& paint, const vec& p) {
     return glm::mix(paint.first, paint.second, 0.5 + 0.5 * rounded_square_wave(wave));
 }
 
-/// The distance along the ray to its entry into the ball. Preconditions: `direction` has length
-/// one, and the ray starts outside.
+/// Returns the distance along the ray to its entry into the ball. Preconditions: `direction` has
+/// length one, and the ray starts outside.
 double distance_to(const ball& b, const vec& origin, const vec& direction) {
     const vec to_origin = origin - b.center;
     const double along = glm::dot(to_origin, direction);
@@ -182,9 +183,9 @@ std::optional<surface_point> first_hit(const world& w, const vec& origin, const 
     return surface_point{p, (p - hit->center) / hit->radius, color_at(hit->paint, p - hit->center)};
 }
 
-/// The visible share of a round sun with the angular radius `sun_softness` if one ball occludes it:
-/// 0 to 1. Points of the ball itself need no exception: the ball lies behind them, or they face
-/// away from the sun.
+/// Returns the visible share, 0 to 1, of a round sun with the angular radius `sun_softness` behind
+/// one ball. Points of the ball itself need no special case: the ball lies behind them, or they
+/// face away from the sun.
 double sun_past(const ball& b, const vec& position, const vec& sun) {
     constexpr double sun_softness = 0.12;
     const vec to_center = b.center - position;
@@ -194,8 +195,7 @@ double sun_past(const ball& b, const vec& position, const vec& sun) {
     return glm::smoothstep(b.radius - sun_softness * along, b.radius + sun_softness * along, miss);
 }
 
-/// The visible share of the sky if one ball occludes it: one minus its solid angle, weighted by the
-/// cosine.
+/// Returns the visible share of the sky: one minus the ball's solid angle, weighted by the cosine.
 double sky_past(const ball& b, const surface_point& s) {
     const vec to_center = b.center - s.position;
     const double distance = glm::length(to_center);
@@ -203,7 +203,7 @@ double sky_past(const ball& b, const surface_point& s) {
     return 1 - std::max(cosine, 0.0) * b.radius * b.radius / (distance * distance);
 }
 
-/// The light fades to black inside the rim of the ground, so that the rim is not an edge.
+/// Returns the brightness of the light, which fades inside the rim of the ground to hide the rim.
 double pool_of_light(const world& w, const vec& p) {
     if (!w.ground) return 1;
     return 1 - glm::smoothstep(0.5 * w.ground->radius, 0.98 * w.ground->radius, std::hypot(p.x, p.y));
@@ -211,16 +211,16 @@ double pool_of_light(const world& w, const vec& p) {
 
 vec to_sun() { return glm::normalize(vec{0.50, -0.42, 0.80}); }
 
-/// Bluer upwards, and brighter around the sun.
+/// Returns the color of the sky in a direction: bluer upward, and brighter around the sun.
 vec sky(const world& w, const vec& direction) {
     const vec low{0.55, 0.50, 0.45}, high{0.30, 0.50, 0.85}, glow{0.25, 0.22, 0.17};
     const double near_sun = std::pow(std::max(glm::dot(direction, to_sun()), 0.0), 4);
     return w.how.sky * (glm::mix(low, high, 0.5 + 0.5 * direction.z) + near_sun * glow);
 }
 
-/// The color of a surface under a warm sun and a cool sky, as displayed, in [0, 1]. Glossy surfaces
-/// also show the sun as a Phong lobe and the sky in the mirrored direction, more at grazing angles
-/// (Schlick's formula). Precondition: `to_eye` has length one.
+/// Returns the color of a surface under a warm sun and a cool sky, as displayed, in [0, 1]. Glossy
+/// surfaces also show the sun as a Phong lobe and the sky in the mirrored direction, more strongly
+/// at grazing angles (Schlick's formula). Precondition: `to_eye` has length one.
 vec shade(const world& w, const surface_point& s, const vec& to_eye) {
     static const vec sun_direction = to_sun();
     const vec sun_color{0.90, 0.83, 0.71};
@@ -253,8 +253,8 @@ std::uint8_t to_byte(double in_unit_interval) {
     return static_cast<std::uint8_t>(std::lround(255 * in_unit_interval));
 }
 
-/// The i-th camera on a spiral that turns by the golden angle. The cameras are spread evenly, and
-/// neighbors in space have distant numbers, so that every n-th camera lies between others. The
+/// Returns the i-th camera on a spiral that turns by the golden angle. The cameras are spread
+/// evenly. Neighbors in space have distant numbers, so every n-th camera lies between others. The
 /// logarithms of the distances are uniform from `how.distance` to `how.distance * how.scales`.
 camera spiral_camera(int i, int size, const synthetic_parameters& how) {
     const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
@@ -276,16 +276,17 @@ camera spiral_camera(int i, int size, const synthetic_parameters& how) {
     return c;
 }
 
-/// Written out because the results of standard distributions depend on the implementation.
+/// Returns a uniform number in [0, 1). `std::uniform_real_distribution` is not used, because its
+/// results depend on the implementation.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-/// A standard normal deviate (Box and Muller 1958).
+/// Returns a standard normal number (Box and Muller 1958).
 double normal(std::mt19937_64& random) {
     const double radius = std::sqrt(-2 * std::log(1 - uniform(random)));
     return radius * std::cos(2 * std::numbers::pi * uniform(random));
 }
 
-/// The exposure of the n-th photo, a factor of its displayed values.
+/// Returns the exposure of a photo, a factor on displayed values.
 double exposure_of(const world& w, std::size_t photo) {
     std::mt19937_64 random(~photo);  // distinct from the seeds of the noise
     return std::exp2(w.how.exposure * normal(random));
@@ -312,13 +313,14 @@ void render_row(const world& w, const camera& c, std::size_t photo, int row, std
         for (int channel = 0; channel < 3; ++channel) {
             double shown = exposure * weight * color[channel];
             if (w.how.noise > 0 && hits > 0) shown += w.how.noise * normal(random);
-            const double most = rgba[3] / 255.0;  // premultiplied
+            const double most = rgba[3] / 255.0;  // colors are premultiplied
             rgba[channel] = to_byte(std::clamp(shown, 0.0, most));
         }
     }
 }
 
-/// Paints, or masks, something that stands in front of the scene in one photo: a disc of one color.
+/// Paints or masks a disc of one color at a random place of one photo. It stands for a passer-by in
+/// front of the scene.
 void paint_passer(const world& w, std::size_t photo, bool masks, image& pixels) {
     std::mt19937_64 random(photo + (std::uint64_t{1} << 63));
     const double x = uniform(random) * pixels.width, y = uniform(random) * pixels.height;
@@ -337,8 +339,8 @@ void paint_passer(const world& w, std::size_t photo, bool masks, image& pixels) 
         }
 }
 
-/// Inverse depths as a network might estimate them: with noise, and up to a scale and an offset.
-/// The background is infinitely far.
+/// Returns inverse depths as a network might estimate them: with noise, and with an unknown scale
+/// and offset. The background is infinitely far away.
 depth_map estimated_depths(const world& w, const camera& c, std::size_t photo) {
     std::mt19937_64 random(photo + (std::uint64_t{1} << 62));
     const double offset = 0.1 + 0.2 * uniform(random), scale = 0.3 + 0.3 * uniform(random);
@@ -393,7 +395,7 @@ void take_photos(const world& w, std::vector<view>& views, bool masks = true) {
         for (std::size_t i = 0; i < views.size(); ++i) paint_passer(w, i, masks, views[i].pixels);
 }
 
-/// `count` of the views, spread evenly.
+/// Returns `count` of the views, evenly spread.
 std::vector<view> spread(std::vector<view> all, std::size_t count) {
     std::vector<view> some;
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -401,8 +403,9 @@ std::vector<view> spread(std::vector<view> all, std::size_t count) {
     return some;
 }
 
-/// Points at which rays through random pixels of random views hit a surface. As in a cloud from
-/// structure from motion, a camera sees each point, and points are denser where more cameras look.
+/// Returns points at which rays through random pixels of random views hit a surface. As in points
+/// from structure from motion, each point is visible to a camera, and points are denser where more
+/// cameras look.
 std::vector<colored_point> seen_points(const world& w, const std::vector<view>& views, std::size_t count,
                                        std::uint64_t seed) {
     std::mt19937_64 random(seed);
@@ -454,7 +457,7 @@ scene_description describe(const load_options& options, const log_function& log)
 
     std::vector<view> train, test;
     for (std::size_t i = 0; i < views.size(); ++i) {
-        // From the middle of each group, because the first and the last camera have fewer
+        // Holds out the middle of each group, because the first and the last camera have fewer
         // neighbors.
         const bool held_out = options.eval && i % views_per_test_view == views_per_test_view / 2;
         (held_out ? test : train).push_back(std::move(views[i]));

@@ -9,10 +9,10 @@
 
 namespace gs {
 
-/// Generates ray-traced scenes: `synthetic:NAME[,PARAMETER=VALUE...]`. The parameters are the members
-/// of `synthetic_parameters`. By default, cameras lie on the upper half of a sphere (z is up), and
-/// shading does not depend on the viewing direction. All surfaces lie within 1.3 of the origin along
-/// each axis.
+/// Generates ray-traced scenes: `synthetic:NAME[,PARAMETER=VALUE...]`. The parameters are the
+/// members of `synthetic_parameters`. By default, cameras lie on the upper half of a sphere (z is
+/// up), and shading does not depend on the viewing direction. All surfaces lie within 1.3 of the
+/// origin along each axis.
 ///
 ///     spheres   patterned spheres in a pool of light on a dark ground, on black
 ///     alpha     spheres that float in front of a transparent background
@@ -25,11 +25,12 @@ extern const reader synthetic_reader;
 /// Returns the names that may follow "synthetic:".
 std::vector<std::string> synthetic_scene_names();
 
-/// Replaces the pixels of `views` with renders of the scene `name` from their cameras. Precondition:
-/// no camera is inside a sphere.
+/// Replaces the pixels of `views` with renders of the scene `name` from their cameras.
+/// Precondition: no camera is inside a sphere.
 void photograph_synthetic(const std::string& name, std::vector<view>& views);
 
-/// Returns `count` random surface points of the scene `name`. Precondition: some view sees a surface.
+/// Returns `count` random surface points of the scene `name`. Precondition: some view sees a
+/// surface.
 std::vector<colored_point> synthetic_points(const std::string& name, const std::vector<view>& views,
                                             std::size_t count, std::uint64_t seed);
 

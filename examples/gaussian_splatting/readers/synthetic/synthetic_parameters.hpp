@@ -6,13 +6,13 @@
 
 namespace gs {
 
-/// The content of a synthetic scene and the properties of its photos. By default surfaces are matte,
-/// and all photos have the same distance and exposure and no noise.
+/// The content of a synthetic scene and the properties of its photos. By default surfaces are
+/// matte, and all photos have the same distance and exposure and no noise.
 struct synthetic_parameters {
     std::string world;
     double gloss = 0;      ///< share of specular reflection, 0 to 1
     double exposure = 0;   ///< standard deviation of log2 of the brightness of photos, 0 to 2
-    double scales = 1;     ///< largest distance of a camera over the smallest, 1 to 16
+    double scales = 1;     ///< ratio of the largest and smallest camera distance, 1 to 16
     double distance = 1;   ///< factor of all camera distances, 0.25 to 16
     double passers = 0;    ///< share of each photo that a masked disc hides, 0 to 0.5
     double depths = -1;    ///< relative noise of depth maps, 0 to 10; negative for no depth maps

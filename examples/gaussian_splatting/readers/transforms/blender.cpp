@@ -20,7 +20,7 @@ using enum transforms_number;
 
 constexpr const char* training_file = "transforms_train.json";
 
-/// The file of the photo. The path in the frame may omit the ending.
+/// Returns the file of the photo. The path in the frame may omit the ending.
 std::filesystem::path find_photo(const std::filesystem::path& data, const transforms& all,
                                  std::size_t index) {
     const auto plain = data / all.frames[index].path;
@@ -72,7 +72,7 @@ void set_intrinsics(image_record& record, const transforms& all, std::size_t ind
         throw error(all.where_is(index) + invalid_intrinsics);
 }
 
-/// Empty if the frame names no mask.
+/// Returns the file of the mask, or an empty path if the frame names none.
 std::filesystem::path find_mask(const std::filesystem::path& data, const transforms& all, std::size_t index) {
     if (all.frames[index].mask.empty()) return {};
     auto file = data / all.frames[index].mask;
@@ -91,7 +91,7 @@ std::vector<image_record> image_records(const std::filesystem::path& data, const
         image_record record;
         record.file = find_photo(data, all, i);
         record.name = record.file.lexically_relative(data).lexically_normal().generic_string();
-        // The path of a frame may be absolute although that of the scene is not.
+        // The path of a frame may be absolute although the path of the scene is relative.
         if (record.name.empty()) record.name = record.file.generic_string();
         record.held_out = held_out;
         record.camera.rotation = all.frames[i].rotation;

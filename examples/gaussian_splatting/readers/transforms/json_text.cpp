@@ -12,7 +12,8 @@
 namespace gs {
 namespace {
 
-/// Whether a number begins here. In JSON one of `before` precedes it; elsewhere the lexer stops.
+/// Returns whether a number begins here. In JSON, one of the characters in `before` precedes a
+/// number. At any other character the lexer stops.
 bool begins_number(const std::string& text, std::size_t at) {
     constexpr std::string_view first = "-0123456789", before = " \t\r\n,:[";
     return first.find(text[at]) != std::string_view::npos && at > 0 &&

@@ -21,7 +21,7 @@ using nlohmann::json;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// The numbers of a frame or of the file. A later value replaces an earlier one.
+/// The numbers of a frame or of the whole file. A later value replaces an earlier one.
 class number_fields {
   public:
     /// Ignores fields that are not in `transforms_number_names`. `value` is NaN for other types.
@@ -81,7 +81,7 @@ class reader final : public json::json_sax_t {
     }
     bool number_float(number_float_t number, const string_t&) override { return value(number, nullptr); }
     bool string(string_t& text) override { return value(not_a_number, &text); }
-    bool binary(binary_t&) override { return false; }  // only in other formats
+    bool binary(binary_t&) override { return false; }  // does not occur in JSON
     bool start_object(std::size_t) override { return open(true); }
     bool end_object() override { return close(); }
     bool start_array(std::size_t) override { return open(false); }
@@ -149,8 +149,8 @@ class reader final : public json::json_sax_t {
         return true;
     }
 
-    /// Takes a value that is not entered: `number` is NaN, and `text` null, for values of other
-    /// types.
+    /// Handles a value whose contents are not visited. `number` is NaN, and `text` is null, for
+    /// values of other types.
     bool value(double number, const std::string* text) {
         if (ignored_ > 0) return true;
         switch (at_) {
@@ -216,8 +216,8 @@ class reader final : public json::json_sax_t {
     transforms& all_;
     const std::string& text_;
     level at_ = level::file;
-    std::size_t ignored_ = 0;  ///< open brackets inside a value that is ignored
-    std::string field_;        ///< the last key; values at the top level and in frames belong to it
+    std::size_t ignored_ = 0;  ///< number of open brackets in an ignored value
+    std::string field_;        ///< the last key, which names the next value
     number_fields numbers_;
     bool has_frames_ = false;
     struct {
@@ -225,7 +225,7 @@ class reader final : public json::json_sax_t {
         glm::dmat4 matrix{0};
         std::size_t row = 0, column = 0;
         bool has_path = false, has_matrix = false, is_valid = false;
-    } frame_;  ///< the contents of the last frame so far
+    } frame_;  ///< the contents of the current frame
 };
 
 std::optional<double> find_in(const std::vector<number_field>& numbers, transforms_number which) {

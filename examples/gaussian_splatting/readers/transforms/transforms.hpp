@@ -25,7 +25,7 @@ inline constexpr std::array<std::string_view, 13> transforms_number_names = {
 /// includes pinhole cameras, or OpenCV's fisheye model.
 enum class transforms_lens { unset, opencv, fisheye };
 
-/// A number in the file; NaN for a value of another type.
+/// A number in the file, or NaN for a value of another type.
 struct number_field {
     transforms_number which;
     double value;
@@ -48,15 +48,15 @@ struct transforms {
 
     /// Returns "FILE frame INDEX (PATH)" for messages.
     std::string where_is(std::size_t index) const;
-    /// Returns the number of a frame, the file's number if the frame has none, or nothing if neither
-    /// has one. Throws `error` with the frame if the value is not a number.
+    /// Returns the number of a frame, the file's number if the frame has none, or nothing if
+    /// neither has one. Throws `error` with the frame if the value is not a number.
     std::optional<double> number(std::size_t index, transforms_number which) const;
     bool is_fisheye(std::size_t index) const;
 };
 
 /// Reads a transforms file without opening photos. Throws `error` with the file, and the line or
-/// frame, that is malformed. Allocates at most four times the size of the file plus 64 KiB, also for
-/// malformed files.
+/// frame, that is malformed. Allocates at most four times the size of the file plus 64 KiB, also
+/// for malformed files.
 transforms read_transforms(const std::filesystem::path& file);
 
 }  // namespace gs
