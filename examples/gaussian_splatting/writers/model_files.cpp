@@ -18,7 +18,8 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-/// The writer with the longest ending that the file has; null if there is none.
+/// Returns the writer with the longest matching ending of the file name, or null if no ending
+/// matches.
 const writer* writer_of(const std::filesystem::path& file, writer_table writers) {
     const std::string name = lower_case(file.filename().string());
     const writer* found = nullptr;

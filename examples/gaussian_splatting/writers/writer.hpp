@@ -28,8 +28,8 @@ struct writer {
     /// one writer may have ".ply" and another ".compressed.ply".
     std::span<const std::string_view> endings;
 
-    /// Writes the file as a whole or not at all: see `atomic_file_write`. Throws `error` with the file
-    /// and the value that the format cannot hold, such as one that is not finite.
+    /// Writes the file as a whole or not at all: see `atomic_file_write`. Throws `error` with the
+    /// file and the value that the format cannot hold, such as one that is not finite.
     void (*write)(const std::filesystem::path& file, const gaussians& model, const write_options& options);
 
     /// Reads the file back; null for formats that can only be written. Throws `error` with the file
@@ -43,17 +43,17 @@ struct writer {
 /// Returns all writers.
 std::span<const writer* const> all_writers();
 
-/// Returns the endings of formats that can be read, for messages: ".a, .b or .c" if `last_separator` is " or
-/// ".
+/// Returns the endings of formats that can be read, for messages: ".a, .b or .c" if
+/// `last_separator` is " or ".
 std::string readable_endings(std::span<const writer* const> writers, const char* last_separator);
 
-/// Writes a model in the format of the file's ending, in upper or lower case. Throws `error`, which lists
-/// the known endings, for other endings. Passes on the errors of `writer::write`.
+/// Writes a model in the format of the file's ending, in upper or lower case. Throws `error`, which
+/// lists the known endings, for other endings. Passes on the errors of `writer::write`.
 void write_model(const std::filesystem::path& file, const gaussians& model, const write_options& options = {},
                  std::span<const writer* const> writers = all_writers());
 
-/// Reads a model in the format of the file's ending. Throws `error`, which lists the endings of formats that
-/// can be read, for other endings. Passes on the errors of `writer::read`.
+/// Reads a model in the format of the file's ending. Throws `error`, which lists the endings of
+/// formats that can be read, for other endings. Passes on the errors of `writer::read`.
 gaussians read_model(const std::filesystem::path& file,
                      std::span<const writer* const> writers = all_writers());
 

@@ -26,12 +26,13 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "PLY rows are copied as they lie in memory");
 
-/// One float of a Gaussian: its name in the file, its array, and its position there.
+/// One float of a Gaussian: its name in the file, its array in the model, and its position in the
+/// array.
 struct field {
     std::string name;
     std::vector<float> gaussians::*array;
     int width;   ///< floats per Gaussian in `array`
-    int offset;  ///< of this float among them
+    int offset;  ///< position of this float among them
 };
 
 void add_numbered(std::vector<field>& fields, const char* prefix, std::vector<float> gaussians::*array,
@@ -39,8 +40,8 @@ void add_numbered(std::vector<field>& fields, const char* prefix, std::vector<fl
     for (int i = 0; i < width; ++i) fields.push_back({prefix + std::to_string(i), array, width, i});
 }
 
-/// In the order of the reference implementation, without normals. In the file f_rest is
-/// channel-major. In the model, which has room for `rest_width` floats per Gaussian, it is
+/// Returns the fields in the order of the reference implementation, without normals. In the file,
+/// f_rest is channel-major. In the model, which has `rest_width` floats per Gaussian, it is
 /// coefficient-major.
 std::vector<field> fields_of_degree(int sh_degree, int rest_width) {
     std::vector<field> fields = {
@@ -57,13 +58,13 @@ std::vector<field> fields_of_degree(int sh_degree, int rest_width) {
     return fields;
 }
 
-constexpr std::size_t normals_after = 3;  ///< fields before the normals: x y z
+constexpr std::size_t normals_after = 3;  ///< number of fields before the normals: x y z
 constexpr std::size_t normals = 3;
 
-/// The comment for Gaussians that were trained with a 2D Mip filter. Brush writes it, and other
-/// viewers read it.
+/// The header comment for Gaussians that were trained with a 2D Mip filter. Brush writes it, and
+/// other viewers read it.
 constexpr std::string_view render_mode = "SplatRenderMode:", mip = "mip";
-/// Our comment for `gaussians::sky`.
+/// The header comment of this program for `gaussians::sky`.
 constexpr std::string_view sky_harmonics = "SkyHarmonics:";
 
 std::string header_of(const std::vector<field>& fields, const gaussians& model) {
@@ -191,8 +192,8 @@ struct layout {
     std::vector<column> columns;
 };
 
-/// Removes the first word of a line and returns it; empty at the end. The \r of a Windows line end
-/// is blank.
+/// Removes the first word of a line and returns it. Returns an empty word at the end. The \r of a
+/// Windows line end is blank.
 std::string_view take_word(std::string_view& line) {
     constexpr std::string_view blanks = " \t\r";
     line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
@@ -208,21 +209,21 @@ class reader {
 
     gaussians read() {
         const layout l = read_layout();
-        std::string().swap(text_);  // only the names in the header were needed
+        std::string().swap(text_);  // frees memory; names are not used from here on
         return read_rows(l);
     }
 
   private:
     [[noreturn]] void fail(const std::string& what) const { throw error(file_.name + ": " + what); }
 
-    /// The first words of a line. No valid line has more than three.
+    /// The first three words of a line, the number of its words, and the last word.
     struct line {
         std::array<std::string_view, 3> words;
-        std::size_t count = 0;  ///< 4 stands for more than three
+        std::size_t count = 0;  ///< number of words; 4 for more than three
         std::string_view last;
     };
 
-    /// The next line that is neither blank nor a comment.
+    /// Returns the next line that is neither blank nor a comment.
     line next_line() {
         while (next_ < text_.size()) {
             const std::size_t end = text_.find('\n', next_);
@@ -262,7 +263,8 @@ class reader {
                  std::to_string(sky_width));
     }
 
-    /// The first bytes of the file contain the header. They stay in `text_`, which names refer to.
+    /// Reads the header from the first bytes of the file. They stay in `text_`, because names refer
+    /// to them.
     header read_header() {
         text_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(file_.size, longest_header)));
         file_.in.read(text_.data(), static_cast<std::streamsize>(text_.size()));
@@ -301,7 +303,8 @@ class reader {
         return count;
     }
 
-    /// A line that is not text is data: the header has no end.
+    /// Throws `error` for an unknown line. If the line is not text, it is data, and the end of the
+    /// header is missing.
     [[noreturn]] void fail_at_line(std::string_view first_word) const {
         const bool text =
             std::all_of(first_word.begin(), first_word.end(), [](char c) { return c > ' ' && c < 127; });
@@ -352,7 +355,7 @@ class reader {
             if (source == nullptr) fail("its vertices have no property '" + f.name + "'");
             l.columns.push_back({f, source->type, source->offset});
         }
-        check_size(h);  // before memory is allocated for the promised count
+        check_size(h);  // before memory is allocated for the count in the header
         l.count = static_cast<std::size_t>(h.count);
         return l;
     }
@@ -384,8 +387,8 @@ class reader {
         for (const column& c : l.columns)
             (model.*c.to.array).resize(l.count * static_cast<std::size_t>(c.to.width));
 
-        // Few rows at once, since the bound on memory allows little more than the floats
-        // themselves: four times the size of a file with one byte per value.
+        // Reads few rows at a time. The bound on memory, four times the size of the file, leaves
+        // little memory besides the floats if each value takes one byte in the file.
         constexpr std::size_t bytes_at_once = 1 << 14;
         const std::size_t rows_at_once = std::min(l.count, bytes_at_once / l.stride + 1);
         std::vector<char> rows(rows_at_once * l.stride);
@@ -406,7 +409,7 @@ class reader {
             (model.*c.to.array).data() + first * width + static_cast<std::size_t>(c.to.offset);
         for (std::size_t i = 0; i < count; ++i) {
             const double value = read_scalar(c.type, rows + i * stride + c.offset);
-            // Written so that NaN fails too. Doubles beyond the range of float are also refused.
+            // NaN fails this condition, too. So do doubles beyond the range of float.
             if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
                 fail("the property '" + c.to.name + "' of vertex " + std::to_string(first + i) +
                      " is not a finite float");
@@ -418,8 +421,8 @@ class reader {
     static constexpr std::size_t longest_header = 1 << 16;
 
     opened_file file_;
-    std::string text_;      ///< the first bytes of the file, up to that length
-    std::size_t next_ = 0;  ///< the beginning of the next line
+    std::string text_;      ///< the first bytes of the file, at most `longest_header`
+    std::size_t next_ = 0;  ///< position of the next line
     bool antialiased_ = false;
     std::vector<float> sky_;
 };

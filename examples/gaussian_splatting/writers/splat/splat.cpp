@@ -22,13 +22,13 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "records are copied as they lie in memory");
 
-/// One Gaussian in the file.
+/// The record of one Gaussian in the file.
 struct record {
     float position[3];
     float scale[3];  ///< standard deviations
     std::uint8_t color[3];
     std::uint8_t alpha;
-    std::uint8_t rotation[4];  ///< w x y z: -1 is 0, and 0 is 128
+    std::uint8_t rotation[4];  ///< w x y z; -1 is stored as 0, and 0 as 128
 };
 static_assert(sizeof(record) == 32);
 
@@ -40,7 +40,7 @@ double log_sigmoid(double x) { return x < 0 ? x - std::log1p(std::exp(x)) : -std
 
 std::uint8_t to_byte(double x) { return static_cast<std::uint8_t>(std::lround(std::clamp(x, 0.0, 255.0))); }
 
-/// The order of the file: Gaussians that matter most for the image come first.
+/// Returns the order of the Gaussians in the file: those that matter most for the image come first.
 std::vector<std::size_t> by_opacity_and_volume(const gaussians& model) {
     std::vector<double> log_importance(model.count());
     for (std::size_t i = 0; i < model.count(); ++i) {
@@ -151,7 +151,7 @@ constexpr std::string_view endings[] = {".splat"};
 
 void write_splat(const std::filesystem::path& file, const gaussians& model, const write_options&) {
     const splat_output output(file, model);
-    output.check();  // before the sort, which needs finite numbers
+    output.check();  // before sorting, which needs finite numbers
     atomic_file_write(file, [&](std::ostream& out) {
         for (const std::size_t i : by_opacity_and_volume(model)) {
             const record r = output.record_of(i);
