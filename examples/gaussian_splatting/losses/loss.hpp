@@ -4,8 +4,8 @@
 
 /// @file
 /// The interface of an image loss, a measure of the difference between a render and its target that
-/// training minimizes. To add a loss, implement `loss` in a new folder, with the device as a template
-/// parameter, and add it to the list in losses.hpp.
+/// training minimizes. To add a loss, implement `loss` in a new folder, with the device as a
+/// template parameter, and add it to the list in losses.hpp.
 
 #include <cmath>
 #include <span>
@@ -43,23 +43,23 @@ class loss {
 
     /// Returns the gradient of the loss with respect to each value of the render. Both have three
     /// planes, red, green and blue, of the target's size. The result is valid until the next call.
-    /// Also adds the loss and the square error to `sums()`, unless `capacity.exceeded()`: the render
-    /// is then incomplete, and the step is skipped.
+    /// Also adds the loss and the square error to `sums()`, unless `capacity.exceeded()`: the
+    /// render is then incomplete, and the step is skipped.
     virtual const Real* gradient(const Real* render, const raster::list_capacity& capacity) = 0;
 
     /// Returns the largest magnitude of one value of the gradient for the current target, up to a
     /// small factor: for a mean over n pixels of a function with slope s, about s / n. In
-    /// deterministic training, fixed-point sums can hold `raster::gradient_sums::headroom` times this
-    /// value. A scale that is much too large costs precision. If it is too small, values are out of
-    /// range: they are not added, and training reports `fault_kind::sum`.
+    /// deterministic training, fixed-point sums can hold `raster::gradient_sums::headroom` times
+    /// this value. A scale that is much too large costs precision. If it is too small, values are
+    /// out of range: they are not added, and training reports `fault_kind::sum`.
     virtual float gradient_scale() const = 0;
 
-    /// Returns the running sums from which `take` computes its means. Training stops with an error if
-    /// one of them is not finite.
+    /// Returns the running sums from which `take` computes its means. Training stops with an error
+    /// if one of them is not finite.
     virtual std::span<const double> sums() const = 0;
 
-    /// Returns the means over the renders since the last call, and sets the sums to zero. Waits for the
-    /// device.
+    /// Returns the means over the renders since the last call, and sets the sums to zero. Waits for
+    /// the device.
     virtual loss_report take() = 0;
 };
 

@@ -11,9 +11,9 @@
 namespace gs::train {
 
 /// Computes the gradient of `weight` times the sum over all pixels of |d - (scale m + offset)| with
-/// respect to the rendered inverse depths d; m are the values of a depth map. The gradient is zero at
-/// pixels without a value, and its magnitude is at most `weight`. One index per pixel. Source: Kerbl
-/// et al. 2024 (hierarchical 3D Gaussians).
+/// respect to the rendered inverse depths d; m are the values of a depth map. The gradient is zero
+/// at pixels without a value, and its magnitude is at most `weight`. One index per pixel. Source:
+/// Kerbl et al. 2024 (hierarchical 3D Gaussians).
 struct depth_gradient {
     const float* render;
     const std::uint16_t* target;  ///< values of the depth map; 0 if the depth is unknown

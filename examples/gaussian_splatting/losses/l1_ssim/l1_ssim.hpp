@@ -14,9 +14,9 @@ namespace gs::train {
 /// The weight of the SSIM in the loss (Kerbl et al. 2023).
 inline constexpr double l1_ssim_weight = 0.2;
 
-/// The loss L = (1 - w) mean|x - y| + w (1 - mean SSIM(x, y)) of the render x and the target y, with
-/// w = `l1_ssim_weight`. With a mask, the gradient treats masked pixels as black in both images, and
-/// divides by the number of all pixels. The reported means do not count masked pixels.
+/// The loss L = (1 - w) mean|x - y| + w (1 - mean SSIM(x, y)) of the render x and the target y,
+/// with w = `l1_ssim_weight`. With a mask, the gradient treats masked pixels as black in both
+/// images, and divides by the number of all pixels. The reported means do not count masked pixels.
 template <device::device Device, class Real>
 class l1_ssim final : public loss<Real> {
   public:
@@ -37,8 +37,8 @@ class l1_ssim final : public loss<Real> {
         return gradient_.data();
     }
 
-    /// Returns 1 / n for n pixels. The L1 term contributes (1 - w) / (3 n). The SSIM term exceeds the
-    /// remainder only in windows with almost no contrast.
+    /// Returns 1 / n for n pixels. The L1 term contributes (1 - w) / (3 n). The SSIM term exceeds
+    /// the remainder only in windows with almost no contrast.
     float gradient_scale() const override { return 1.0f / pixels_; }
 
     std::span<const double> sums() const override { return comparison_.totals(); }
