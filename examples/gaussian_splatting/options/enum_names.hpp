@@ -8,9 +8,9 @@
 
 namespace gs::options {
 
-/// Returns the word of the command line for a value of an enumeration. Precondition: the namespace of the
-/// enumeration has a function `names_of(Enum)`, which returns the words of all values in order. Values count
-/// from 0.
+/// Returns the word of the command line for a value of an enumeration. Precondition: the namespace
+/// of the enumeration has a function `names_of(Enum)`, which returns the words of all values in
+/// order. Values count from 0.
 template <class Enum>
 std::string name_of(Enum value) {
     return std::string(names_of(value)[static_cast<std::size_t>(value)]);

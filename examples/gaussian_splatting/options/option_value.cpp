@@ -12,7 +12,7 @@ namespace gs::options {
 
 namespace {
 
-/// The number that is the whole of `word`; none if there is no such number.
+/// Returns the number that `word` consists of, or nothing if it is not a number.
 template <class Number>
 std::optional<Number> number_in(const std::string& word) {
     Number value{};

@@ -16,8 +16,8 @@
 
 namespace gs::options {
 
-/// The error that an option does not accept a word. `what()` continues a sentence that begins with the
-/// option's name.
+/// The error that an option does not accept a word. `what()` continues a sentence that begins with
+/// the option's name.
 struct refused_word : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -26,10 +26,11 @@ struct refused_word : std::runtime_error {
 struct option_value {
     std::string type;   ///< placeholder in help texts, such as "INTEGER"; empty for a flag
     std::string range;  ///< the accepted values, such as "1 to 8", or empty
-    /// Sets the member from one word; flags receive "true" or "false". Throws `refused_word` for others.
+    /// Sets the member from one word; flags receive "true" or "false". Throws `refused_word` for
+    /// others.
     std::function<void(const std::string& word)> read;
-    std::function<nlohmann::ordered_json()> json;  ///< returns the member's value, or null if it is unset
-    bool is_list = false;                          ///< whether it takes several words; `read` adds one
+    std::function<nlohmann::ordered_json()> json;  ///< the member's value; null if unset
+    bool is_list = false;                          ///< takes several words; `read` adds one
 
     bool is_flag() const { return type.empty(); }
 };
@@ -43,7 +44,8 @@ double read_positive(const std::string& word);
 double read_share(const std::string& word);
 /// @}
 
-/// Returns the index of `word` in `names`. Throws `refused_word`, which lists the names, for other words.
+/// Returns the index of `word` in `names`. Throws `refused_word`, which lists the names, for other
+/// words.
 std::size_t read_choice(const std::string& word, const std::vector<std::string>& names);
 /// Returns a text such as "a, b or c".
 std::string alternatives(const std::vector<std::string>& names);
