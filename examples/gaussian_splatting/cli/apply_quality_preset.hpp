@@ -10,12 +10,12 @@
 
 namespace gs::cli {
 
-/// Sets the options of `preset` in `table`, but no option that `is_explicit` (given its name), nor one that
-/// such an option excludes.
+/// Sets the options of `preset` in `table`. Keeps options for whose names `is_explicit` is true,
+/// and options that such an option excludes.
 void apply_quality_preset(quality_preset preset, const std::vector<option>& table,
                           const std::function<bool(const std::string& name)>& is_explicit);
 
-/// The options of a preset as one would type them; empty for the defaults.
+/// Returns the options of a preset as users type them. The text is empty for the defaults.
 std::string options_of(quality_preset preset);
 
 }  // namespace gs::cli

@@ -43,7 +43,7 @@ void set_dependent_values(settings& s) {
         s.scene.masks = s.effects.allows("masks");
         s.scene.depths = s.effects.allows("depth");
     }
-    if (s.command == command::render) s.scene.masks = false;  // renders do not depend on photos
+    if (s.command == command::render) s.scene.masks = false;  // renders do not need masks
     if (s.command == command::render || s.command == command::evaluate) s.scene.depths = false;
 }
 

@@ -9,13 +9,13 @@
 
 namespace gs::cli {
 
-/// Sets the members that follow from options of other names.
+/// Sets the members that depend on other options, such as whether to load masks and depth maps.
 void set_dependent_values(settings& s);
 
-/// Throws `error` for an option of another densification strategy than `strategy`.
+/// Throws `error` if the option belongs to another densification strategy than `strategy`.
 void check_belongs_to_strategy(const options::option& row, const std::string& strategy);
 
-/// Throws `error` for options whose values contradict each other.
+/// Throws `error` if values of options contradict each other.
 void check_settings(const settings& s);
 
 }  // namespace gs::cli

@@ -67,7 +67,8 @@ output_folder::~output_folder() {
     std::vector<fs::path> folders{made_};
     for (const auto& entry : fs::recursive_directory_iterator(made_, ignored))
         if (entry.is_directory(ignored)) folders.push_back(entry.path());
-    // From the innermost out; one that holds something cannot be removed.
+    // Removes the innermost folders first. Folders that are not empty stay, because their removal
+    // fails.
     for (const fs::path& folder : folders | std::views::reverse) fs::remove(folder, ignored);
 }
 

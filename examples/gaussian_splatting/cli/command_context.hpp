@@ -19,21 +19,23 @@ class command_context {
 
     /// Prints a line unless --quiet is given.
     void say(const std::string& line) const;
-    /// Reads the scene and moves it to its internal frame.
+    /// Reads the scene and transforms it to internal coordinates: see `normalize`.
     scene load() const;
-    /// The engine of the device of --device. Throws `error` if no GPU can be used for --device cuda.
+    /// Returns an engine for the device of --device. Throws `error` for --device cuda if no GPU can
+    /// be used.
     std::unique_ptr<train::engine> make_engine() const;
-    /// The background of --background. `alpha`: whether the photos have transparent parts.
+    /// Returns the background of --background. `alpha`: whether the photos have transparent parts.
     train::background_choice background(bool alpha) const;
-    /// Throws `error` if --background is given for a model whose sky replaces it.
+    /// Throws `error` if --background is given although the model's learned background replaces it.
     void require_no_background_before(const gaussians& model) const;
 
   private:
     const settings& settings_;
 };
 
-/// The folder for the results. Creates it if needed. Removes it again in the end if it has stayed empty, so
-/// that a run that fails leaves nothing behind. Throws `error` if nothing can be written to it.
+/// The folder for the results, which is created if needed. The destructor removes created folders
+/// that are still empty, so that a failed run leaves nothing behind. The constructor throws `error`
+/// if files cannot be written to the folder.
 class output_folder {
   public:
     explicit output_folder(const std::filesystem::path& path);
@@ -45,7 +47,7 @@ class output_folder {
 
   private:
     std::filesystem::path path_;
-    std::filesystem::path made_;  ///< the topmost folder that was created; empty if there is none
+    std::filesystem::path made_;  ///< the topmost folder that was created, or empty
 };
 
 class stopwatch {

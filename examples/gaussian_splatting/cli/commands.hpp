@@ -10,10 +10,10 @@
 
 namespace gs::cli {
 
-/// The commands. Each throws `error` for bad input and then leaves no output behind.
+/// The commands. They throw `error` for bad input, and then leave no output behind.
 /// @{
 void train(const settings& s);
-/// Trains with this engine and one of its accumulators, whatever `s` says about the two.
+/// Trains with this engine and accumulator, regardless of the device and the determinism in `s`.
 void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient);
 void evaluate(const settings& s);
 void render(const settings& s);

@@ -19,7 +19,7 @@ void evaluate(const settings& s) {
     context.require_no_background_before(model);
     scene scene = context.load();
     model = to_internal(scene.normalization, std::move(model));
-    if (scene.test.empty()) scene.test = std::move(scene.train);  // without --eval, all views are measured
+    if (scene.test.empty()) scene.test = std::move(scene.train);  // without --eval, uses all views
     scene.train.clear();
     const auto background = context.background(scene.has_alpha);
     std::optional<output_folder> output;

@@ -14,9 +14,9 @@ namespace {
 using options::alternatives;
 
 constexpr std::size_t line_width = 100;
-constexpr std::size_t name_column = 32;  ///< width of the names in help texts
+constexpr std::size_t name_column = 32;  ///< columns for names in help texts
 
-/// Fills lines of at most `width` characters that begin with `indent`.
+/// Breaks text into lines of at most `width` characters, which begin with `indent`.
 std::string wrapped(const std::string& text, const std::string& indent, std::size_t width = line_width) {
     std::istringstream words(text);
     std::string all, line;
@@ -30,7 +30,7 @@ std::string wrapped(const std::string& text, const std::string& indent, std::siz
     return all + indent + line + "\n";
 }
 
-/// The default as one would type it; empty if there is nothing to tell.
+/// Returns the default as users type it, or an empty text if help texts do not show it.
 std::string default_of(const option& row) {
     if (!row.default_text.empty()) return row.default_text;
     const nlohmann::ordered_json value = row.value.json();
@@ -39,7 +39,8 @@ std::string default_of(const option& row) {
     return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-/// All sentences about an option. `required`: it has no default.
+/// Returns all sentences about an option. `required`: the command requires it, so its default is
+/// not shown.
 std::string description_of(const option& row, bool required) {
     std::string text = row.help + ".";
     if (!row.value.range.empty())
@@ -51,7 +52,7 @@ std::string description_of(const option& row, bool required) {
     return text;
 }
 
-/// The headings, in the order of the table.
+/// Returns the headings in the order of the table.
 std::vector<std::string> groups_of(const std::vector<option>& rows) {
     std::vector<std::string> groups;
     for (const option& row : rows)
@@ -73,7 +74,7 @@ std::string names_with_type(const option& row) {
     return row.value.is_flag() ? text : text + " " + row.value.type;
 }
 
-/// The first short and the first long name; the reference has the others.
+/// Returns the first short name and the first long name. The reference lists the other names.
 std::string main_names(const option& row) {
     const std::vector<std::string> names = row.all_names();
     const auto short_name =
@@ -82,7 +83,8 @@ std::string main_names(const option& row) {
            (row.value.is_flag() ? "" : " " + row.value.type);
 }
 
-/// The description, range and default in one line or few, beside the names.
+/// Returns the names of an option with its description, range and default beside them. Long texts
+/// take several lines.
 std::string help_line(const option& row, bool required) {
     std::string facts = required ? "required" : row.value.range;
     if (!facts.empty() && !required && !row.unit.empty()) facts += " " + row.unit;

@@ -9,16 +9,17 @@
 
 namespace gs::cli {
 
-/// The --help without a command.
+/// Returns the text of --help without a command.
 std::string overview();
 
-/// The --help of a command. `rows`: its options, whose members still hold their defaults.
+/// Returns the text of --help for a command. `rows`: the options of the command. Precondition:
+/// their members have the default values.
 std::string help_text(command c, const std::vector<option>& rows);
 
-/// The text of docs/reference/cli.md.
+/// Returns the text of docs/reference/cli.md.
 std::string reference_page();
 
-/// The manual page, in the format of man.
+/// Returns the manual page, in the format of man.
 std::string man_page();
 
 }  // namespace gs::cli

@@ -7,8 +7,8 @@
 
 namespace gs::cli {
 
-/// The first of the `known` words with the smallest Levenshtein distance from `word`. Precondition: `known`
-/// is not empty.
+/// Returns the word in `known` with the smallest Levenshtein distance from `word`, the first one if
+/// several have it. Precondition: `known` is not empty.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace gs::cli

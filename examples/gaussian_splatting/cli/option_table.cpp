@@ -7,8 +7,9 @@
 #include "../losses/loss_names.hpp"
 #include "../writers/writer.hpp"
 
-// The table of all options, group by group. An option is one row here and one member of `settings`. From the
-// table come the command line, its checks and its help, settings.json, and docs/reference/cli.md.
+// The table of all options, group by group. An option is one row here and one member of `settings`.
+// The table is the source of the command line with its checks and help, of settings.json, and of
+// docs/reference/cli.md.
 
 namespace gs::cli {
 
@@ -237,7 +238,7 @@ rows densification_options(settings& s) {
                      .default_text = "one for every 32 pixels of the training photos, at least 10000"}});
 }
 
-/// The options that strategies have of their own.
+/// The options of the densification strategies.
 rows strategy_options(settings& s) {
     rows all;
     s.densification.for_each([&](auto& config) {

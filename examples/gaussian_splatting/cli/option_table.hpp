@@ -13,10 +13,11 @@ namespace gs::cli {
 using options::option;
 using options::option_value;
 
-/// The table of all options. Their values are the members of `s`, which has to outlive the table.
+/// Returns the table of all options. Their values are the members of `s`, which must outlive the
+/// table.
 std::vector<option> option_table(settings& s);
 
-/// What a command is for, as a phrase that begins with a verb.
+/// Returns the purpose of a command, as a phrase that begins with a verb.
 std::string purpose_of(command c);
 
 }  // namespace gs::cli

@@ -31,14 +31,15 @@ bool contains(const words& all, const std::string& word) { return std::ranges::f
     std::exit(0);
 }
 
-/// In names of options, `_` is `-`.
+/// Replaces `_` by `-` in the name of an option, because both are accepted.
 void write_dashes(std::string& word) {
     if (!word.starts_with("--")) return;
     const auto end = static_cast<std::ptrdiff_t>(std::min(word.find('='), word.size()));
     std::replace(word.begin(), word.begin() + end, '_', '-');
 }
 
-/// The command that the first word names. Answers the options that may take its place and exits.
+/// Returns the command that the first word names. For an option in place of a command, prints its
+/// text and exits.
 command command_named(const words& given) {
     const auto names = names_of(command{});
     const std::string known = alternatives({names.begin(), names.end()});
@@ -54,7 +55,7 @@ command command_named(const words& given) {
     return static_cast<command>(found - names.begin());
 }
 
-/// The options of one command, and the words that CLI11 found for each.
+/// The options of one command, and the words that the user gives for each of them.
 class command_options {
   public:
     command_options(command c, const std::vector<option>& table) : command_(c) {
@@ -65,7 +66,7 @@ class command_options {
     const std::vector<option>& rows() const { return rows_; }
     bool is_explicit(const std::string& name) const { return parsed_.contains(name); }
 
-    /// Sets the values. Throws `error` for words that are not options of the command.
+    /// Sets the values. Throws `error` for words that do not belong to an option of the command.
     void read(const words& given) {
         check_names(given);
         split(given);
@@ -75,7 +76,7 @@ class command_options {
     }
 
   private:
-    /// CLI11 would only state that an option was not expected. This names the nearest one.
+    /// Checks names before CLI11 does, whose message would not name the nearest known option.
     void check_names(const words& given) const {
         for (const std::string& word : given) {
             const bool is_long = word.starts_with("--");
@@ -98,7 +99,7 @@ class command_options {
                     nearest_word(name, known));
     }
 
-    /// Lets CLI11 find the words of each option.
+    /// Assigns the words to options with CLI11.
     void split(const words& given) {
         CLI::App app;
         app.set_help_flag();
@@ -113,7 +114,7 @@ class command_options {
             added->allow_extra_args(row.value.is_list);
         }
         try {
-            app.parse(words(given.rbegin(), given.rend()));  // CLI11 takes the last word first
+            app.parse(words(given.rbegin(), given.rend()));  // CLI11 expects reverse order
         } catch (const CLI::ArgumentMismatch& missing) {
             const std::string text = missing.what();
             throw error(text.substr(0, text.find(':')) + " needs a value (see --help)");
@@ -155,7 +156,7 @@ class command_options {
 
     command command_;
     std::vector<option> rows_;
-    std::map<std::string, words> parsed_;  ///< by `option::name`, those that are given
+    std::map<std::string, words> parsed_;  ///< words of the given options, by `option::name`
 };
 
 }  // namespace

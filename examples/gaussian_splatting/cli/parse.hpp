@@ -9,9 +9,9 @@
 
 namespace gs::cli {
 
-/// Reads and checks the words that follow the program's name. Exits for --help, --version and
-/// --print-reference and --print-man-page. Throws `error` with one sentence that names the option, its value
-/// and the remedy.
+/// Reads and checks the words that follow the program's name. Prints a text and exits for --help,
+/// --version, --print-reference and --print-man-page. Throws `error` with one sentence that names
+/// the option, its value and the remedy.
 settings parse(std::vector<std::string> words);
 
 }  // namespace gs::cli

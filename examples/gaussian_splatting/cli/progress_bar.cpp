@@ -20,7 +20,7 @@ void progress_bar::show(const train::progress& p) {
     if (quiet_) return;
     const bool last = p.iteration == p.iterations;
     if (!terminal_ && !last) {
-        // Twenty lines in all.
+        // Prints at most twenty lines in total.
         if (p.iteration * 20LL < static_cast<long long>(lines_ + 1) * p.iterations) return;
         lines_ = static_cast<int>(p.iteration * 20LL / p.iterations);
     }

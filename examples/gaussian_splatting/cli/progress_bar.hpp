@@ -6,22 +6,22 @@
 
 namespace gs::cli {
 
-/// Shows where training stands: on a terminal in one line that is overwritten, elsewhere in up to twenty
-/// lines.
+/// Shows the progress of training. On a terminal, it overwrites one line; elsewhere it prints up to
+/// twenty lines.
 class progress_bar {
   public:
     explicit progress_bar(bool quiet);
     progress_bar(const progress_bar&) = delete;
     progress_bar& operator=(const progress_bar&) = delete;
-    /// Ends the bar's line, so that an error message begins in a new one.
+    /// Ends the line of the bar, so that an error message begins on a new line.
     ~progress_bar();
     void show(const train::progress& p);
-    /// Clears the bar's line for other output.
+    /// Clears the line of the bar for other output.
     void clear();
 
   private:
     bool quiet_, terminal_;
-    bool open_ = false;  ///< the cursor is in the line of the bar
+    bool open_ = false;  ///< whether the cursor is in the line of the bar
     int lines_ = 0;
 };
 

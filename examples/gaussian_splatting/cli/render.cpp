@@ -21,11 +21,12 @@ struct named_camera {
     gs::camera camera;
 };
 
-/// Cameras on a circle around the middle of the Gaussians, slightly above the plane in which they spread
-/// most. Precondition: the model is normalized by itself, see `normalization_of`.
+/// Returns cameras on a circle around the center of the Gaussians, slightly above the plane of
+/// their largest extent. Precondition: the model is normalized by its own normalization: see
+/// `normalization_of`.
 std::vector<named_camera> orbit(const gaussians& model, int views, int size) {
     const std::size_t n = model.count();
-    std::array<glm::dvec3, 2> quartiles;  // robust against floaters
+    std::array<glm::dvec3, 2> quartiles;  // of the means; robust against floaters
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<float> x(n);
         for (std::size_t i = 0; i < n; ++i) x[i] = model.mean[3 * i + static_cast<std::size_t>(axis)];
@@ -60,7 +61,8 @@ std::vector<named_camera> cameras_of(const scene& scene) {
     return cameras;
 }
 
-/// The side of the images of an orbit, in pixels: --resolution divides 800 pixels or is the side itself.
+/// Returns the side of an orbit's images, in pixels. A small --resolution divides 800 pixels; a
+/// larger one is the side itself.
 int orbit_size(int resolution) { return divides_size(resolution) ? 800 / resolution : resolution; }
 
 }  // namespace

@@ -10,17 +10,18 @@
 
 namespace gs::cli {
 
-/// The PSNR and SSIM of held-out views as metrics.json has them: the means and the values of each view. Null
-/// if there are no held-out views or a value is not finite.
+/// Returns the PSNR and SSIM of held-out views for metrics.json: the means and the values of each
+/// view. Values are null if there are no held-out views or if they are not finite.
 nlohmann::ordered_json to_json(const evaluate::held_out_report& report);
 
-/// ", 23.40 dB after fitting exposures"; empty if no exposures were fitted.
+/// Returns a text such as ", 23.40 dB after fitting exposures", or an empty text if no exposures
+/// were fitted.
 std::string fitted_part(const evaluate::held_out_report& report);
 
-/// Writes the whole file or leaves the one that is there. Throws `error`.
+/// Writes a file as a whole or not at all: see `atomic_file_write`.
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
 
-/// `value` as `format` of printf prints it.
+/// Formats a value as printf does.
 std::string number(const char* format, double value);
 
 }  // namespace gs::cli

@@ -28,7 +28,7 @@ enum class device_kind { automatic, cpu, cuda };
 enum class background_kind { automatic, white, black, random };
 enum class quality_preset { fast, balanced, best };
 
-/// The words of the command line for the values of an enumeration, in the order of its values.
+/// Returns the words of the command line for an enumeration, in the order of its values.
 /// @{
 constexpr std::array<std::string_view, 3> names_of(device_kind) { return {"auto", "cpu", "cuda"}; }
 constexpr std::array<std::string_view, 4> names_of(background_kind) {
@@ -37,7 +37,7 @@ constexpr std::array<std::string_view, 4> names_of(background_kind) {
 constexpr std::array<std::string_view, 3> names_of(quality_preset) { return {"fast", "balanced", "best"}; }
 /// @}
 
-/// The values of all options. option_table.cpp has the table that fills it from the command line.
+/// The values of all options. The table in option_table.cpp sets them from the command line.
 struct settings {
     cli::command command = command::train;
     load_options scene;
@@ -54,8 +54,8 @@ struct settings {
     train::strategy_settings densification;
     std::string loss = train::default_loss;
     features::selection effects;
-    std::optional<int> sh_degree;        ///< unset: chosen by `effects`
-    std::optional<std::size_t> max_cap;  ///< unset: chosen by the size of the photos
+    std::optional<int> sh_degree;        ///< if unset, `effects` decides
+    std::optional<std::size_t> max_cap;  ///< if unset, the size of the photos decides
     bool fit_exposure = false;
     std::set<int> save_iterations;
     std::set<int> test_iterations;

@@ -34,8 +34,9 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     return o;
 }
 
-/// The scene's points, or random ones: half as many as there may be, so that densification can add Gaussians
-/// where they matter.
+/// Returns the first model, from the points of the scene or from random points. Random points use
+/// at most half of the allowed number of Gaussians, so that densification can add Gaussians where
+/// they matter.
 gaussians first_model(const scene& scene, const train::train_options& o) {
     constexpr std::size_t most_random = 100000;
     const std::size_t most = o.densification.target_count().value_or(o.max_cap);
@@ -45,10 +46,11 @@ gaussians first_model(const scene& scene, const train::train_options& o) {
     return from_points(points, 0, most, o.seed);
 }
 
-/// A training run. Its public functions are called once each, in the order of their declaration.
+/// A training run. Call its public functions once each, in the order of their declaration.
 class training_run {
   public:
-    /// Loads the scene, resolves its effects, and gives the first model to the engine.
+    /// Loads the scene, decides which effects to simulate, and passes the first model to the
+    /// engine.
     training_run(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient);
     training_run(const training_run&) = delete;
     training_run& operator=(const training_run&) = delete;
@@ -139,7 +141,7 @@ void training_run::train() {
 
 void training_run::measure() {
     const stopwatch evaluating;
-    // The file's model is measured: its floats are rounded in the coordinates of the scene.
+    // Measures the model as the file stores it, with floats that are rounded in world coordinates.
     engine_->set_model(
         to_internal(scene_.normalization, to_world(scene_.normalization, engine_->get_model())));
     options_.features.before_evaluation(*engine_, scene_);

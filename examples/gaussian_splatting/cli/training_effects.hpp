@@ -10,14 +10,14 @@
 
 namespace gs::cli {
 
-/// Chooses the effects that training simulates and prints why. Throws `error` if one of them contradicts
-/// --background.
+/// Decides which effects training simulates, and prints the reasons. Throws `error` if an effect
+/// contradicts --background.
 features::feature_set resolve_effects(const settings& s, const scene& scene, const command_context& context);
 
-/// The effects in use, as one would give them to --effects.
+/// Returns the effects in use, as users type them after --effects.
 std::string effects_in_use(const features::feature_set& features);
 
-/// Each effect: whether it was in use, why, and what training made of it.
+/// Returns, for each effect, whether it was on, the reason, and what training reports about it.
 nlohmann::ordered_json effects_json(const settings& s, const scene& scene,
                                     const train::train_options& options, const train::train_result& result);
 

@@ -16,7 +16,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// By stage of an iteration: milliseconds, and nanoseconds per pair of a pixel and a Gaussian.
+/// Returns, for each stage of an iteration, the time in milliseconds, and in nanoseconds per pair
+/// of a pixel and a Gaussian.
 ordered_json stages_json(const device::stage_times& times, double pairs_per_iteration) {
     ordered_json stages;
     for (std::size_t i = 0; i < device::stage_names.size(); ++i) {
