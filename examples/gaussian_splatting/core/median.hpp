@@ -8,8 +8,8 @@
 
 namespace gs {
 
-/// Returns the quantile of the values below which the given share lies, and zero if `values` is empty.
-/// Reorders the values. Precondition: 0 <= share < 1.
+/// Returns the quantile of the values below which the given share lies, and zero if `values` is
+/// empty. Reorders the values. Precondition: 0 <= share < 1.
 inline double quantile(std::vector<double>& values, double share) {
     if (values.empty()) return 0;
     const auto there =

@@ -9,8 +9,8 @@
 
 namespace gs {
 
-/// Calls `body(i)` for each i in [0, count), in parallel. If calls throw, rethrows the exception of the
-/// lowest i, so that the result does not depend on the number of threads.
+/// Calls `body(i)` for each i in [0, count), in parallel. If calls throw, rethrows the exception of
+/// the lowest i, so that the result does not depend on the number of threads.
 template <class Body>
 void for_each_in_parallel(std::size_t count, const Body& body) {
     std::vector<std::exception_ptr> failures(count);
