@@ -13,15 +13,15 @@
 
 namespace gs {
 
-/// Arrays in device memory, one per parameter, with an element for each component of each Gaussian. Their
-/// layout is AoSoA: see `aosoa_index`.
+/// Arrays in device memory, one per parameter, with an element for each component of each Gaussian.
+/// Their layout is AoSoA: see `aosoa_index`.
 template <device::device Device>
 class parameter_memory {
   public:
     using buffer = typename Device::template buffer<float>;
 
-    /// Sets the number of Gaussians and the SH degree. Loses the contents. SH coefficients above the degree
-    /// have no memory.
+    /// Sets the number of Gaussians and the SH degree. Loses the contents. SH coefficients above
+    /// the degree have no memory.
     void resize(std::size_t count, int sh_degree) {
         for (std::size_t p = 0; p < parameter_count; ++p)
             arrays_[p].resize(has_parameter(p, sh_degree)
@@ -64,8 +64,8 @@ class parameter_memory {
                 device.wait();
             });
     }
-    /// Returns the first `count` Gaussians as a model. SH coefficients that a Gaussian does not have are
-    /// zero. Waits for the device.
+    /// Returns the first `count` Gaussians as a model. SH coefficients that a Gaussian does not
+    /// have are zero. Waits for the device.
     gaussians download(Device& device, std::size_t count, int sh_degree) const {
         gaussians model;
         model.sh_degree = sh_degree;
@@ -87,8 +87,8 @@ class parameter_memory {
     }
 
   private:
-    /// Calls f(parameter, values, stride, first) for each parameter of a model. The parameter begins at index
-    /// `first` of each row of `stride` values.
+    /// Calls f(parameter, values, stride, first) for each parameter of a model. The parameter
+    /// begins at index `first` of each row of `stride` values.
     template <class Model, class F>
     static void for_each_part(Model& model, const F& f) {
         f(parameter::mean, model.mean, 3, 0);

@@ -9,8 +9,8 @@
 
 namespace gs {
 
-/// The parameters of a Gaussian. Each has its own array in device memory. Each SH degree is a separate
-/// parameter, so that unused degrees are not stored, read or updated.
+/// The parameters of a Gaussian. Each has its own array in device memory. Each SH degree is a
+/// separate parameter, so that unused degrees are not stored, read or updated.
 enum class parameter { mean, log_scale, quaternion, opacity, sh0, sh1, sh2, sh3, count };
 inline constexpr std::size_t parameter_count = static_cast<std::size_t>(parameter::count);
 
@@ -35,8 +35,8 @@ constexpr bool has_parameter(std::size_t p, int sh_degree) {
 /// Returns whether the parameter belongs to SH degrees 1 to 3, which some Gaussians lack.
 constexpr bool is_view_dependent(std::size_t p) { return p > static_cast<std::size_t>(parameter::sh0); }
 
-/// Pointers to the arrays of all parameters, in AoSoA layout: see `aosoa_index`. Values, gradients and
-/// moments use it.
+/// Pointers to the arrays of all parameters, in AoSoA layout: see `aosoa_index`. Values, gradients
+/// and moments use it.
 template <class Real>
 struct parameter_arrays {
     Real* mean = nullptr;
@@ -44,8 +44,8 @@ struct parameter_arrays {
     Real* quaternion = nullptr;  ///< w x y z
     Real* opacity = nullptr;     ///< logit
     Real* sh[4] = {};            ///< by SH degree: RGB of each coefficient
-    /// The number of Gaussians with SH coefficients above degree 0, which precede all others. It is a
-    /// multiple of the block length, or all. The others have the same color in all directions.
+    /// The number of Gaussians with SH coefficients above degree 0, which precede all others. It is
+    /// a multiple of the block length, or all. The others have the same color in all directions.
     std::size_t gaussians_with_sh = std::numeric_limits<std::size_t>::max();
 
     WARPAGG_HD constexpr Real* operator[](parameter p) const {

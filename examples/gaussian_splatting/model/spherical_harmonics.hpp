@@ -8,13 +8,15 @@
 
 namespace gs {
 
-inline constexpr double sh_c0 = 0.28209479177387814;  ///< the harmonic of degree 0, 1 / (2 sqrt(pi))
+inline constexpr double sh_c0 = 0.28209479177387814;  ///< harmonic of degree 0: 1 / (2 sqrt(pi))
 
-/// Returns the coefficient of degree 0 of a color: the solution of color = 0.5 + sh_c0 * coefficient.
+/// Returns the coefficient of degree 0 of a color: the solution of color = 0.5 + sh_c0 *
+/// coefficient.
 WARPAGG_HD constexpr float sh_from_color(float color) { return (color - 0.5f) / static_cast<float>(sh_c0); }
 
-/// Computes the real spherical harmonics up to `degree`, at most 3, at a unit vector d. Their order and signs
-/// are those of the reference implementation (Kerbl et al. 2023). `basis` has (degree + 1)^2 elements.
+/// Computes the real spherical harmonics up to `degree`, at most 3, at a unit vector d. Their order
+/// and signs are those of the reference implementation (Kerbl et al. 2023). `basis` has (degree +
+/// 1)^2 elements.
 template <class Real>
 WARPAGG_HD void sh_basis(int degree, const glm::vec<3, Real>& d, Real* basis) {
     const auto c = [](double x) { return constant<Real>(x); };
@@ -41,7 +43,8 @@ WARPAGG_HD void sh_basis(int degree, const glm::vec<3, Real>& d, Real* basis) {
     basis[15] = c(-0.5900435899266435) * x * (xx - 3 * yy);
 }
 
-/// Returns the gradient, with respect to d, of the sum of `weight[k] * basis[k]` as polynomials in d.
+/// Returns the gradient, with respect to d, of the sum of `weight[k] * basis[k]` as polynomials in
+/// d.
 template <class Real>
 WARPAGG_HD glm::vec<3, Real> sh_gradient(int degree, const glm::vec<3, Real>& d, const Real* weight) {
     using vec3 = glm::vec<3, Real>;
