@@ -15,8 +15,8 @@
 
 namespace gs::train {
 
-/// The way in which a Gaussian of the new generation came from its origin. Copies and halves begin with
-/// moments of zero; the others keep the moments of their origin.
+/// The way in which a Gaussian of the new generation came from its origin. Copies and halves begin
+/// with moments of zero; the others keep the moments of their origin.
 enum class birth : std::uint32_t {
     kept,      ///< the only successor of its origin
     original,  ///< the origin itself, which also has a copy
@@ -32,11 +32,11 @@ struct clear_ranked {
     WARPAGG_HD void operator()(std::size_t rank) const { flags[gaussian_of[rank]] = 0; }
 };
 
-/// Gathers values and moments of one parameter for the new generation, in whole blocks. One index per new
-/// value.
+/// Gathers values and moments of one parameter for the new generation, in whole blocks. One index
+/// per new value. Values are zero if the origin does not have the parameter.
 struct gather_parameters {
     std::size_t count;   ///< number of new Gaussians with the parameter, which come first
-    std::size_t before;  ///< number of old Gaussians with it, which come first; for others it is zero
+    std::size_t before;  ///< number of old Gaussians with it, which come first
     const std::uint32_t* origin;
     const birth* births;
     std::size_t width;
@@ -64,8 +64,8 @@ struct gather_last_steps {
     WARPAGG_HD void operator()(std::size_t i) const { to[i] = from[origin[i]]; }
 };
 
-/// Moves all parameters of the Gaussians, with the state of Adam, to a new generation, which reorders,
-/// removes or repeats Gaussians. Owns the memory for this.
+/// Moves all parameters of the Gaussians, with the state of Adam, to a new generation, which
+/// reorders, removes or repeats Gaussians. Owns the memory for this.
 template <device::device Device>
 class parameter_gather {
     template <class T>
@@ -74,7 +74,8 @@ class parameter_gather {
   public:
     explicit parameter_gather(Device& device) : device_(device) {}
 
-    /// Sets the capacity of `origins` and `births` to `most` new Gaussians. Both lose their contents.
+    /// Sets the capacity of `origins` and `births` to `most` new Gaussians. Both lose their
+    /// contents.
     void reserve(std::size_t most) {
         origin_.resize(most);
         births_.resize(most);
@@ -84,9 +85,9 @@ class parameter_gather {
     /// Returns the array with the birth of each new Gaussian. Fill it before `run`.
     birth* births() const { return births_.data(); }
 
-    /// Replaces the Gaussians with `count` new ones. The first `with_sh` of them, a multiple of the block
-    /// length or all, have SH coefficients of degrees 1 to `sh_degree`, which are zero if the origin has
-    /// none. Does not wait for the device.
+    /// Replaces the Gaussians with `count` new ones. The first `with_sh` of them, a multiple of the
+    /// block length or all, have SH coefficients of degrees 1 to `sh_degree`, which are zero if the
+    /// origin has none. Does not wait for the device.
     void run(trained_parameters<Device>& all, std::size_t count, std::size_t with_sh, int sh_degree) {
         for (std::size_t p = 0; p < parameter_count; ++p)
             if (has_parameter(p, sh_degree)) gather(all, p, is_view_dependent(p) ? with_sh : count);

@@ -10,13 +10,13 @@
 
 namespace gs::train {
 
-/// A training view that `score_views` has rendered. All pointers are to device memory and are valid until
-/// the next `draw`.
+/// A training view that `score_views` has rendered. All pointers are to device memory and are valid
+/// until the next `draw`.
 struct drawn_view {
     target_image target;                 ///< the training image, on black
     const float* render;                 ///< three planes, not clamped, on black
     const raster::splat<float>* splats;  ///< one per Gaussian
-    const std::uint32_t* tiles;  ///< number of tiles that each Gaussian may touch; 0 if it is not drawn
+    const std::uint32_t* tiles;          ///< tiles that each Gaussian may touch; 0 if not drawn
 };
 
 /// Renders training views and sums scores of pixels for each Gaussian.
@@ -26,11 +26,12 @@ class score_views {
     /// Returns the number of training views.
     virtual std::size_t count() const = 0;
     virtual drawn_view draw(std::size_t view) = 0;
-    /// Sums `scores` over the pixels of the view of the last `draw`. `scores` has three planes of values
-    /// between -1 and 1. Gaussian i receives the sum of score times w_i, its alpha times the transmittance in
-    /// that pixel. The result has `raster::record_stride` values per Gaussian: those at `raster::sum_red`,
-    /// `sum_green` and `sum_blue` belong to the first, second and third plane. It is valid until the next
-    /// call or `draw`, and only for Gaussians that are drawn. Cost: one blend backward pass.
+    /// Sums `scores` over the pixels of the view of the last `draw`. `scores` has three planes of
+    /// values between -1 and 1. Gaussian i receives the sum of score times w_i, its alpha times the
+    /// transmittance in that pixel. The result has `raster::record_stride` values per Gaussian:
+    /// those at `raster::sum_red`, `sum_green` and `sum_blue` belong to the first, second and third
+    /// plane. It is valid until the next call or `draw`, and only for Gaussians that are drawn.
+    /// Cost: one blend backward pass.
     virtual const float* sum_scores(const float* scores) = 0;
 };
 

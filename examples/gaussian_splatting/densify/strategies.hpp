@@ -21,8 +21,8 @@ struct strategy_list {
     static_assert(sizeof...(Strategy) == std::tuple_size_v<strategy_settings::configs>,
                   "each strategy has settings in strategy_settings.hpp, and each settings a strategy");
 
-    /// Creates the strategy named in `settings`. The device must outlive it. Throws `error`, which lists the
-    /// known names, if the name is unknown.
+    /// Creates the strategy named in `settings`. The device must outlive it. Throws `error`, which
+    /// lists the known names, if the name is unknown.
     static std::unique_ptr<strategy<Device>> make(Device& device, const strategy_settings& settings,
                                                   const training_facts& facts) {
         std::unique_ptr<strategy<Device>> made;

@@ -33,8 +33,8 @@ struct trained_gaussians {
 template <device::device Device>
 struct step_context : trained_gaussians<Device> {
     std::array<float, parameter_count> rates;  ///< learning rates of this step
-    /// The capacity of the tile lists. If `capacity.exceeded()`, the step is skipped and kernels must change
-    /// nothing.
+    /// The capacity of the tile lists. If `capacity.exceeded()`, the step is skipped and kernels
+    /// must change nothing.
     raster::list_capacity capacity;
 };
 
@@ -47,8 +47,8 @@ struct run_context : trained_gaussians<Device> {
     score_views& views;                ///< renders training views, to score pixels
 };
 
-/// A densification strategy decides which Gaussians to add, move and remove. The engine creates one for each
-/// training from the list in strategies.hpp and calls it in this order in each iteration:
+/// A densification strategy decides which Gaussians to add, move and remove. The engine creates one
+/// for each training from the list in strategies.hpp and calls it in this order in each iteration:
 ///
 ///     (the training step, which collects statistics if `wants`)
 ///     after_step  at the end of the step
@@ -60,22 +60,24 @@ struct run_context : trained_gaussians<Device> {
 template <device::device Device>
 class strategy : public timetable {
   public:
-    /// Returns the names of the gradient columns that the strategy needs in addition to `raster::visibility`.
-    /// Its creation fails if the backward pass does not sum one of them.
+    /// Returns the names of the gradient columns that the strategy needs in addition to
+    /// `raster::visibility`. Its creation fails if the backward pass does not sum one of them.
     virtual std::vector<std::string> gradient_columns() const { return {}; }
 
-    /// Does the work of each step, such as noise or penalties on parameters. A GPU captures it as part of the
-    /// step's graph: it may launch kernels, but must not wait or read a result.
+    /// Does the work of each step, such as noise or penalties on parameters. A GPU captures it as
+    /// part of the step's graph: it may launch kernels, but must not wait or read a result.
     virtual void after_step(int /*iteration*/, const step_context<Device>& /*context*/) {}
-    /// Returns a part of the step's graph key: see `device_feature::memory_key`. `after_step` may allocate
-    /// memory only in the first step with a new key. The key already has the number of Gaussians.
+    /// Returns a part of the step's graph key: see `device_feature::memory_key`. `after_step` may
+    /// allocate memory only in the first step with a new key. The key already has the number of
+    /// Gaussians.
     virtual std::size_t memory_key(int /*iteration*/) const { return 0; }
 
-    /// Adds, moves and removes Gaussians. May wait for the device. Afterwards the statistics are zero.
+    /// Adds, moves and removes Gaussians. May wait for the device. Afterwards the statistics are
+    /// zero.
     virtual densify_report run(int iteration, const run_context<Device>& context) = 0;
 
-    /// Changes parameters between two steps, for example in an opacity reset. Must keep the number and order
-    /// of the Gaussians, and must not wait for the device.
+    /// Changes parameters between two steps, for example in an opacity reset. Must keep the number
+    /// and order of the Gaussians, and must not wait for the device.
     virtual void adjust(int /*iteration*/, const trained_gaussians<Device>& /*gaussians*/) {}
 };
 

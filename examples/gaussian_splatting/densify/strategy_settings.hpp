@@ -19,16 +19,18 @@ struct option;
 
 namespace gs::train {
 
-/// The settings of a densification strategy, with the properties that the program reads on the host.
+/// The settings of a densification strategy, with the properties that the program reads on the
+/// host.
 template <class T>
 concept strategy_config = std::copyable<T> && requires(T config, const T& set, const training_facts& facts) {
     /// The name of the strategy in --strategy.
     { T::name } -> std::convertible_to<std::string_view>;
-    /// Returns the options that set members of `config`, which must outlive them. `commands`, `group` and
-    /// `strategy` of a row may stay empty.
+    /// Returns the options that set members of `config`, which must outlive them. `commands`,
+    /// `group` and `strategy` of a row may stay empty.
     { config.options() } -> std::same_as<std::vector<options::option>>;
-    /// Throws `error` if values contradict each other or the training. Of `facts`, only `iterations` and
-    /// `seed` are known, and `max_gaussians` if --max-cap is given (otherwise it is 0).
+    /// Throws `error` if values contradict each other or the training. Of `facts`, only
+    /// `iterations` and `seed` are known, and `max_gaussians` if --max-cap is given (otherwise it
+    /// is 0).
     { set.check(facts) } -> std::same_as<void>;
     /// Returns the settings with the values of dependent defaults, for settings.json.
     { set.resolved(facts) } -> std::same_as<T>;

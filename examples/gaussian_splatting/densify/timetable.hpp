@@ -23,11 +23,11 @@ struct training_facts {
 /// The result of `strategy::run`.
 struct densify_report {
     std::size_t count = 0;               ///< new number of Gaussians
-    std::uint64_t without_gradient = 0;  ///< number of Gaussians that were drawn but received no gradient
+    std::uint64_t without_gradient = 0;  ///< number of drawn Gaussians without gradient
 };
 
-/// Decides when a densification strategy acts. It runs on the host, independent of the device; the training
-/// loop calls it. Iterations count from 1.
+/// Decides when a densification strategy acts. It runs on the host, independent of the device; the
+/// training loop calls it. Iterations count from 1.
 class timetable {
   public:
     virtual ~timetable() = default;

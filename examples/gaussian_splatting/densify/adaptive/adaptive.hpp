@@ -11,9 +11,9 @@
 
 namespace gs::train {
 
-/// Adaptive density control (Kerbl et al. 2023, section 5.2). At intervals it clones or splits Gaussians with
-/// large gradients, removes transparent Gaussians, and resets opacities. After the last densification it
-/// removes a share of the Gaussians. `adaptive_schedule` has the timetable.
+/// Adaptive density control (Kerbl et al. 2023, section 5.2). At intervals it clones or splits
+/// Gaussians with large gradients, removes transparent Gaussians, and resets opacities. After the
+/// last densification it removes a share of the Gaussians. `adaptive_schedule` has the timetable.
 template <device::device Device>
 class adaptive final : public strategy<Device> {
   public:

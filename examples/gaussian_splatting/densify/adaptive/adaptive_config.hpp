@@ -15,8 +15,8 @@ struct option;
 
 namespace gs::train {
 
-/// Settings of the strategy `adaptive`. Intervals are positive. The defaults of optional settings depend on
-/// the training: see `adaptive_schedule`.
+/// Settings of the strategy `adaptive`. Intervals are positive. The defaults of optional settings
+/// depend on the training: see `adaptive_schedule`.
 struct adaptive_config {
     static constexpr std::string_view name = "adaptive";
 
@@ -27,8 +27,8 @@ struct adaptive_config {
     int opacity_reset_interval = 3000;
     std::optional<double> prune_share{};
     float least_opacity = 0.005f;  ///< opacity below which Gaussians are removed
-    /// Number of Gaussians to grow to, evenly and regardless of the gradient threshold. Without a budget the
-    /// threshold decides.
+    /// Number of Gaussians to grow to, evenly and regardless of the gradient threshold. Without a
+    /// budget the threshold decides.
     std::optional<std::size_t> budget{};
     bool revised_opacity = true;  ///< see `densify_config`
 

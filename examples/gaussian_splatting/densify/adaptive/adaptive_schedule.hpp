@@ -23,32 +23,36 @@ class adaptive_schedule final : public timetable {
     int count_is_final_after() const override;
 
     bool densifies(int iteration) const;
-    /// Returns the first iteration without densification, by default half of the iterations, at most 15,000.
+    /// Returns the first iteration without densification, by default half of the iterations, at
+    /// most 15,000.
     int densify_until() const;
-    /// Returns the thresholds of the densification in this iteration, which has `gaussians` Gaussians. A
-    /// budget spreads the missing Gaussians evenly over the remaining densifications.
+    /// Returns the thresholds of the densification in this iteration, which has `gaussians`
+    /// Gaussians. A budget spreads the missing Gaussians evenly over the remaining densifications.
     densify_config densify_config_at(int iteration, std::size_t gaussians) const;
-    /// Returns the mean gradient of its center, in halves of the image, from which a Gaussian grows. The
-    /// default is 8e-5 if densification lasts 15,000 iterations. If it is shorter, the default is larger by
-    /// the fourth root of the ratio, because a short training has no time for many Gaussians.
+    /// Returns the mean gradient of its center, in halves of the image, from which a Gaussian
+    /// grows. The default is 8e-5 if densification lasts 15,000 iterations. If it is shorter, the
+    /// default is larger by the fourth root of the ratio, because a short training has no time for
+    /// many Gaussians.
     double growth_threshold() const;
-    /// Returns the number of densifications from this iteration on. Precondition: it is not after the last
-    /// one.
+    /// Returns the number of densifications from this iteration on. Precondition: it is not after
+    /// the last one.
     int densifications_from(int iteration) const;
 
     /// Returns whether the share `share_to_prune` is removed after this iteration.
     bool prunes(int iteration) const { return iteration == prune_after(); }
-    /// Returns the share of Gaussians to remove. The default is a fifth if densification adds Gaussians
-    /// without a budget and ends before training does.
+    /// Returns the share of Gaussians to remove. The default is a fifth if densification adds
+    /// Gaussians without a budget and ends before training does.
     double share_to_prune() const;
-    /// Returns the iteration at which each training view was used about once since the last densification, or
-    /// 0 for never.
+    /// Returns the iteration at which each training view was used about once since the last
+    /// densification, or 0 for never.
     int prune_after() const;
 
-    /// Returns whether opacities are reset: at each interval, but not in the last interval of densification,
-    /// because opacities need time to recover. On a white background also when densification begins.
+    /// Returns whether opacities are reset: at each interval, but not in the last interval of
+    /// densification, because opacities need time to recover. On a white background also when
+    /// densification begins.
     bool resets_opacity(int iteration) const;
-    /// Returns whether Gaussians near a camera are hidden: at each densification interval until the end.
+    /// Returns whether Gaussians near a camera are hidden: at each densification interval until the
+    /// end.
     bool hides_near_cameras(int iteration) const {
         return iteration % config_.densification_interval == 0 || iteration == facts_.iterations;
     }

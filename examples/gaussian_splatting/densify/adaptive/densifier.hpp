@@ -11,7 +11,8 @@
 
 namespace gs::train {
 
-/// Replaces the Gaussians in training with a new generation, based on the statistics of their gradients.
+/// Replaces the Gaussians in training with a new generation, based on the statistics of their
+/// gradients.
 template <device::device Device>
 class densifier {
     template <class T>
@@ -40,7 +41,8 @@ class densifier {
         return tally;
     }
 
-    /// Removes the `removed` Gaussians with the smallest sums of gradients. Waits for the device once.
+    /// Removes the `removed` Gaussians with the smallest sums of gradients. Waits for the device
+    /// once.
     void prune(const context& c, std::size_t removed) {
         begin(c, c.count);
         device_.for_each_index(

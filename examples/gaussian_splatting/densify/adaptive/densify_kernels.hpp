@@ -18,20 +18,20 @@ namespace gs::train {
 /// Counts of one densification.
 struct densify_tally {
     std::uint64_t count;                  ///< number of Gaussians in the new generation
-    unsigned long long without_gradient;  ///< old Gaussians that were drawn but received no gradient
+    unsigned long long without_gradient;  ///< number of drawn Gaussians without gradient
 };
 
-/// Classifies each Gaussian: whether it stays, whether it is large, and how urgently it should grow. One
-/// index per Gaussian.
+/// Classifies each Gaussian: whether it stays, whether it is large, and how urgently it should
+/// grow. One index per Gaussian.
 struct classify {
     parameter_arrays<const float> gaussians;
     const raster::visibility* seen;
     densify_config config;
     std::uint32_t* stays;    ///< 1 or 0
     std::uint32_t* large;    ///< 1 if it grows by a split, otherwise 0
-    std::uint32_t* urgency;  ///< sort key, smaller if more urgent; all bits are set if it does not grow
+    std::uint32_t* urgency;  ///< sort key, smaller if more urgent; all bits set: no growth
     std::uint32_t* identities;
-    unsigned long long* without_gradient;  ///< counter of Gaussians that were drawn but received no gradient
+    unsigned long long* without_gradient;  ///< counter of drawn Gaussians without gradient
 
     WARPAGG_HD void operator()(std::size_t index) const {
         const auto i = static_cast<unsigned>(index);
@@ -49,8 +49,8 @@ struct classify {
     }
 };
 
-/// Selects the most urgent Gaussians for growth, as many as `cap` and `most_births` allow: each becomes two.
-/// One index per rank.
+/// Selects the most urgent Gaussians for growth, as many as `cap` and `most_births` allow: each
+/// becomes two. One index per rank.
 struct select_growth {
     const std::uint32_t* urgency;
     const std::uint32_t* gaussian_of;
@@ -65,7 +65,8 @@ struct select_growth {
     }
 };
 
-/// Rates Gaussians by the sum of their gradients, and marks all of them to stay. One index per Gaussian.
+/// Rates Gaussians by the sum of their gradients, and marks all of them to stay. One index per
+/// Gaussian.
 struct rate_by_gradient {
     const raster::visibility* seen;
     std::uint32_t* stays;
@@ -74,7 +75,7 @@ struct rate_by_gradient {
 
     WARPAGG_HD void operator()(std::size_t i) const {
         stays[i] = 1;
-        rating[i] = raster::bits_of(seen[i].gradient);  // the bits of non-negative floats have their order
+        rating[i] = raster::bits_of(seen[i].gradient);  // bits have the order of floats
         identities[i] = static_cast<std::uint32_t>(i);
     }
 };
@@ -98,8 +99,8 @@ struct place_copies {
     }
 };
 
-/// Gives both halves of a split a random position from the distribution of their origin, and divides their
-/// scale by 1.6. One index per new Gaussian.
+/// Gives both halves of a split a random position from the distribution of their origin, and
+/// divides their scale by 1.6. One index per new Gaussian.
 struct split {
     const birth* births;
     std::uint64_t seed;
@@ -120,16 +121,16 @@ struct split {
     }
 };
 
-/// Gives a cloned Gaussian and its clone the opacity with which both together are as opaque as the Gaussian
-/// was. One index per new Gaussian.
+/// Gives a cloned Gaussian and its clone the opacity with which both together are as opaque as the
+/// Gaussian was. One index per new Gaussian.
 struct revise_opacity {
     const birth* births;
     float* opacity;
 
     WARPAGG_HD void operator()(std::size_t i) const {
         if (births[i] != birth::original && births[i] != birth::copy) return;
-        // The logit of 1 - sqrt(1 - o) is log(sqrt(1 + e) - 1) with e = o / (1 - o). This form avoids the
-        // cancellation.
+        // The logit of 1 - sqrt(1 - o) is log(sqrt(1 + e) - 1) with e = o / (1 - o). This form
+        // avoids the cancellation.
         const float e = glm::exp(warpagg::math::min(opacity[i], 80.0f));
         opacity[i] -= glm::log(1 + warpagg::math::sqrt(1 + e));
     }
@@ -149,8 +150,9 @@ struct lower_opacity {
     }
 };
 
-/// Hides Gaussians that are closer to a training camera than its near plane. That camera cannot see them, so
-/// its image does not remove them, and they would appear as floaters in other views. One index per Gaussian.
+/// Hides Gaussians that are closer to a training camera than its near plane. That camera cannot see
+/// them, so its image does not remove them, and they would appear as floaters in other views. One
+/// index per Gaussian.
 struct hide_near_camera {
     const glm::vec3* cameras;
     std::size_t camera_count;
