@@ -5,6 +5,7 @@
 
     bench/tables.py atomics FILE           # of bench_atomics
     bench/tables.py match FILE             # of bench_match
+    bench/tables.py kernels FILE           # of bench_kernels
     bench/tables.py accuracy FILE          # of bench_accuracy
     bench/tables.py backward FILE...       # of lab backward, one file per scene
     bench/tables.py accumulators FILE...   # of lab backward --accumulate, one file per scene
@@ -54,6 +55,22 @@ def match(result):
             for r in result["rows"]]
     print_table(f"Keys that differ within a warp: milliseconds, median of {result['rounds']} rounds",
                 ["type", "N", "keys of a warp", "plain atomics", "warp_match_reduce_atomic", "times as fast"], rows)
+
+
+def kernels(result):
+    """A table for each kernel, with a column for each way to add."""
+    by_kernel, spreads = {}, []
+    for row in result["rows"]:
+        by_kernel.setdefault(row["kernel"], []).append(row)
+        spreads += [(most - least) / median for median, least, most in row["median_least_most"].values()]
+    about = f"milliseconds, median of {result['rounds']} rounds"
+    print(f"The spread between rounds is {100 * statistics.median(spreads):.1f} % in the median and at most {100 * max(spreads):.0f} %.\n")
+    for kernel, rows in by_kernel.items():
+        variants = list(rows[0]["median_least_most"])
+        rasterizer = "blending" in kernel
+        cells = [[row["input"], *([f"{100 * row['idle_share']:.0f} %"] if rasterizer else []),
+                  *(f"{row['median_least_most'][v][0]:.3f}" for v in variants)] for row in rows]
+        print_table(f"{kernel[0].upper()}{kernel[1:]}: {about}", ["input", *(["idle warp steps"] if rasterizer else []), *variants], cells)
 
 
 def accuracy(result):
@@ -110,7 +127,7 @@ def accumulators(*results):
     print_table(f"Backward pass by accumulator; median of {results[0]['rounds']} rounds", columns, rows)
 
 
-KINDS = {f.__name__: f for f in (atomics, match, accuracy, backward, accumulators)}
+KINDS = {f.__name__: f for f in (atomics, match, kernels, accuracy, backward, accumulators)}
 
 if __name__ == "__main__":
     if len(sys.argv) < 3 or sys.argv[1] not in KINDS:
