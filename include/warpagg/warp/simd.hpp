@@ -234,12 +234,15 @@ struct basic_lanes : Counting {
                 if (active[i * v.width + k]) p[k] = v[i * v.width + k];
         }
     }
-    template <class Op, class Dst, class Index, class T>
+    template <class Op, class Dst, class T>
+    WARPAGG_HD void atomic(Op op, Dst dst, const value<unsigned>& index, const value<T>& v,
+                           const mask& active) const {
+        commit(op, dst, index, v, active);
+    }
+    template <class Op, class Dst, std::same_as<std::uint64_t> Index, class T>
     WARPAGG_HD void atomic(Op op, Dst dst, const value<Index>& index, const value<T>& v,
                            const mask& active) const {
-        const std::uint32_t who = bits(active);
-        count([&](counters& c) { count_commit(c, dst, index, who); });
-        for_each_lane(who, [&](int lane) { detail::atomic(op, dst(index[lane]), v[lane]); });
+        commit(op, dst, index, v, active);
     }
 
     /// @}
@@ -250,6 +253,13 @@ struct basic_lanes : Counting {
     }
 
   private:
+    template <class Op, class Dst, class Index, class T>
+    WARPAGG_HD void commit(Op op, Dst dst, const value<Index>& index, const value<T>& v,
+                           const mask& active) const {
+        const std::uint32_t who = bits(active);
+        count([&](counters& c) { count_commit(c, dst, index, who); });
+        for_each_lane(who, [&](int lane) { detail::atomic(op, dst(index[lane]), v[lane]); });
+    }
     template <class F>
     WARPAGG_HD void count(F f) const {
         if constexpr (Counting::counts) f(*this->to);
