@@ -177,6 +177,25 @@ TEST_CASE("a destination that is not uniform") {
     });
 }
 
+TEST_CASE("a continue before a call of the library") {
+    float sums[2] = {};
+    const float v[1] = {1};
+    unsigned line = 0;
+    const auto kernel = [&](unsigned first) {
+        return [&, first](const checked& w) {
+            for (unsigned i = 0; i < 2; ++i) {
+                if (w.lane() < first && i == 0) continue;
+                line = __LINE__, warpagg::warp_reduce_atomic(w, sums + i, v, true);
+            }
+        };
+    };
+    is_diagnosed({diagnosis::destination_not_uniform, lanes(8, 31), "warp_reduce_atomic", &line}, {},
+                 kernel(8));
+    is_clean({}, kernel(0));
+    CHECK(try_launch({}, kernel(8))
+              .sentence.ends_with(". A likely cause is a continue or an early return before the call."));
+}
+
 TEST_CASE("assume_busy on an idle warp") {
     using warpagg::policy, warpagg::shfl_down, warpagg::assume_busy;
     float sums[3] = {};

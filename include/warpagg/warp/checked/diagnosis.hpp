@@ -25,6 +25,8 @@ enum class diagnosis {
     mixed_access,             ///< an atomic and a plain access to one address are not ordered
     data_race,                ///< a plain write and another plain access to one address are not ordered
     barrier_not_reached,      ///< threads wait at the barrier for a thread that has returned
+    out_of_bounds,            ///< an access outside of the memory that a kernel may use
+    uninitialized_read,       ///< a read of memory that nothing has written
 };
 
 /// Returns the name of a diagnosis, as in the enumeration.
@@ -40,7 +42,9 @@ inline const char* name(diagnosis what) {
                                      "idle_warp",
                                      "mixed_access",
                                      "data_race",
-                                     "barrier_not_reached"};
+                                     "barrier_not_reached",
+                                     "out_of_bounds",
+                                     "uninitialized_read"};
     return names[static_cast<unsigned>(what)];
 }
 

@@ -23,6 +23,8 @@ struct violation {
     std::string sentence;
 };
 
+inline constexpr const char* does[] = {"reads", "writes", "updates atomically"};  // by access_kind
+
 inline violation not_in_mask(const lane_state& self, const arrival& a, std::uint32_t lane) {
     return {diagnosis::lane_not_in_mask,
             self.kernel_site(a.at),
@@ -52,11 +54,13 @@ inline violation stuck(const warp_state& w) {
         lanes_sentence(here) + (std::popcount(here) == 1 ? " waits for " : " wait for ");
 
     if (const std::uint32_t never = missing & ~w.waiting; never != 0) {
-        const std::uint32_t returned = never & w.returned, in_barrier = never & w.in_barrier;
         std::string why;
-        if (returned != 0) why += lanes_text(returned) + " returned";
-        if (returned != 0 && in_barrier != 0) why += ", and ";
-        if (in_barrier != 0) why += lanes_text(in_barrier) + " went to the barrier";
+        const auto add = [&](std::uint32_t lanes, const char* what) {
+            if (lanes != 0) why += (why.empty() ? "" : ", and ") + lanes_text(lanes) + what;
+        };
+        add(never & w.absent, " do not exist in this block");
+        add(never & w.returned & ~w.absent, " returned");
+        add(never & w.in_barrier, " went to the barrier");
         return {diagnosis::collective_not_reached,
                 at,
                 {},
@@ -84,7 +88,7 @@ inline violation not_uniform(const call_site& at, std::uint32_t lanes, unsigned 
             {},
             lanes,
             "All lanes must name one record, but that of " + lanes_text(lanes) + " is not that of lane " +
-                std::to_string(first) + "."};
+                std::to_string(first) + ". A likely cause is a continue or an early return before the call."};
 }
 
 inline violation idle_warp(const call_site& at, std::uint32_t lanes) {
@@ -107,9 +111,37 @@ inline violation another_barrier(const call_site& at, const call_site& other, st
             lanes_sentence(lanes) + " of this warp went to the barrier at another place."};
 }
 
+/// Describes an access of `size` bytes; `where` completes the sentence "Lane 3 reads 4 bytes ...".
+inline violation out_of_bounds(const call_site& at, unsigned lane, access_kind kind, std::size_t size,
+                               const std::string& where) {
+    return {diagnosis::out_of_bounds,
+            at,
+            {},
+            1u << lane,
+            "Lane " + std::to_string(lane) + " " + does[static_cast<unsigned>(kind)] + " " +
+                std::to_string(size) + " bytes " + where + "."};
+}
+inline violation bad_index(const call_site& at, unsigned lane, const std::string& index,
+                           const std::string& array) {
+    return {
+        diagnosis::out_of_bounds,
+        at,
+        {},
+        1u << lane,
+        "Lane " + std::to_string(lane) + " uses the index " + index + " of an array of type " + array + "."};
+}
+inline violation uninitialized_read(const call_site& at, unsigned lane, bool shared) {
+    return {diagnosis::uninitialized_read,
+            at,
+            {},
+            1u << lane,
+            "Lane " + std::to_string(lane) + " reads " +
+                (shared ? "shared memory that no thread of its block has written."
+                        : "an element of an array that nothing has written.")};
+}
+
 inline violation conflict(const access& before, const access& now) {
     constexpr unsigned width = warp_state::size;
-    constexpr const char* does[] = {"reads", "writes", "updates atomically"};
     constexpr const char* did[] = {"read", "wrote", "updated atomically"};
     const bool mixed = (before.kind == access_kind::atomic) != (now.kind == access_kind::atomic);
     const bool same_warp = before.block == now.block && before.thread / width == now.thread / width;

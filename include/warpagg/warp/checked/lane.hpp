@@ -66,7 +66,8 @@ struct warp_state {
 
     std::array<lane_state, size> lane;
     std::uint32_t waiting = 0;   ///< lanes that wait at a collective or in activemask
-    std::uint32_t returned = 0;  ///< lanes that have returned from the kernel
+    std::uint32_t returned = 0;  ///< lanes that have returned from the kernel, or that the block lacks
+    std::uint32_t absent = 0;    ///< lanes that the block lacks, because its size is no multiple of 32
     std::uint32_t in_barrier = 0;
 
     /// Vector clocks: known[a][b] is the number of synchronizations of lane b that lane a has seen.

@@ -12,6 +12,10 @@
 
 namespace warpagg::emulator {
 
+namespace detail {
+struct cuda_collectives;
+}
+
 /// The checked model of `warp`, as one lane sees it. Each lane is a fiber that runs the kernel by
 /// itself. Kernels are therefore ordinary scalar code (`if`, loops, early returns), and
 /// `value_t<checked, T>` is `T`. The model diagnoses violations of the rules. `try_launch` creates
@@ -221,6 +225,8 @@ class checked {
     /// @}
 
   private:
+    friend struct detail::cuda_collectives;
+
     struct who {
         std::uint32_t mask;
         bool all_lanes = false;

@@ -29,6 +29,7 @@ class scheduler {
     void run(unsigned threads, void (*loop)()) {
         while (fibers_.size() < threads) fibers_.push_back(fiber_pool::of_this_thread().take());
         runnable_.clear();
+        patient_ = 0;
         for (unsigned t = 0; t < threads; ++t) {
             fibers_[t]->prepare(loop);
             runnable_.push_back(t);
@@ -54,6 +55,13 @@ class scheduler {
     void let_others_run() {
         wake(current_);
         sleep();
+    }
+
+    /// Lets other fibers run until all of them sleep, have finished, or wait in this function.
+    void let_others_run_first() {
+        ++patient_;
+        while (runnable_.size() >= patient_) let_others_run();
+        --patient_;
     }
 
     /// Ends the round of the running fiber. Returns in the next round, or in the next launch.
@@ -87,6 +95,7 @@ class scheduler {
     std::vector<std::unique_ptr<fiber>> fibers_;
     std::vector<unsigned> runnable_;
     unsigned current_ = 0;
+    std::size_t patient_ = 0;  // fibers in let_others_run_first
 };
 
 }  // namespace warpagg::emulator::detail

@@ -80,6 +80,10 @@ class simulator {
     warp_state& warp(unsigned number) { return warps_[number]; }
     counters* count() const { return count_; }
     shared_memory& shared() { return shared_; }
+    unsigned phase() const { return phase_; }
+    bool on_stack(const void* address) const { return scheduler_.on_stack(address); }
+    std::size_t undefined_reads() const { return undefined_.count(); }
+    void forget(const void* address, std::size_t size) { shadow_.forget(address, size); }
 
     /// Waits for the other lanes of the mask. The last lane to arrive calls `complete` for all lanes.
     WARPAGG_OUT_OF_LINE void meet(const arrival& a) {
@@ -114,11 +118,21 @@ class simulator {
         return undefined_.make<T>(read, random_, is_shadow());
     }
 
+    /// Lets other lanes run, in one of 8 calls.
+    void let_others_run_sometimes() {
+        if (random_.below(8) == 0) scheduler_.let_others_run();
+    }
+    /// Lets other lanes run until none can: all of them have returned, or wait for others.
+    void let_others_run_first() { scheduler_.let_others_run_first(); }
+
     /// Diagnoses conflicts of a memory access; may let other lanes run first. Call it before the access.
     WARPAGG_OUT_OF_LINE void access_memory(const void* address, std::size_t size, access_kind kind,
                                            const call_site& here) {
-        if (random_.below(8) == 0) scheduler_.let_others_run();
-        if (scheduler_.on_stack(address)) return;
+        let_others_run_sometimes();
+        if (!on_stack(address)) find_conflict(address, size, kind, here);
+    }
+    /// Diagnoses conflicts of a memory access. Call it before the access.
+    void find_conflict(const void* address, std::size_t size, access_kind kind, const call_site& here) {
         const call_site& at = self().kernel_site(here);
         const access now{block_, thread(), phase_, warp().known[lane()][lane()], kind, 0, at};
         const access* before =
@@ -131,6 +145,11 @@ class simulator {
     WARPAGG_OUT_OF_LINE void write_memory(const void* address, const T& value, access_kind kind,
                                           const call_site& here) {
         access_memory(address, sizeof(T), kind, here);
+        find_undefined(address, value, here);
+    }
+    /// Diagnoses a written value that is undefined, and shows it to the shadow process.
+    template <class T>
+    void find_undefined(const void* address, const T& value, const call_site& here) {
         const call_site& at = self().kernel_site(here);
         if (const undefined_read* read = undefined_.origin(value))
             diagnose(read->thread / warp_state::size, [&] { return inactive_lane_read(*read, at); });
@@ -157,7 +176,9 @@ class simulator {
         phase_ = 0;
         in_barrier_ = 0;
         returned_ = 0;
-        warps_.assign(threads_ / warp_state::size, warp_state{});
+        warps_.assign((threads_ + warp_state::size - 1) / warp_state::size, warp_state{});
+        if (const unsigned rest = threads_ % warp_state::size; rest != 0)
+            warps_.back().absent = warps_.back().returned = ~std::uint32_t{0} << rest;
         shared_.begin_block([this](const void* first, std::size_t size) { shadow_.forget(first, size); });
         scheduler_.run(threads_, run_threads);
     }
@@ -266,8 +287,8 @@ class simulator {
             if (at == nullptr && w.in_barrier != 0) at = &w.lane[first_of(w.in_barrier)].site();
         for (unsigned number = 0; number < warps_.size(); ++number) {
             const warp_state& w = warps_[number];
-            if (w.returned != 0)
-                diagnose(number, [&] { return barrier_not_reached(*at, w.returned, in_barrier_, threads_); });
+            if (const std::uint32_t returned = w.returned & ~w.absent; returned != 0)
+                diagnose(number, [&] { return barrier_not_reached(*at, returned, in_barrier_, threads_); });
             std::uint32_t elsewhere = 0;
             for_each_lane(w.in_barrier, [&](unsigned lane) {
                 // mutate: barriers_not_compared
