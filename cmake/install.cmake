@@ -1,14 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
-# The headers; for find_package(warpagg) one target, and a version that refuses another major; for pkg-config the
-# include path.
+# The headers; for find_package(warpagg) one target, the function warpagg_emulate_cuda, and a version that refuses
+# another major; for pkg-config the include path.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_DATADIR}/cmake/warpagg)
 install(DIRECTORY include/warpagg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS warpagg EXPORT warpagg-targets INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT warpagg-targets NAMESPACE warpagg:: FILE warpagg-config.cmake DESTINATION ${package_dir})
+install(EXPORT warpagg-targets NAMESPACE warpagg:: DESTINATION ${package_dir})
+install(FILES cmake/warpagg-config.cmake cmake/emulate_cuda.cmake DESTINATION ${package_dir})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/warpagg-config-version.cmake
     COMPATIBILITY SameMajorVersion ARCH_INDEPENDENT)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/warpagg-config-version.cmake DESTINATION ${package_dir})

@@ -60,6 +60,15 @@ function(build_and_run dir)
     run("running ${dir}/stranger" "${dir}/stranger")
 endfunction()
 
+# Fails unless ${page}, a page of the documentation, shows this text.
+function(must_be_on_page what text)
+    file(READ "${SOURCE_DIR}/${page}" shown)
+    string(FIND "${shown}" "${text}" at)
+    if(at EQUAL -1)
+        message(FATAL_ERROR "${page} does not show ${what} as it is:\n${text}")
+    endif()
+endfunction()
+
 file(REMOVE_RECURSE "${WORK_DIR}")
 
 # Installed, and found.
@@ -72,6 +81,7 @@ configure("${consumers_dir}/old_names" -B "${WORK_DIR}/old_names" "-DCMAKE_PREFI
     ${strict} ${without})
 build_and_run("${WORK_DIR}/old_names")
 include("${consumers_dir}/unit_testing.cmake")
+include("${consumers_dir}/existing_kernel.cmake")
 
 # The one version number is everywhere the same, and another major version is refused.
 warpagg_version("${prefix}/include" version)

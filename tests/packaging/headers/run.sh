@@ -13,6 +13,8 @@ export LC_ALL=C
 # Those that only nvcc takes, as they call CUDA's intrinsics; and those that it does not, as they are for the host.
 nvcc_only=(warp/cuda.hpp simt/cuda.hpp reduce/cooperative.hpp reduce/cub.hpp)
 host_only=(warp/fork_shadow_process.hpp warp/simd_value.hpp warp/simd.hpp simt/simd.hpp simt/lanes.hpp simt/checked.hpp 'warp/checked.*')
+# Those for CUDA kernels on the emulator, which need a compiler option. They declare CUDA's names.
+emulate_cuda=(emulate_cuda.hpp 'emulate_cuda/.*')
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -37,7 +39,7 @@ compile_all() {
 
 if [[ ${1:?host or an nvcc} == host ]]; then
     suffix=cpp
-    mapfile -t headers < <(headers_but "${nvcc_only[@]}")
+    mapfile -t headers < <(headers_but "${nvcc_only[@]}" "${emulate_cuda[@]}")
     write_units "${headers[@]}"
     strict="-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -fsyntax-only -I.."
     compilers=()
@@ -60,12 +62,21 @@ if [[ ${1:?host or an nvcc} == host ]]; then
                 echo "$compiler $options $strict $work/all.cpp"
             done
         done
+        for compiler in "${compilers[@]}"; do
+            for header in emulate_cuda.hpp $(find emulate_cuda -name '*.hpp' -o -name '*.h'); do
+                option=-fsanitize=thread
+                [[ $header != emulate_cuda/runtime[./]* ]] || option=
+                unit=$work/${header//\//_}.emulate_cuda.cc
+                printf '#include <warpagg/%s>\n' "$header" "$header" >"$unit"
+                echo "$compiler -std=c++20 $strict $option $unit"
+            done
+        done
     } >"$work/commands"
     [[ " ${compilers[*]} " == *clang* ]] || echo "skipped: clang, which is not installed"
 else
     suffix=cu
     compilers=("$1")
-    mapfile -t headers < <(headers_but "${host_only[@]}")
+    mapfile -t headers < <(headers_but "${host_only[@]}" "${emulate_cuda[@]}")
     write_units "${headers[@]}"
     strict="-std=c++20 -arch=sm_80 -Werror all-warnings -Xcompiler -Wall,-Wextra,-Werror -I.. -o $work/output"
     for unit in "$work"/*.cu; do
