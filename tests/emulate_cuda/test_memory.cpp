@@ -28,6 +28,11 @@ __global__ void reverse_block(const T* from, T* to) {
     __syncthreads();
     to[blockIdx.x * N + threadIdx.x] = values[N - 1 - threadIdx.x];
 }
+__global__ void reverse_without_barrier(float* to) {
+    __shared__ float values[64];
+    values[threadIdx.x] = 1;
+    to[threadIdx.x] = values[63 - threadIdx.x];
+}
 /// Only the first block to run writes the shared variable.
 __global__ void shared_of_one_block(int* blocks, int* to) {
     __shared__ int v;
@@ -130,6 +135,14 @@ TEST_CASE("shared memory belongs to a block") {
         device_array<int> order{0}, values(64);
         CHECK(try_launch(shared_of_one_block, {.blocks = 2, .seed = seed}, order, values).what ==
               diagnosis::uninitialized_read);
+    });
+}
+
+TEST_CASE("a read before the write of another thread is a race in every schedule") {
+    device_array<float> to(64);
+    for_each_seed(200, [&](std::uint64_t seed) {
+        CHECK(try_launch(reverse_without_barrier, {.threads = 64, .seed = seed}, to).what ==
+              diagnosis::data_race);
     });
 }
 

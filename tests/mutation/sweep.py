@@ -87,12 +87,26 @@ class Sweep:
         if source.parent.name == "compile_fail":
             return failure(["cmake", f"-DCOMPILER={compiler}", f"-DINCLUDE={headers}", f"-DSOURCE={source}",
                             "-P", str(source.parent / "run.cmake")], folder)
+        if source.parent.name == "emulate_cuda":
+            self.build_emulated(source, headers, folder)
+            return failure([str(folder / "program")], folder)
         definitions = []
         if test == "cuda/test_ptx.cpp":
             definitions = [self.compile_ptx(headers, folder)]
         build(compiler, *flags, *definitions, f"-I{headers}", str(source), str(self.main_object),
               "-o", str(folder / "program"))
         return failure([str(folder / "program")], folder)
+
+    def build_emulated(self, source, headers, folder):
+        """Builds a test of CUDA kernels on the emulator, as docs/how-to/test_existing_kernels.md describes it."""
+        include = [f"-I{headers}", f"-I{headers}/warpagg/emulate_cuda/cuda_headers"]
+        runtime = folder / "runtime.cpp"
+        runtime.write_text("#include <warpagg/emulate_cuda/runtime.hpp>\n")
+        build(compiler, *flags, *include, "-c", str(runtime), "-o", str(folder / "runtime.o"))
+        build(compiler, *flags, "-O0", "-g", "-fsanitize=thread", "-fsanitize=bounds", *include, "-c", str(source),
+              "-o", str(folder / "test.o"))
+        build(compiler, str(folder / "test.o"), str(folder / "runtime.o"), str(self.main_object),
+              "-Wl,--wrap=memcpy,--wrap=memmove,--wrap=memset", "-o", str(folder / "program"))
 
     def instantiation(self, test, folder):
         """The source file of "HEADER on BACKEND", as CMake writes it for the first such line of its list."""

@@ -46,8 +46,8 @@ struct tracked_bytes {
         std::size_t known = 0;
         for (std::size_t i = a - first; i < a - first + n; ++i) {
             const std::uint8_t before = (flags[i] & filled) != 0 ? 0xff : 0;
-            if ((flags[i] & defined) != 0)
-                ++known;
+            if ((flags[i] & defined) != 0) ++known;
+            // mutate: unreported_writes_ignored
             else if (*reinterpret_cast<const std::uint8_t*>(first + i) != before)
                 return true;
         }
@@ -139,7 +139,7 @@ class shared_variables {
             for (std::size_t i = b.used_from; i < b.used_to; ++i) {
                 if (b.flags[i] == 0) continue;  // perhaps not a shared variable
                 *reinterpret_cast<std::uint8_t*>(b.bytes.first + i) = 0xff;
-                b.flags[i] = filled;
+                b.flags[i] = filled;  // mutate: cuda_blocks_inherit_shared_values
             }
             b.used_from = b.bytes.size;
             b.used_to = 0;

@@ -59,7 +59,7 @@ class thread_state {
     void suspend() {
         in_kernel() = false;
         has_just_written_ = false;
-        check_written();
+        check_written();  // mutate: plain_writes_not_checked
     }
 
     /// Checks a plain access of a kernel, whose report returns to `return_address`. Bytes of a range may be
@@ -69,6 +69,7 @@ class thread_state {
         if (is_private(where)) return;
         // GCC reports both accesses of `*a = *b` before either happens, and the write first. So between a
         // write and the next report, no other lane runs and no value is checked.
+        // mutate: copies_checked_before_they_happen
         if (has_just_written_ && kind == access_kind::read) {
             in_kernel() = has_just_written_ = false;
         } else {
@@ -161,6 +162,7 @@ class thread_state {
         } else {
             bytes = heap_arrays::instance().find(first);
         }
+        // mutate: accesses_across_the_end_allowed
         if (first >= bytes.first && first + size <= bytes.first + bytes.size) return bytes;
         if (bytes.size == 0 && !shared && in_program(first, size)) return {};
         m().diagnose([&] {
@@ -181,6 +183,7 @@ class thread_state {
     std::optional<tracked_bytes> find_dynamic(location a) const {
         for (const dynamic_shared& d : dynamic_arrays()) {
             const auto first = reinterpret_cast<location>(d.address());
+            // mutate: dynamic_shared_memory_unlimited
             if (a - first < d.capacity) return tracked_bytes{first, grid_->shared_bytes, nullptr};
         }
         return std::nullopt;

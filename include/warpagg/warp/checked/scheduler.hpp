@@ -60,7 +60,7 @@ class scheduler {
     /// Lets other fibers run until all of them sleep, have finished, or wait in this function.
     void let_others_run_first() {
         ++patient_;
-        while (runnable_.size() >= patient_) let_others_run();
+        while (runnable_.size() >= patient_) let_others_run();  // mutate: undefined_read_does_not_wait
         --patient_;
     }
 

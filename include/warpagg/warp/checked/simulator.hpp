@@ -178,6 +178,7 @@ class simulator {
         returned_ = 0;
         warps_.assign((threads_ + warp_state::size - 1) / warp_state::size, warp_state{});
         if (const unsigned rest = threads_ % warp_state::size; rest != 0)
+            // mutate: absent_lanes_not_known
             warps_.back().absent = warps_.back().returned = ~std::uint32_t{0} << rest;
         shared_.begin_block([this](const void* first, std::size_t size) { shadow_.forget(first, size); });
         scheduler_.run(threads_, run_threads);
@@ -287,6 +288,7 @@ class simulator {
             if (at == nullptr && w.in_barrier != 0) at = &w.lane[first_of(w.in_barrier)].site();
         for (unsigned number = 0; number < warps_.size(); ++number) {
             const warp_state& w = warps_[number];
+            // mutate: barrier_waits_for_absent_lanes
             if (const std::uint32_t returned = w.returned & ~w.absent; returned != 0)
                 diagnose(number, [&] { return barrier_not_reached(*at, returned, in_barrier_, threads_); });
             std::uint32_t elsewhere = 0;
