@@ -14,7 +14,7 @@ function(warpagg_emulate_cuda target)
         list(APPEND options -fsanitize=bounds)
     else()
         # Clang would not report a read that a write to the same address follows.
-        list(APPEND options -fsanitize=array-bounds "SHELL:-mllvm -tsan-instrument-read-before-write=1")
+        list(APPEND options -fsanitize=array-bounds -mllvm -tsan-instrument-read-before-write=1)
     endif()
     set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS ${options})
     set_property(SOURCE ${ARGN} PROPERTY SKIP_PRECOMPILE_HEADERS ON)

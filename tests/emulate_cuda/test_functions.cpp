@@ -222,6 +222,7 @@ TEST_CASE("functions of one thread") {
     CHECK((__uint_as_float(0x3f800000u) == 1 && __int_as_float(0x40000000) == 2));
     CHECK((__expf(0) == 1 && __logf(1) == 0 && __powf(2, 3) == 8 && __sinf(0) == 0 && __cosf(0) == 1));
     CHECK((__fdividef(3, 2) == 1.5f && __frcp_rn(4) == 0.25f && __fsqrt_rn(9) == 3));
+    CHECK((abs(-0.5f) == 0.5f && sqrt(4.0f) == 2.0f && fabsf(-2) == 2));
     CHECK((rsqrtf(4) == 0.5f && rsqrt(4.0) == 0.5));
     CHECK((__saturatef(-1) == 0 && __saturatef(0.5f) == 0.5f && __saturatef(2) == 1));
     CHECK((min(2, 3) == 2 && max(2.0f, 3) == 3.0f && min(2u, 3u) == 2u));

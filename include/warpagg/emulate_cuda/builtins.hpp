@@ -5,13 +5,16 @@
 /// @file
 /// CUDA's keywords as macros, its built-in variables, and barriers.
 
-// The C++ standard library uses some of these names in attributes.
-#include <cmath>
-#include <cstdlib>
-#include <cstring>
+// Kernels use the functions of these headers without including them, in the global namespace.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "runtime_interface.hpp"
 
+/// @{
+/// Works as in CUDA, on the CPU.
 #define __global__
 #define __device__
 #define __host__
@@ -21,6 +24,7 @@
 #define __launch_bounds__(...)
 #define __align__(n) __attribute__((aligned(n)))
 #define __grid_constant__
+/// @}
 /// A shared variable is thread-local. The emulator takes all thread-local variables of the program that a
 /// kernel uses for shared memory.
 #define __shared__ thread_local
