@@ -11,8 +11,8 @@ namespace emulator = warpagg::emulator;
 bool is_right(std::uint64_t seed) {
     const emulator::device_array<float> values{1, 2, 3, 4, 5, 6, 7};
     emulator::device_array<float> scaled(7);
-    emulator::launch(scale, {.blocks = 2, .threads = 4, .shared_bytes = 4 * sizeof(float), .seed = seed},
-                     values, 7, scaled);
+    const emulator::cuda_grid grid{.blocks = 2, .threads = 4, .shared_bytes = 16, .seed = seed};
+    emulator::launch(scale, grid, values, 7, scaled);
     return scaled[0] == 1 / 10.0f && scaled[3] == 4 / 10.0f && scaled[6] == 7 / 18.0f;
 }
 

@@ -108,7 +108,10 @@ __global__ void atomic_results(unsigned* counter, unsigned* order) {
     order[atomicAdd(counter, 1)] = threadIdx.x;
 }
 
-__global__ void tell_size(unsigned* to) { to[threadIdx.x] = cooperative_groups::this_thread_block().size(); }
+__global__ void tell_size(unsigned* to) {
+    const auto block = cooperative_groups::this_thread_block();
+    to[blockIdx.x * block.size() + block.thread_rank()] = block.size();
+}
 __global__ void reduce_by_warp(float* sum) {
     const float one[1] = {1};
     warpagg::warp_reduce_atomic(warpagg::cuda_warp{}, sum, one, threadIdx.x % 2 == 0);
@@ -222,7 +225,7 @@ TEST_CASE("functions of one thread") {
     CHECK((__uint_as_float(0x3f800000u) == 1 && __int_as_float(0x40000000) == 2));
     CHECK((__expf(0) == 1 && __logf(1) == 0 && __powf(2, 3) == 8 && __sinf(0) == 0 && __cosf(0) == 1));
     CHECK((__fdividef(3, 2) == 1.5f && __frcp_rn(4) == 0.25f && __fsqrt_rn(9) == 3));
-    CHECK((abs(-0.5f) == 0.5f && sqrt(4.0f) == 2.0f && fabsf(-2) == 2));
+    CHECK((abs(-0.5f) == 0.5f && sqrt(4.0f) == 2.0f && fabsf(-2.0f) == 2));
     CHECK((rsqrtf(4) == 0.5f && rsqrt(4.0) == 0.5));
     CHECK((__saturatef(-1) == 0 && __saturatef(0.5f) == 0.5f && __saturatef(2) == 1));
     CHECK((min(2, 3) == 2 && max(2.0f, 3) == 3.0f && min(2u, 3u) == 2u));
@@ -232,6 +235,9 @@ TEST_CASE("functions of one thread") {
 
 TEST_CASE("blocks of any size") {
     for (const unsigned v : results(tell_size, {.threads = 100})) CHECK(v == 100);
+    device_array<unsigned> sizes(64);
+    warpagg::emulator::launch(tell_size, 2, dim3(4, 2, 4), sizes);
+    CHECK((sizes[0] == 32 && sizes[63] == 32));
     device_array<float> sum{0};
     CHECK(try_launch(reduce_by_warp, {.threads = 64}, sum).text() == "");
     CHECK(sum[0] == 32);

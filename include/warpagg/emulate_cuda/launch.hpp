@@ -25,8 +25,9 @@ struct cuda_grid {
 /// one after another, in an order drawn from the seed. A diagnosis ends the launch: threads do not
 /// continue, and destructors of their objects do not run. Pass a `device_array` for each pointer.
 ///
-/// Errors: aborts the program if a size is not allowed. Cost: about a hundred instructions per memory
-/// access and per warp operation of a thread, and one run of addr2line per new line in a report.
+/// Errors: aborts the program if a size is not allowed. Cost: a call of the emulator per memory access and
+/// per warp operation of a thread, which is fast enough for tests only; and a run of addr2line for each line
+/// that a report names for the first time.
 template <class... P, class... A>
 requires(sizeof...(P) == sizeof...(A)) report
     try_launch(void (*kernel)(P...), const cuda_grid& g, A&&... args) {
