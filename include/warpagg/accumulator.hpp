@@ -18,9 +18,9 @@ namespace warpagg {
 /// float.
 namespace accumulate {
 
-/// Keeps the sum in the type of the values. Error of a float sum: at most (n/32 + 5) u k if all lanes
-/// are active, and n u k otherwise. The result depends on the order of additions (`not_guaranteed`).
-/// Memory per sum: one value. Cost per commit: one atomic.
+/// Keeps the sum in the type of the values. Error of a float sum on W lanes: at most
+/// (n/W + log2 W) u k if all lanes are active, and n u k otherwise. The result depends on the order of
+/// additions (`not_guaranteed`). Memory per sum: one value. Cost per commit: one atomic.
 struct native {
     static constexpr auto axis = warpagg::axis::accumulate;
 };
@@ -279,7 +279,7 @@ struct exact {
 };
 
 /// Reduces within the warp in float, as `native`; only the warp's result is accumulated in `A`.
-/// Error: at most 5 u k plus the error of `A` for one value per warp with an active lane. The result
+/// Error: at most log2(W) u k plus the error of `A` for one value per warp with an active lane. The result
 /// depends on which lanes share a warp, and on the order of warps if the result of `A` does. Cost:
 /// the shuffles of `native`, and one decomposition per warp and component, not per lane and
 /// component. `warp_reduce_atomic` accepts it, `warp_match_reduce_atomic` does not.

@@ -34,21 +34,30 @@ struct component_of_key {
     WARPAGG_HD auto operator()(unsigned i) const { return base(key, i); }
 };
 
+/// Returns the bits of the lanes after this one.
+WARPAGG_EXEC_CHECK_DISABLE
+template <warp W>
+WARPAGG_HD value_t<W, lane_bits_t<W>> lanes_after(const W& w) {
+    using math::convert;
+    using bits = lane_bits_t<W>;
+    return value_t<W, bits>(~bits{1}) << convert<bits>(w.lane());
+}
+
 /// Combines the values of lanes with equal keys, in a tree over the lanes of each key in the order of
 /// their numbers. The first lane of each key receives the result. `peers` has the bits of the active
 /// lanes with this lane's key, and is 0 for an inactive lane. Cost: ceil(log2 g) rounds of N shuffles
 /// and two votes, where g is the size of the largest group, and one vote more.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class V, int N>
-WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint32_t>& peers) {
+WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, lane_bits_t<W>>& peers) {
     using math::countr_zero;
     using math::popcount;
     using math::select;
-    using bits = value_t<W, std::uint32_t>;
-    const bits beyond_me = bits(0xfffffffeu) << w.lane();
+    using bits = value_t<W, lane_bits_t<W>>;
+    const bits beyond_me = lanes_after(w);
     bits next = peers & beyond_me;  // the later lanes of the key that still hold a partial result
     // mutate: match_place_from_one
-    bits place = popcount(peers & (beyond_me ^ bits(0xffffffffu))) - bits(1u);
+    auto place = popcount(peers & (beyond_me ^ bits(~lane_bits_t<W>{0}))) - value_t<W, unsigned>(1u);
     while (w.any(next != 0u)) {
         const auto has_next = next != 0u;
         const auto from = countr_zero(next);
@@ -66,11 +75,10 @@ WARPAGG_HD void combine_peers(const W& w, V (&v)[N], const value_t<W, std::uint3
 /// Rising keys are often neighboring addresses, for which plain atomics are faster than a match.
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Key>
-WARPAGG_HD bool keys_rise(const W& w, const Key& key, const mask_t<W>& active, std::uint32_t everyone) {
+WARPAGG_HD bool keys_rise(const W& w, const Key& key, const mask_t<W>& active, lane_bits_t<W> everyone) {
     using math::countr_zero;
-    using bits = value_t<W, std::uint32_t>;
     // mutate: match_rises_to_inactive_lanes
-    const bits after_me = (bits(0xfffffffeu) << w.lane()) & everyone;
+    const auto after_me = lanes_after(w) & everyone;
     const auto next = w.shfl(key, countr_zero(after_me));
     return !w.any(active && after_me != 0u && key >= next);  // mutate: match_equal_keys_rise
 }
@@ -167,8 +175,8 @@ template <warp W, class Key>
 struct lanes_by_key {
     Key key;
     mask_t<W> active;
-    std::uint32_t everyone;           ///< the bits of the active lanes; 0 if they were not compared
-    value_t<W, std::uint32_t> peers;  ///< the bits of the active lanes with the lane's key, if mixed
+    lane_bits_t<W> everyone;           ///< the bits of the active lanes; 0 if they were not compared
+    value_t<W, lane_bits_t<W>> peers;  ///< the bits of the active lanes with the lane's key, if mixed
     key_relation relation;
 };
 
@@ -179,7 +187,7 @@ WARPAGG_HD lanes_by_key<W, Key> compare_keys(const W& w, const Key& key, const m
                                              unsigned least) {
     using math::popcount;
     using math::select;
-    using bits = value_t<W, std::uint32_t>;
+    using bits = value_t<W, lane_bits_t<W>>;
     lanes_by_key<W, Key> lanes{key, active, w.ballot(active), bits(0u), key_relation::none};
     if (lanes.everyone == 0) return lanes;
     lanes.relation = key_relation::different;

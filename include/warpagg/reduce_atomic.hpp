@@ -160,8 +160,8 @@ WARPAGG_HD void apply_policy(const W& w, Record record, const V (&values)[N], co
 /// add in the same tree: first lanes W/2 apart, then W/4 apart, and so on to neighbors. Lanes that do
 /// not reduce, because of `per_lane` or the gate, commit in an unspecified order.
 ///
-/// Error of a float sum of n values with condition number k: at most (n/32 + 5) u k if all lanes are
-/// active, u = 2^-24, and n u k otherwise.
+/// Error of a float sum of n values with condition number k: on W lanes at most
+/// (n/W + log2 W) u k if all lanes are active, u = 2^-24, and n u k otherwise.
 ///
 /// Cost by default on 32 lanes: one vote (two with a gate), about N - 1 + log2(32/N) shuffles (N `redux`
 /// instructions for 32-bit integers and N up to 32), and one atomic instruction per 32 components.

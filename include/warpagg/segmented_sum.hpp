@@ -17,9 +17,9 @@ namespace warpagg {
 /// @snippet segmented_sum.cpp segmented sum
 ///
 /// If the values of a key may continue in another tile, their sum goes to an edge of the tile, for
-/// `segmented_sum_fixup`. Error of a sum of n values of condition k: at most (n/1024 + 42) u k with 32 lanes,
-/// where u is half an ulp of one. Cost: one read of values and keys; at most 2 log2(W) + 5 shuffles and one
-/// vote for each W values, and one more of each per tile.
+/// `segmented_sum_fixup`. Error of a sum of n values of condition k on W lanes: at most
+/// (n/1024 + 1024/W + log2 W + 5) u k, where u is half an ulp of one. Cost: one read of values and keys; at
+/// most 2 log2(W) + 5 shuffles and one vote for each W values, and one more of each per tile.
 /// Precondition: keys are below 2^32 - 1.
 template <class T>
 struct segmented_sum_tiles {

@@ -15,7 +15,7 @@ struct counters {
     std::uint64_t commits = 0;   ///< warp-wide atomic instructions with at least one active lane
     std::uint64_t sectors = 0;   ///< 32-byte sectors touched by these instructions, summed over them
     /// Calls of warp_reduce_atomic and warp_match_reduce_atomic, indexed by the number of active lanes.
-    std::array<std::uint64_t, 33> active{};
+    std::array<std::uint64_t, 65> active{};
 };
 
 }  // namespace warpagg::emulator

@@ -169,6 +169,7 @@ WARPAGG_HD T wrapping_add(const T& a, const T& b) {
 }
 
 /// Returns the number of bits that are set.
+/// @{
 constexpr WARPAGG_HD std::uint32_t popcount(std::uint32_t bits) {
 #if defined(__CUDA_ARCH__)
     if (!__builtin_is_constant_evaluated()) return static_cast<std::uint32_t>(__popc(bits));
@@ -179,8 +180,13 @@ constexpr WARPAGG_HD std::uint32_t popcount(std::uint32_t bits) {
     return static_cast<std::uint32_t>(__builtin_popcount(bits));
 #endif
 }
+constexpr WARPAGG_HD std::uint32_t popcount(std::uint64_t bits) {
+    return popcount(static_cast<std::uint32_t>(bits)) + popcount(static_cast<std::uint32_t>(bits >> 32));
+}
+/// @}
 
-/// Returns the index of the lowest bit that is set, or some index below 32 if no bit is set.
+/// Returns the index of the lowest bit that is set, or some index of a bit if no bit is set.
+/// @{
 WARPAGG_HD std::uint32_t countr_zero(std::uint32_t bits) {
 #if defined(__CUDA_ARCH__)
     return static_cast<std::uint32_t>(__clz(__brev(bits))) & 31u;
@@ -188,6 +194,11 @@ WARPAGG_HD std::uint32_t countr_zero(std::uint32_t bits) {
     return static_cast<std::uint32_t>(__builtin_ctz(bits | 0x80000000u));
 #endif
 }
+WARPAGG_HD std::uint32_t countr_zero(std::uint64_t bits) {
+    const auto low = static_cast<std::uint32_t>(bits);
+    return low != 0 ? countr_zero(low) : 32 + countr_zero(static_cast<std::uint32_t>(bits >> 32));
+}
+/// @}
 
 /// Returns the bits of a 32-bit unsigned integer in reverse order.
 template <class V>

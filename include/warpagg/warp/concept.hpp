@@ -22,14 +22,19 @@ using value_t = typename W::template value<T>;
 template <class W>
 using mask_t = value_t<W, bool>;
 
-/// A warp of `W::size` lanes, a power of two up to 32. All lanes call each operation together.
+/// One bit per lane of the warp model `W`, lane 0 in the lowest bit: an integer of 32 bits for up to 32
+/// lanes, and of 64 bits for 64 lanes.
+template <class W>
+using lane_bits_t = std::conditional_t<(W::size > 32), std::uint64_t, std::uint32_t>;
+
+/// A warp of `W::size` lanes, a power of two up to 64. All lanes call each operation together.
 ///
 /// | operation | meaning |
 /// | --- | --- |
 /// | `lane()` | the lane's number, from 0 |
-/// | `ballot(p)` | a uniform integer whose bit i is lane i's p |
+/// | `ballot(p)` | a uniform `lane_bits_t<W>` whose bit i is lane i's p |
 /// | `any(p)` | whether p is set in some lane; uniform |
-/// | `match(key)` | bit i of lane j's result tells whether lanes i and j hold equal keys |
+/// | `match(key)` | a `lane_bits_t<W>`; bit i tells whether lane i's key equals this lane's key |
 /// | `shfl(v, i)` | v of lane i; `i` may differ between lanes |
 /// | `shfl_down(v, d)` | v of lane `lane() + d`, or the lane's own v past the last lane |
 /// | `shfl_xor(v, d)` | v of lane `lane() ^ d` |
@@ -46,10 +51,11 @@ template <class W>
 concept warp = requires(const W& w, value_t<W, float> v, value_t<W, unsigned> i, mask_t<W> p, float* m,
                         value_t<W, float> (&packed)[4], float* (*dst)(unsigned)) {
     { W::size } -> std::convertible_to<unsigned>;
+    requires(W::size > 0 && W::size <= 64 && (W::size & (W::size - 1)) == 0);
     { w.lane() } -> std::same_as<value_t<W, unsigned>>;
-    { w.ballot(p) } -> std::same_as<std::uint32_t>;
+    { w.ballot(p) } -> std::same_as<lane_bits_t<W>>;
     { w.any(p) } -> std::same_as<bool>;
-    { w.match(i) } -> std::same_as<value_t<W, std::uint32_t>>;
+    { w.match(i) } -> std::same_as<value_t<W, lane_bits_t<W>>>;
     { w.shfl(v, 0u) } -> std::same_as<value_t<W, float>>;
     { w.shfl(v, i) } -> std::same_as<value_t<W, float>>;
     { w.shfl_down(v, 1u) } -> std::same_as<value_t<W, float>>;

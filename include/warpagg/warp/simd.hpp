@@ -22,7 +22,7 @@ struct counted {
     counters* to;                         ///< the counters to increment
 };
 
-/// The fast emulator: one thread runs a warp of 8, 16 or 32 lanes in SIMD registers. The value type
+/// The fast emulator: one thread runs a warp of 8, 16, 32 or 64 lanes in SIMD registers. The value type
 /// is `warpagg::simd_value<T, Size>`, so kernels are masked code: they use `select` and uniform
 /// branches. Lanes commit in the order of their numbers. A 32-bit value takes one register of 256
 /// bits with 8 lanes, and four with 32 lanes. A kernel with 32 lanes and many values therefore keeps
@@ -35,6 +35,7 @@ struct basic_lanes : Counting {
     template <class T>
     using value = warpagg::simd_value<T, static_cast<int>(Size)>;
     using mask = value<bool>;
+    using lane_bits = lane_bits_t<basic_lanes>;
 
     WARPAGG_HD value<unsigned> lane() const {
         value<unsigned> r;
@@ -43,7 +44,7 @@ struct basic_lanes : Counting {
         return r;
     }
 
-    WARPAGG_HD std::uint32_t ballot(const mask& p) const {
+    WARPAGG_HD lane_bits ballot(const mask& p) const {
         count([](counters& c) { ++c.votes; });
         return bits(p);
     }
@@ -66,9 +67,9 @@ struct basic_lanes : Counting {
         return r;
     }
     template <class Key>
-    WARPAGG_HD value<std::uint32_t> match(const value<Key>& key) const {
+    WARPAGG_HD value<lane_bits> match(const value<Key>& key) const {
         count([](counters& c) { ++c.votes; });
-        value<std::uint32_t> r;
+        value<lane_bits> r;
         WARPAGG_UNROLL
         for (int i = 0; i < static_cast<int>(size); ++i) r.set(i, bits(key == value<Key>(key[i])));
         return r;
@@ -77,6 +78,8 @@ struct basic_lanes : Counting {
     WARPAGG_HD value<T> shfl_down(const value<T>& v, unsigned distance) const {
         count_shuffle<T>();
         switch (distance) {
+            case 32:
+                return down<32>(v);
             case 16:
                 return down<16>(v);
             case 8:
@@ -100,6 +103,8 @@ struct basic_lanes : Counting {
     WARPAGG_HD value<T> shfl_xor(const value<T>& v, unsigned distance) const {
         count_shuffle<T>();
         switch (distance) {
+            case 32:
+                return across<32>(v);
             case 16:
                 return across<16>(v);
             case 8:
@@ -256,7 +261,7 @@ struct basic_lanes : Counting {
     template <class Op, class Dst, class Index, class T>
     WARPAGG_HD void commit(Op op, Dst dst, const value<Index>& index, const value<T>& v,
                            const mask& active) const {
-        const std::uint32_t who = bits(active);
+        const lane_bits who = bits(active);
         count([&](counters& c) { count_commit(c, dst, index, who); });
         for_each_lane(who, [&](int lane) { detail::atomic(op, dst(index[lane]), v[lane]); });
     }
@@ -269,7 +274,7 @@ struct basic_lanes : Counting {
         count([](counters& c) { c.shuffles += (sizeof(T) + 3) / 4; });  // mutate: shuffles_counted_by_value
     }
     template <class Dst, class Index>
-    static void count_commit(counters& c, Dst dst, const value<Index>& index, std::uint32_t who) {
+    static void count_commit(counters& c, Dst dst, const value<Index>& index, lane_bits who) {
         if (who == 0) return;
         ++c.commits;
         std::uintptr_t sectors[size];
@@ -285,24 +290,24 @@ struct basic_lanes : Counting {
         c.sectors += known;
     }
 
-    static WARPAGG_HD std::uint32_t bits(const mask& p) {
-        std::uint32_t r = 0;
+    static WARPAGG_HD lane_bits bits(const mask& p) {
+        lane_bits r = 0;
 #if defined(__AVX__)
         WARPAGG_UNROLL
         for (int i = 0; i < p.chunks; ++i)
-            r |= static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(p.part[i])))
+            r |= lane_bits{static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(p.part[i])))}
                  << (i * p.width);
 #else
         typename mask::element flags[size];  // subscripts of vectors fail in GCC 12 with sanitizers
         static_assert(sizeof flags == sizeof p.part);
         std::memcpy(flags, p.part, sizeof flags);
         WARPAGG_UNROLL
-        for (unsigned i = 0; i < size; ++i) r |= (flags[i] != 0 ? 1u : 0u) << i;
+        for (unsigned i = 0; i < size; ++i) r |= lane_bits{flags[i] != 0 ? 1u : 0u} << i;
 #endif
         return r;
     }
     template <class F>
-    static WARPAGG_HD void for_each_lane(std::uint32_t who, F f) {
+    static WARPAGG_HD void for_each_lane(lane_bits who, F f) {
         for (; who != 0; who &= who - 1) f(std::countr_zero(who));
     }
 
@@ -311,7 +316,7 @@ struct basic_lanes : Counting {
     template <class T, class U, class F>
     static WARPAGG_HD void for_each_chunk(T* first, U* of_inactive, const value<unsigned>& index,
                                           const mask& active, const F& f) {
-        const std::uint32_t who = bits(active);
+        const lane_bits who = bits(active);
         WARPAGG_UNROLL
         for (int i = 0; i < index.chunks; ++i) {
             T* record[8];
@@ -403,8 +408,11 @@ using counted_lanes = basic_lanes<counted>;
 /// The fast emulator with 8 or 16 lanes and no counters.
 template <unsigned Size>
 using narrow_lanes = basic_lanes<uncounted, Size>;
+/// The fast emulator with 64 lanes and no counters. AMD's GPUs for data centers have warps of 64 lanes.
+using wide_lanes = basic_lanes<uncounted, 64>;
 
 static_assert(warpagg::warp<lanes> && warpagg::warp<counted_lanes>);
 static_assert(warpagg::warp<narrow_lanes<8>> && warpagg::warp<narrow_lanes<16>>);
+static_assert(warpagg::warp<wide_lanes>);
 
 }  // namespace warpagg::emulator

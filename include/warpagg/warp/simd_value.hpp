@@ -414,15 +414,15 @@ WARPAGG_HD simd_value<double, L> log2(const simd_value<double, L>& a) {
     return r;
 }
 
-template <int L>
-WARPAGG_HD simd_value<std::uint32_t, L> popcount(const simd_value<std::uint32_t, L>& a) {
+template <class T, int L>
+WARPAGG_HD simd_value<std::uint32_t, L> popcount(const simd_value<T, L>& a) {
     simd_value<std::uint32_t, L> r;
     WARPAGG_UNROLL
     for (int k = 0; k < L; ++k) r.set(k, math::popcount(a[k]));
     return r;
 }
-template <int L>
-WARPAGG_HD simd_value<std::uint32_t, L> countr_zero(const simd_value<std::uint32_t, L>& a) {
+template <class T, int L>
+WARPAGG_HD simd_value<std::uint32_t, L> countr_zero(const simd_value<T, L>& a) {
     simd_value<std::uint32_t, L> r;
     WARPAGG_UNROLL
     for (int k = 0; k < L; ++k) r.set(k, math::countr_zero(a[k]));

@@ -58,6 +58,8 @@ class list_reader {
     using real = value_t<W, Real>;
     using index = value_t<W, unsigned>;
 
+    static_assert(W::size <= 32, "the rasterizer keeps the bits of a warp's lanes in 32 bits");
+
   public:
     /// Reads the places [from, to) of a tile's list, which begins at `begin`. The first block
     /// begins at `base`, and the second one at `next`.

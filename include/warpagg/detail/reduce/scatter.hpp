@@ -90,10 +90,9 @@ WARPAGG_HD void scatter_from(const W& w, const mask_t<W>* upper, const Values& v
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, warp W, class Values, class V, int N>
 WARPAGG_HD void reduce_over_warp(scatter, const W& w, const Values& value, V (&results)[N]) {
-    static_assert(W::size <= 32);
     using detail::is_upper;
-    const mask_t<W> upper[] = {is_upper<1>(w), is_upper<2>(w), is_upper<4>(w), is_upper<8>(w),
-                               is_upper<16>(w)};
+    const mask_t<W> upper[] = {is_upper<1>(w), is_upper<2>(w),  is_upper<4>(w),
+                               is_upper<8>(w), is_upper<16>(w), is_upper<32>(w)};
     detail::scatter_from<Op, 0>(w, upper, value, results);
 }
 
