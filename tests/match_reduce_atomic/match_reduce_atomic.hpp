@@ -24,7 +24,7 @@ using warpagg::policy;
 enum class spread { equal, different, rising, few, odd_one_out, runs, random };
 constexpr spread spreads[] = {spread::equal,       spread::different, spread::rising, spread::few,
                               spread::odd_one_out, spread::runs,      spread::random};
-constexpr unsigned keys = 32;
+constexpr unsigned keys = std::max(32u, width);
 
 inline unsigned draw_key(spread s, unsigned lane, unsigned c) {
     switch (s) {
@@ -37,7 +37,7 @@ inline unsigned draw_key(spread s, unsigned lane, unsigned c) {
         case spread::few:
             return (lane * lane + c) % 3;
         case spread::odd_one_out:
-            return lane == c % 32 ? 7 : 20;
+            return lane == c % keys ? 7 : 20;
         case spread::runs:
             return lane / 5;
         case spread::random:
@@ -67,7 +67,7 @@ struct match_problem {
 
     match_problem(unsigned components, table (*place)(unsigned)) : n(components), where(place(components)) {
         std::mt19937_64 random(9);
-        for (const std::uint32_t mask : masks(7))
+        for (const lane_bits mask : masks(7))
             for (const spread s : spreads) add_case(mask, s, random);
         before.assign(guard + cases * where.case_step, values_of<T>::poison(0));
         for (unsigned c = 0; c < cases; ++c)
@@ -98,7 +98,7 @@ struct match_problem {
     }
 
   private:
-    void add_case(std::uint32_t mask, spread s, std::mt19937_64& random) {
+    void add_case(lane_bits mask, spread s, std::mt19937_64& random) {
         const kind k = kinds[cases % 3];
         for (unsigned i = 0; i < n; ++i)
             for (unsigned lane = 0; lane < width; ++lane)
@@ -264,7 +264,7 @@ template <int N, class T>
 void check_match_policies() {
     const match_problem<T> p(N, guarded);
     check_match_default<N, by_accessor>(p);
-    check_match<policy<reduce::per_lane>, N, by_accessor>(p, "per_lane", 33);
+    check_match<policy<reduce::per_lane>, N, by_accessor>(p, "per_lane", width + 1);
     check_match<policy<reduce::shfl_down>, N, by_accessor>(p, "shfl_down", 0);
     check_match<policy<reduce::butterfly, gate::at_least<5>>, N, by_accessor>(p, "butterfly at_least<5>", 5);
 }
@@ -286,20 +286,21 @@ TEST_CASE_TEMPLATE("lanes with equal keys add as one, in the documented tree", T
     check_match_default<3, by_pointer>(match_problem<T>(3, dense));
     check_match_default<4, by_pointer>(match_problem<T>(4, dense));
     check_match_default<6, by_pointer>(match_problem<T>(6, dense));
-    check_match_default<33, by_accessor>(match_problem<T>(33, guarded));
+    constexpr int more = width + 1;
+    check_match_default<more, by_accessor>(match_problem<T>(more, guarded));
 }
 
 TEST_CASE_TEMPLATE("keys of 64 bits", T, TEST_VALUES) {
     const match_problem<T> p(3, guarded);
     check_match<policy<reduce::scatter>, 3, by_accessor, with_keys_of_64_bits>(p, "scatter", 0);
-    check_match<policy<reduce::per_lane>, 3, by_accessor, with_keys_of_64_bits>(p, "per_lane", 33);
+    check_match<policy<reduce::per_lane>, 3, by_accessor, with_keys_of_64_bits>(p, "per_lane", width + 1);
 }
 
 TEST_CASE_TEMPLATE("match compares keys once for several calls of add", T, TEST_VALUES) {
     const match_problem<T> p(3, guarded);
     check_match<policy<>, 3, by_accessor, with_keys_compared_once>(p, "no tags", 0);
     check_match<policy<reduce::scatter>, 3, by_accessor, with_keys_compared_once>(p, "scatter", 0);
-    check_match<policy<reduce::per_lane>, 3, by_accessor, with_keys_compared_once>(p, "per_lane", 33);
+    check_match<policy<reduce::per_lane>, 3, by_accessor, with_keys_compared_once>(p, "per_lane", width + 1);
 }
 
 TEST_CASE("other operations than the sum, by keys") {

@@ -19,7 +19,7 @@ struct rule {
     bool touched_when_idle = false;
     unsigned packed_neighbors = 4;  ///< how many it packs, in records that are aligned to as many
 };
-constexpr rule always_alone{33};
+constexpr rule always_alone{width + 1};
 
 template <class Commit>
 constexpr unsigned neighbors_of = 1;
@@ -41,7 +41,7 @@ struct problem {
         : n(components) {
         std::mt19937_64 random(seed);
         cases = 0;
-        for (const std::uint32_t mask : masks())
+        for (const lane_bits mask : masks())
             for (const kind k : kinds) {
                 add_case(mask, k, random);
                 ++cases;
@@ -85,7 +85,7 @@ struct problem {
   private:
     T value(unsigned c, unsigned i, unsigned lane) const { return values[(c * n + i) * width + lane]; }
 
-    void add_case(std::uint32_t mask, kind k, std::mt19937_64& random) {
+    void add_case(lane_bits mask, kind k, std::mt19937_64& random) {
         for (unsigned lane = 0; lane < width; ++lane) active.push_back((mask >> lane) & 1u);
         for (unsigned i = 0; i < n; ++i)
             for (unsigned lane = 0; lane < width; ++lane)

@@ -78,8 +78,9 @@ TEST_CASE_TEMPLATE("minimum and maximum of floats keep NaN", T, TEST_VALUES) {
 
 TEST_CASE_TEMPLATE("the largest of more values than a warp has lanes", T, TEST_VALUES) {
     using largest = policy<operation::maximum>;
-    const problem<T, operation::maximum> p(33, records);
-    check<with<largest>, 33>(p, "maximum", as_chosen<T, 33, largest>);
+    constexpr int n = width + 1;
+    const problem<T, operation::maximum> p(n, records);
+    check<with<largest>, n>(p, "maximum", as_chosen<T, n, largest>);
 }
 
 TEST_SUITE_END();

@@ -70,7 +70,8 @@ void check_gates() {
     check<asked_first<policy<reduce::scatter, gate::at_least<17>, idle::assume_busy>>, N>(
         p, "scatter at_least<17> assume_busy", {17});
     check<with<policy<gate::at_least<5, 32>, reduce::butterfly>>, N>(p, "at_least<5, 32> butterfly", {5, 32});
-    check<with<policy<gate::at_least<33>, reduce::scatter>>, N>(p, "at_least<33> scatter", always_alone);
+    check<with<policy<gate::at_least<width + 1>, reduce::scatter>>, N>(p, "at_least<W + 1> scatter",
+                                                                       always_alone);
     check<gate_objects, N>(p, "at_least<4> contiguous skip butterfly, as objects", {4});
 }
 

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -117,7 +118,8 @@ TEST_CASE("sums in order err by no more than their bound, and keep the order") {
             magnitude += std::abs(static_cast<double>(values[i]));
         }
         first += often[k];
-        const double steps = 1024.0 / backend::warp::size + 10 + often[k] / 1024.0;
+        constexpr unsigned width = backend::warp::size;
+        const double steps = often[k] / 1024.0 + 1024.0 / width + std::bit_width(width) - 1 + 5;
         CHECK(std::abs(static_cast<double>(found[k]) - sum) <= steps * 0x1p-24 * magnitude);
     }
     // Another order is another sum: nothing sorts behind the caller's back.

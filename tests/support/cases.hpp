@@ -22,18 +22,24 @@ namespace {
 
 constexpr unsigned width = backend::warp::size;
 
+/// One bit per lane. Warps of fewer than 32 lanes ignore the upper bits.
+using lane_bits = warpagg::lane_bits_t<backend::warp>;
+
 using warpagg::mask_t;
 using warpagg::value_t;
 namespace operation = warpagg::operation;
 
 /// None and all; and of each lane alone, the first n, and some at random, every nth.
-inline std::vector<std::uint32_t> masks(std::size_t nth = backend::every_nth_mask) {
-    std::vector<std::uint32_t> all{0u, 0xffffffffu};
-    for (unsigned lane = 0; lane < 32; ++lane) all.push_back(1u << lane);
-    for (unsigned n = 2; n < 32; ++n) all.push_back((1u << n) - 1u);
+inline std::vector<lane_bits> masks(std::size_t nth = backend::every_nth_mask) {
+    constexpr lane_bits one = 1;
+    constexpr unsigned bits = std::numeric_limits<lane_bits>::digits;
+    std::vector<lane_bits> all{0u, ~lane_bits{0}};
+    for (unsigned lane = 0; lane < bits; ++lane) all.push_back(one << lane);
+    for (unsigned n = 2; n < bits; ++n) all.push_back((one << n) - 1u);
     std::mt19937 random(7);
-    for (int i = 0; i < 20; ++i) all.push_back(static_cast<std::uint32_t>(random()));
-    std::vector<std::uint32_t> some{all[0], all[1]};
+    std::uniform_int_distribution<lane_bits> any;
+    for (int i = 0; i < 20; ++i) all.push_back(any(random));
+    std::vector<lane_bits> some{all[0], all[1]};
     for (std::size_t i = 2; i < all.size(); i += nth) some.push_back(all[i]);
     return some;
 }
@@ -153,7 +159,7 @@ T neutral(Op) {
     }
 }
 
-/// The tree that the documentation promises: pairs of lanes at distance 16, then 8, 4, 2, 1.
+/// The tree that the documentation promises: pairs of lanes at distance W/2, then W/4, and so on to 1.
 template <class Op, class T>
 T over_tree(Op op, std::vector<T> x) {
     for (std::size_t distance = x.size() / 2; distance > 0; distance /= 2)
@@ -163,7 +169,7 @@ T over_tree(Op op, std::vector<T> x) {
 }
 
 /// In whatever order `own` are added to `before`, the sums stay this close to that of one order: each is at
-/// most 32 u times the sum of magnitudes from the exact one. Nothing for other types than floats, which
+/// most W u times the sum of magnitudes from the exact one. Nothing for other types than floats, which
 /// come out the same in any order.
 template <class T>
 long double any_order_error(T before, const std::vector<T>& own) {
@@ -172,7 +178,7 @@ long double any_order_error(T before, const std::vector<T>& own) {
         long double magnitude = std::fabs(static_cast<long double>(before));
         for (const T& x : own) magnitude += std::fabs(static_cast<long double>(x));
         const long double u = static_cast<long double>(std::numeric_limits<T>::epsilon()) / 2;
-        return 2 * 32 * u * magnitude;
+        return 2 * width * u * magnitude;
     } else {
         return 0;
     }

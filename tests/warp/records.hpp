@@ -68,10 +68,11 @@ void check_poison_of_active_lanes(const char* what) {
 TEST_SUITE_BEGIN(backend::name);
 
 TEST_CASE("records of more values than a warp has lanes") {
-    check_many<32>();
-    check_many<33>();
-    check_many<40>();
-    check_same_bits<40, float>();
+    constexpr int lanes = width;
+    check_many<lanes>();
+    check_many<lanes + 1>();
+    check_many<lanes + 8>();
+    check_same_bits<lanes + 8, float>();
 }
 
 TEST_CASE("a NaN of an active lane reaches its component and no other") {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 
-/// Warps of 8 and 16 SIMD lanes: what depends on their number. Arithmetic does not: see test_lanes.cpp.
+/// Warps of 8, 16 and 64 SIMD lanes: what depends on their number. Arithmetic does not: see test_lanes.cpp.
 
 #include <doctest/doctest.h>
 
@@ -15,6 +15,7 @@ namespace {
 
 using narrow = warpagg::emulator::narrow_lanes<8>;
 using half = warpagg::emulator::narrow_lanes<16>;
+using wide = warpagg::emulator::wide_lanes;
 
 /// A value per lane that is equal to no other's, in either form of chunk.
 template <class T, class W>
@@ -29,19 +30,22 @@ T number(unsigned lane) {
 }
 
 template <class W>
-warpagg::mask_t<W> flags(std::uint32_t mask) {
+warpagg::mask_t<W> flags(std::uint64_t mask) {
     warpagg::mask_t<W> f(false);
     for (unsigned i = 0; i < W::size; ++i) f.set(static_cast<int>(i), ((mask >> i) & 1u) != 0);
     return f;
 }
 
-constexpr std::uint32_t some_masks[] = {0u, 1u, 0x80u, 0xffu, 0x5au, 0x8000u, 0xffffu, 0xa35cu};
+constexpr std::uint64_t some_masks[] = {0x0, 0x1, 0x80, 0xff, 0x5a, 0x8000, 0xffff, 0xa35c,
+                                        // bits of lanes beyond 32, which narrow warps ignore
+                                        0x100000000, 0x8000000000000000, 0xffffffff00000000,
+                                        0xffffffffffffffff, 0x0123456789abcdef};
 
 template <class T, class W>
 void check_shuffles() {
     const W w;
     const auto v = numbered<T, W>();
-    for (unsigned distance = 0; distance < 32; ++distance) {
+    for (unsigned distance = 0; distance <= 64; ++distance) {
         INFO("distance ", distance);
         const auto one = w.shfl(v, distance), own = w.shfl(v, w.lane() + distance);
         const auto down = w.shfl_down(v, distance), across = w.shfl_xor(v, distance);
@@ -59,7 +63,7 @@ void check_shuffles() {
 template <int N, class Policy, class W>
 void check_sums() {
     const W w;
-    for (const std::uint32_t mask : some_masks) {
+    for (const std::uint64_t mask : some_masks) {
         warpagg::value_t<W, std::int32_t> v[N];
         std::vector<std::int32_t> memory(N + 2, -5), expected = memory;
         for (int n = 0; n < N; ++n) {
@@ -76,17 +80,17 @@ void check_sums() {
 
 }  // namespace
 
-TEST_SUITE_BEGIN("narrow lanes");
+TEST_SUITE_BEGIN("warp sizes");
 
-TEST_CASE_TEMPLATE("shuffles, at every distance and past the end", W, narrow, half) {
+TEST_CASE_TEMPLATE("shuffles, at every distance and past the end", W, narrow, half, wide) {
     check_shuffles<float, W>();
     check_shuffles<double, W>();
 }
 
-TEST_CASE_TEMPLATE("votes", W, narrow, half) {
+TEST_CASE_TEMPLATE("votes", W, narrow, half, wide) {
     const W w;
-    for (const std::uint32_t mask : some_masks) {
-        const std::uint32_t own = mask & ((1u << W::size) - 1);
+    for (const std::uint64_t mask : some_masks) {
+        const std::uint64_t own = mask & (~std::uint64_t{0} >> (64 - W::size));
         CHECK(w.ballot(flags<W>(mask)) == own);
         CHECK(w.any(flags<W>(mask)) == (own != 0));
     }
@@ -96,9 +100,9 @@ TEST_CASE_TEMPLATE("votes", W, narrow, half) {
             CHECK(((equal[i] >> k) & 1u) == (i % 3 == k % 3 ? 1u : 0u));
 }
 
-TEST_CASE_TEMPLATE("memory", W, narrow, half) {
+TEST_CASE_TEMPLATE("memory", W, narrow, half, wide) {
     const W w;
-    for (const std::uint32_t mask : some_masks) {
+    for (const std::uint64_t mask : some_masks) {
         const auto active = flags<W>(mask);
         std::vector<float> row(W::size), scattered(2 * W::size), expected = scattered;
         w.store_row(row.data(), 0, numbered<float, W>(), active);
@@ -129,13 +133,13 @@ TEST_CASE_TEMPLATE("memory", W, narrow, half) {
     }
 }
 
-TEST_CASE_TEMPLATE("sums of more and of fewer values than lanes", W, narrow, half) {
+TEST_CASE_TEMPLATE("sums of more and of fewer values than lanes", W, narrow, half, wide) {
     using warpagg::policy;
     namespace reduce = warpagg::reduce;
     check_sums<1, policy<reduce::scatter>, W>();
     check_sums<9, policy<reduce::scatter>, W>();
     check_sums<16, policy<reduce::scatter>, W>();
-    check_sums<17, policy<reduce::scatter>, W>();
+    check_sums<static_cast<int>(W::size) + 1, policy<reduce::scatter>, W>();
     check_sums<9, policy<reduce::butterfly, warpagg::commit::contiguous>, W>();
     check_sums<9, policy<reduce::shfl_down>, W>();
 }
