@@ -68,6 +68,11 @@ instantiate(reduce_atomic/sums.hpp cuda full std::uint32_t)
 instantiate(reduce_atomic/sums.hpp cuda full std::int64_t "long long" std::uint64_t)
 instantiate(reduce_atomic/sums.hpp cuda full __half2 __nv_bfloat162)
 
+# Its kernels take scalars, so they do not compile on lanes.
+instantiate(scatter_rows/scatter_rows.hpp checked quick)
+instantiate(scatter_rows/scatter_rows.hpp serial quick)
+instantiate(scatter_rows/scatter_rows.hpp cuda quick)
+
 instantiate(segmented_sum/segmented_sum.hpp checked quick)
 instantiate(segmented_sum/segmented_sum.hpp lanes quick)
 instantiate(segmented_sum/segmented_sum.hpp narrow_lanes full)
