@@ -105,7 +105,7 @@ template <class T>
 struct largest_exponent {
     const T* values;     ///< `count` values
     std::size_t count;   ///< number of values
-    magnitudes* result;  ///< what is found
+    magnitudes* result;  ///< receives the result
 
     static constexpr unsigned values_per_lane = 16;  ///< in a tile
 

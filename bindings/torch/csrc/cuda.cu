@@ -14,7 +14,7 @@ namespace {
 
 constexpr unsigned threads = 256, warps_per_block = threads / 32;
 
-/// As `row_keys`, with an assertion.
+/// Works as `row_keys`, and asserts that every row is inside.
 struct asserted_keys : row_keys<std::int64_t> {
     template <class W>
     __device__ unsigned operator()(const W& w, std::size_t row, bool& inside) const {

@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// What the CPU and CUDA versions of the operations share.
+/// The arguments of the CPU and CUDA versions of the operations.
 
 #include <cstdint>
 
