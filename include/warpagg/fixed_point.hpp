@@ -22,7 +22,7 @@ struct magnitudes {
 /// for float, two for double.
 template <class T>
 struct fixed_point {
-    static constexpr int limbs = sizeof(T) / 4;
+    static constexpr int limbs = sizeof(T) / 4;  ///< integers per sum
 
     T scale = 1;   ///< units of the first limb per one, a power of two
     int bits = 0;  ///< bits of the second limb below a unit of the first
@@ -38,6 +38,7 @@ struct fixed_point {
     /// of its first limb is not below the smallest normal T, so a float's denormal values count as
     /// zero.
     /// @param exponent  largest biased exponent of the values, as `largest_exponent` finds it
+    /// @param bits_per_value  result of the function of this name
     static WARPAGG_HD fixed_point of(unsigned exponent, int bits_per_value) {
         // The values are below 2^(exponent + 1 - bias).
         const int wanted = bits_per_value - (static_cast<int>(exponent) + 1 - bias);
@@ -73,6 +74,7 @@ struct fixed_point {
         std::memcpy(&w, &x, sizeof w);
         return static_cast<unsigned>(w >> significand) & exponent_mask;
     }
+    /// Returns whether x is a number.
     static WARPAGG_HD bool is_finite(T x) { return exponent(x) != exponent_mask; }
 
   private:

@@ -17,8 +17,8 @@ namespace warpagg {
 /// left out.
 template <class Key>
 struct row_keys {
-    const Key* keys;
-    std::size_t records;
+    const Key* keys;      ///< one key per row
+    std::size_t records;  ///< number of records of the table
 
     /// Returns the key of a row, and clears `inside` if the row is left out. A row that is not
     /// inside is not read.
@@ -37,12 +37,15 @@ struct row_keys {
 /// starts.
 /// @{
 struct unchanged {
+    /// The conversion.
     struct convert {
+        /// Returns the value.
         template <class T>
         WARPAGG_HD T operator()(T x) const {
             return x;
         }
     };
+    /// Returns the conversion.
     template <warp W>
     WARPAGG_HD convert operator()(const W&) const {
         return {};
@@ -52,18 +55,22 @@ struct unchanged {
 /// `*largest`.
 template <class T>
 struct to_fixed_point {
-    const magnitudes* largest;
-    int bits_per_value;
-    int limb;
+    const magnitudes* largest;  ///< result of `largest_exponent`
+    int bits_per_value;         ///< see `fixed_point::bits_per_value`
+    int limb;                   ///< number of the limb
 
+    /// Describes limb `i` of sums of up to `n` values.
     WARPAGG_HD to_fixed_point(const magnitudes* all, std::uint64_t n, int i = 0)
         : largest(all), bits_per_value(fixed_point<T>::bits_per_value(n)), limb(i) {}
 
+    /// The conversion.
     struct convert {
-        fixed_point<T> format;
-        int limb;
+        fixed_point<T> format;  ///< the format that fits the values
+        int limb;               ///< number of the limb
+        /// Returns the limb of a value.
         WARPAGG_HD std::int64_t operator()(T x) const { return format.limb(x, limb); }
     };
+    /// Returns the conversion.
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD convert operator()(const W& w) const {
@@ -81,9 +88,9 @@ struct to_fixed_point {
 /// @tparam Op       operation that combines the values of a key
 template <class T, class Sum, class Keys, class Convert = unchanged, class Op = operation::sum>
 struct scatter_rows {
-    using value = T;
-    using sum = Sum;
-    using operation = Op;
+    using value = T;       ///< see above
+    using sum = Sum;       ///< see above
+    using operation = Op;  ///< see above
 
     const T* values;       ///< `n` rows of `width` values
     std::size_t n;         ///< number of rows
@@ -160,7 +167,7 @@ WARPAGG_HD void add_fours(const W& w, V* table, unsigned key, V (&v)[4], bool ac
 template <unsigned Each, class Rows>
 struct scatter_narrow_rows {
     static_assert(Each == 1 || Each == 4, "a lane takes one value or four");
-    Rows rows;
+    Rows rows;  ///< a `scatter_rows`
 
     /// Returns the number of tiles, one for each warp of `lanes` lanes.
     WARPAGG_HD unsigned tiles(unsigned lanes) const {
@@ -212,7 +219,7 @@ struct scatter_narrow_rows {
 /// @snippet scatter_rows.cpp scatter
 template <unsigned PerLane, class Rows>
 struct scatter_wide_rows {
-    Rows rows;
+    Rows rows;  ///< a `scatter_rows`
 
     /// Returns the number of tiles, one for each warp of `lanes` lanes.
     WARPAGG_HD unsigned tiles(unsigned lanes) const {
@@ -313,10 +320,10 @@ struct scatter_wide_rows {
 /// @snippet scatter_rows.cpp fixed point
 template <class Rows>
 struct add_fixed_point {
-    using value = typename Rows::value;
-    Rows rows;                 ///< the rows of the scatter; its table has the sums
-    std::size_t table_values;  ///< number of values of the table
-    value* table;              ///< the table to which sums are added
+    using value = typename Rows::value;  ///< float or double
+    Rows rows;                           ///< the rows of the scatter; its table has the sums
+    std::size_t table_values;            ///< number of values of the table
+    value* table;                        ///< the table to which sums are added
 
     /// Adds every `warps`-th tile, from `index` on. All lanes of the warp call this together. With
     /// two limbs, the sums of the second one follow those of the first.
