@@ -36,7 +36,7 @@ constexpr std::uint32_t lanes(unsigned first, unsigned last) {
 /// What a broken kernel must be told. The kernel notes `__LINE__` where it breaks the rule.
 struct expected {
     diagnosis what;
-    std::uint32_t lanes;
+    std::uint64_t lanes;
     const char* function;
     const unsigned* line;
     const unsigned* other_line =
@@ -59,20 +59,20 @@ inline void check_report(const report& r, const expected& e) {
     CHECK(r.sentence.back() == '.');
 }
 
-template <class Kernel>
+template <class Warp = checked, class Kernel>
 void is_diagnosed(const expected& e, grid g, const Kernel& kernel) {
     for_each_seed(schedules, [&](std::uint64_t seed) {
         g.seed = seed;
-        const report r = try_launch(g, kernel);
+        const report r = try_launch<Warp>(g, kernel);
         CHECK(r.seed == seed);
         check_report(r, e);
     });
 }
-template <class Kernel>
+template <class Warp = checked, class Kernel>
 void is_clean(grid g, const Kernel& kernel) {
     for_each_seed(schedules, [&](std::uint64_t seed) {
         g.seed = seed;
-        CHECK(try_launch(g, kernel).text() == "");
+        CHECK(try_launch<Warp>(g, kernel).text() == "");
     });
 }
 

@@ -153,7 +153,7 @@ report run(const cuda_grid& g, void (*thread)(const void* kernel), const void* k
     }
     const std::uint64_t seed = g.seed.value_or(seed_in_environment().value_or(1));
     thread_state::instance().begin_launch(g);
-    simulator m(static_cast<unsigned>(blocks), static_cast<unsigned>(threads), seed, nullptr);
+    simulator m(static_cast<unsigned>(blocks), static_cast<unsigned>(threads), checked::size, seed, nullptr);
     report r = m.run([&](simulator&) { thread(kernel); });
     r.at = locate(r.at);
     r.other = locate(r.other);

@@ -14,9 +14,9 @@
 
 #include "checked/diagnosis.hpp"  // `report`, the result of `try_launch`
 #include "checked/launch.hpp"     // `launch`, `try_launch`, `grid`
-#include "checked/model.hpp"      // `checked`
+#include "checked/model.hpp"      // `checked`, `wide_checked`
 #include "checked/seeds.hpp"      // `for_each_seed`
 #include "checked/watched.hpp"    // `watched`, arrays that are checked for races
 #include "concept.hpp"
 
-static_assert(warpagg::warp<warpagg::emulator::checked>);
+static_assert(warpagg::warp<warpagg::emulator::checked> && warpagg::warp<warpagg::emulator::wide_checked>);

@@ -2,41 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <span>
-#include <stdexcept>
-#include <warpagg/warp/checked.hpp>
-
-#include "host_memory.hpp"
+#include "checked_model.hpp"
 
 namespace {
 
 /// See lanes.hpp. A kernel that breaks a rule throws.
-struct backend {
-    using warp = warpagg::emulator::checked;
+struct backend : checked_backend<warpagg::emulator::checked> {
     static constexpr const char* name = "checked";
-    static constexpr bool commits_in_lane_order = false;
-    static constexpr unsigned every_nth_mask = 7;  // it takes its time
-    template <class T>
-    static constexpr bool packs() {
-        return false;
-    }
-
-    template <class T>
-    using memory = host_memory<T>;
-    template <class T>
-    using span = std::span<T>;
-
-    template <class T>
-    static T* shared(const warp& w, unsigned size) {
-        return w.shared<T>(size).data();
-    }
-    static void barrier(const warp& w) { w.barrier(); }
-
-    template <class F>
-    static void launch(const F& f) {
-        const auto report = warpagg::emulator::try_launch({}, f);
-        if (!report.ok()) throw std::runtime_error(report.text());
-    }
 };
 
 }  // namespace

@@ -53,7 +53,7 @@ struct report {
     diagnosis what = diagnosis::none;  ///< the violated rule
     call_site at{};                    ///< the call in the kernel that violated it
     call_site other{};                 ///< a second call that is involved; if none, `file` is null
-    std::uint32_t lanes = 0;           ///< bit i is set if lane i violated the rule
+    std::uint64_t lanes = 0;           ///< bit i is set if lane i violated the rule
     unsigned block = 0;                ///< index of the block of these lanes
     unsigned warp = 0;                 ///< index of their warp within the block
     std::string sentence;              ///< a description
@@ -68,13 +68,13 @@ struct report {
 namespace detail {
 
 /// Returns a text such as "lanes 0-3, 7".
-inline std::string lanes_text(std::uint32_t lanes) {
+inline std::string lanes_text(std::uint64_t lanes) {
     std::string list;
     unsigned count = 0;
-    for (unsigned lane = 0; lane < 32; ++lane) {
+    for (unsigned lane = 0; lane < 64; ++lane) {
         if (((lanes >> lane) & 1u) == 0) continue;
         unsigned last = lane;
-        while (last < 31 && ((lanes >> (last + 1)) & 1u) != 0) ++last;
+        while (last < 63 && ((lanes >> (last + 1)) & 1u) != 0) ++last;
         list += (list.empty() ? "" : ", ") + std::to_string(lane);
         if (last > lane) list += (last > lane + 1 ? "-" : ", ") + std::to_string(last);
         count += last - lane + 1;
@@ -84,7 +84,7 @@ inline std::string lanes_text(std::uint32_t lanes) {
 }
 
 /// Returns a text such as "Lanes 0-3, 7", for the start of a sentence.
-inline std::string lanes_sentence(std::uint32_t lanes) {
+inline std::string lanes_sentence(std::uint64_t lanes) {
     std::string text = lanes_text(lanes);
     text[0] = 'L';
     return text;
@@ -95,9 +95,9 @@ inline std::string site_text(const call_site& site) {
     return std::string(site.file) + ":" + std::to_string(site.line) + ", " + site.function;
 }
 
-inline std::string hex_text(std::uint32_t bits) {
-    char text[11];
-    std::snprintf(text, sizeof text, "0x%08x", bits);
+inline std::string hex_text(std::uint64_t bits) {
+    char text[19];
+    std::snprintf(text, sizeof text, "0x%08llx", static_cast<unsigned long long>(bits));
     return text;
 }
 

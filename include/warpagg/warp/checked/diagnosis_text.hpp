@@ -19,13 +19,13 @@ namespace warpagg::emulator::detail {
 struct violation {
     diagnosis what;
     call_site at, other;
-    std::uint32_t lanes;
+    std::uint64_t lanes;
     std::string sentence;
 };
 
 inline constexpr const char* does[] = {"reads", "writes", "updates atomically"};  // by access_kind
 
-inline violation not_in_mask(const lane_state& self, const arrival& a, std::uint32_t lane) {
+inline violation not_in_mask(const lane_state& self, const arrival& a, std::uint64_t lane) {
     return {diagnosis::lane_not_in_mask,
             self.kernel_site(a.at),
             {},
@@ -34,7 +34,7 @@ inline violation not_in_mask(const lane_state& self, const arrival& a, std::uint
                 ", which lacks its own bit."};
 }
 
-inline violation out_of_step(const call_site& at, std::uint32_t lanes, std::uint32_t others) {
+inline violation out_of_step(const call_site& at, std::uint64_t lanes, std::uint64_t others) {
     return {diagnosis::different_iterations,
             at,
             {},
@@ -46,16 +46,16 @@ inline violation out_of_step(const call_site& at, std::uint32_t lanes, std::uint
 /// Describes a warp in which no lane can continue and some lanes wait for others.
 inline violation stuck(const warp_state& w) {
     const lane_state& first = w.lane[first_of(w.waiting)];
-    std::uint32_t here = 0;
-    for_each_lane(w.waiting, [&](unsigned lane) { here |= first.meets(w.lane[lane]) ? 1u << lane : 0u; });
-    const std::uint32_t missing = (first.at.all_lanes ? first.at.mask : first.at.mask & ~w.returned) & ~here;
+    std::uint64_t here = 0;
+    for_each_lane(w.waiting, [&](unsigned lane) { here |= first.meets(w.lane[lane]) ? bit_of(lane) : 0u; });
+    const std::uint64_t missing = (first.at.all_lanes ? first.at.mask : first.at.mask & ~w.returned) & ~here;
     const call_site& at = first.site();
     const std::string waiting =
         lanes_sentence(here) + (std::popcount(here) == 1 ? " waits for " : " wait for ");
 
-    if (const std::uint32_t never = missing & ~w.waiting; never != 0) {
+    if (const std::uint64_t never = missing & ~w.waiting; never != 0) {
         std::string why;
-        const auto add = [&](std::uint32_t lanes, const char* what) {
+        const auto add = [&](std::uint64_t lanes, const char* what) {
             if (lanes != 0) why += (why.empty() ? "" : ", and ") + lanes_text(lanes) + what;
         };
         add(never & w.absent, " do not exist in this block");
@@ -82,7 +82,7 @@ inline violation stuck(const warp_state& w) {
                 " at another place."};
 }
 
-inline violation not_uniform(const call_site& at, std::uint32_t lanes, unsigned first) {
+inline violation not_uniform(const call_site& at, std::uint64_t lanes, unsigned first) {
     return {diagnosis::destination_not_uniform,
             at,
             {},
@@ -91,11 +91,11 @@ inline violation not_uniform(const call_site& at, std::uint32_t lanes, unsigned 
                 std::to_string(first) + ". A likely cause is a continue or an early return before the call."};
 }
 
-inline violation idle_warp(const call_site& at, std::uint32_t lanes) {
+inline violation idle_warp(const call_site& at, std::uint64_t lanes) {
     return {diagnosis::idle_warp, at, {}, lanes, "The policy says assume_busy, but no lane is active."};
 }
 
-inline violation barrier_not_reached(const call_site& at, std::uint32_t returned, unsigned in_barrier,
+inline violation barrier_not_reached(const call_site& at, std::uint64_t returned, unsigned in_barrier,
                                      unsigned threads) {
     return {diagnosis::barrier_not_reached,
             at,
@@ -106,7 +106,7 @@ inline violation barrier_not_reached(const call_site& at, std::uint32_t returned
                 " of this warp returned without it."};
 }
 
-inline violation another_barrier(const call_site& at, const call_site& other, std::uint32_t lanes) {
+inline violation another_barrier(const call_site& at, const call_site& other, std::uint64_t lanes) {
     return {diagnosis::different_call_sites, at, other, lanes,
             lanes_sentence(lanes) + " of this warp went to the barrier at another place."};
 }
@@ -117,7 +117,7 @@ inline violation out_of_bounds(const call_site& at, unsigned lane, access_kind k
     return {diagnosis::out_of_bounds,
             at,
             {},
-            1u << lane,
+            bit_of(lane),
             "Lane " + std::to_string(lane) + " " + does[static_cast<unsigned>(kind)] + " " +
                 std::to_string(size) + " bytes " + where + "."};
 }
@@ -127,21 +127,21 @@ inline violation bad_index(const call_site& at, unsigned lane, const std::string
         diagnosis::out_of_bounds,
         at,
         {},
-        1u << lane,
+        bit_of(lane),
         "Lane " + std::to_string(lane) + " uses the index " + index + " of an array of type " + array + "."};
 }
 inline violation uninitialized_read(const call_site& at, unsigned lane, bool shared) {
     return {diagnosis::uninitialized_read,
             at,
             {},
-            1u << lane,
+            bit_of(lane),
             "Lane " + std::to_string(lane) + " reads " +
                 (shared ? "shared memory that no thread of its block has written."
                         : "an element of an array that nothing has written.")};
 }
 
-inline violation conflict(const access& before, const access& now) {
-    constexpr unsigned width = warp_state::size;
+/// Describes two accesses by threads of a block with warps of `width` lanes.
+inline violation conflict(const access& before, const access& now, unsigned width) {
     constexpr const char* did[] = {"read", "wrote", "updated atomically"};
     const bool mixed = (before.kind == access_kind::atomic) != (now.kind == access_kind::atomic);
     const bool same_warp = before.block == now.block && before.thread / width == now.thread / width;
@@ -149,17 +149,16 @@ inline violation conflict(const access& before, const access& now) {
     if (!same_warp) other += " of warp " + std::to_string(before.thread / width);
     if (before.block != now.block) other += " of block " + std::to_string(before.block);
     return {mixed ? diagnosis::mixed_access : diagnosis::data_race, now.at, before.at,
-            1u << now.thread % width | (same_warp ? 1u << before.thread % width : 0u),
+            bit_of(now.thread % width) | (same_warp ? bit_of(before.thread % width) : 0u),
             "Lane " + std::to_string(now.thread % width) + " " + does[static_cast<unsigned>(now.kind)] +
                 " what " + other + " " + did[static_cast<unsigned>(before.kind)] +
                 (before.block == now.block ? ", with no barrier or sync between."
                                            : ", and nothing orders blocks of one launch.")};
 }
 
-/// Describes a write at `at` that depends on the undefined value of `read`.
-inline violation inactive_lane_read(const undefined_read& read, const call_site& at) {
-    const unsigned lane = read.thread % warp_state::size;
-    return {diagnosis::inactive_lane_read, at, read.at, 1u << lane,
+/// Describes a write at `at` that depends on the undefined value that `lane` got by `read`.
+inline violation inactive_lane_read(const undefined_read& read, unsigned lane, const call_site& at) {
+    return {diagnosis::inactive_lane_read, at, read.at, bit_of(lane),
             "What is written depends on what lane " + std::to_string(lane) + " read from lane " +
                 std::to_string(read.from) + ", which took no part."};
 }

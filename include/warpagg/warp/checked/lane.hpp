@@ -15,20 +15,21 @@ namespace warpagg::emulator::detail {
 
 class simulator;
 
-inline unsigned first_of(std::uint32_t lanes) { return static_cast<unsigned>(std::countr_zero(lanes)); }
+inline std::uint64_t bit_of(unsigned lane) { return std::uint64_t{1} << lane; }
+inline unsigned first_of(std::uint64_t lanes) { return static_cast<unsigned>(std::countr_zero(lanes)); }
 template <class F>
-void for_each_lane(std::uint32_t lanes, F f) {
+void for_each_lane(std::uint64_t lanes, F f) {
     for (; lanes != 0; lanes &= lanes - 1) f(first_of(lanes));
 }
 
 /// The call with which a lane waits at a collective.
 struct arrival {
-    std::uint32_t mask;   ///< the lanes that meet
+    std::uint64_t mask;   ///< the lanes that meet
     bool all_lanes;       ///< whether it is an error if a lane of the mask has returned
     unsigned value_size;  ///< size of the value type in bytes
     call_site at;         ///< the call, which may be in the library
     void* operands;       ///< the operands of this lane, of a type that `complete` knows
-    void (*complete)(simulator&, unsigned warp, std::uint32_t lanes);  ///< null for activemask
+    void (*complete)(simulator&, unsigned warp, std::uint64_t lanes);  ///< null for activemask
 };
 
 struct loop_frame {
@@ -62,25 +63,27 @@ struct lane_state {
 };
 
 struct warp_state {
-    static constexpr unsigned size = 32;
+    static constexpr unsigned size = 64;  ///< room for this many lanes
 
     std::array<lane_state, size> lane;
-    std::uint32_t waiting = 0;   ///< lanes that wait at a collective or in activemask
-    std::uint32_t returned = 0;  ///< lanes that have returned from the kernel, or that the block lacks
-    std::uint32_t absent = 0;    ///< lanes that the block lacks, because its size is no multiple of 32
-    std::uint32_t in_barrier = 0;
+    std::uint64_t waiting = 0;   ///< lanes that wait at a collective or in activemask
+    std::uint64_t returned = 0;  ///< lanes that have returned from the kernel, or that do not exist
+    std::uint64_t absent = 0;    ///< lanes that do not exist
+    std::uint64_t in_barrier = 0;
 
     /// Vector clocks: known[a][b] is the number of synchronizations of lane b that lane a has seen.
     std::array<std::array<std::uint32_t, size>, size> known{};
 
-    warp_state() {
+    /// Makes a warp in which the first `lanes` lanes exist.
+    explicit warp_state(unsigned lanes) {
+        if (lanes < size) absent = returned = ~std::uint64_t{0} << lanes;
         for (unsigned a = 0; a < size; ++a) known[a][a] = 1;
     }
 
-    bool stands() const { return (waiting | returned | in_barrier) == ~std::uint32_t{0}; }
+    bool stands() const { return (waiting | returned | in_barrier) == ~std::uint64_t{0}; }
 
     /// Orders all earlier accesses of these lanes before all later accesses of these lanes.
-    void synchronize(std::uint32_t lanes) {
+    void synchronize(std::uint64_t lanes) {
         std::array<std::uint32_t, size> all{};
         for_each_lane(lanes, [&](unsigned a) {
             for (unsigned b = 0; b < size; ++b) all[b] = std::max(all[b], known[a][b]);

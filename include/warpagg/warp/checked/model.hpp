@@ -7,6 +7,7 @@
 
 #include "../../core/atomic_memory.hpp"
 #include "../../core/operation.hpp"
+#include "../concept.hpp"
 #include "simulator.hpp"
 #include "watched.hpp"
 
@@ -18,7 +19,7 @@ struct cuda_collectives;
 
 /// The checked model of `warp`, as one lane sees it. Each lane is a fiber that runs the kernel by
 /// itself. Kernels are therefore ordinary scalar code (`if`, loops, early returns), and
-/// `value_t<checked, T>` is `T`. The model diagnoses violations of the rules. `try_launch` creates
+/// its value type is `T` itself. The model diagnoses violations of the rules. `try_launch` creates
 /// the lanes; docs/tutorials/first_unit_test.md shows how to use it.
 ///
 /// All lanes must call the collectives of the concept, `sync()` and `barrier()`; it is an error if
@@ -26,17 +27,19 @@ struct cuda_collectives;
 /// lanes of the mask that have not returned must call them. A single lane may call `load`, `store`
 /// and their variants, also in branches. As on CUDA, only `sync` and `barrier` order memory
 /// accesses. The last parameter of each operation is the call site; leave it at its default.
-class checked {
+template <unsigned Size>
+class basic_checked {
   public:
     /// The member of this name of the concept `warp`.
     /// @{
-    static constexpr unsigned size = 32;
+    static constexpr unsigned size = Size;
     template <class T>
     using value = T;
+    using lane_bits = lane_bits_t<basic_checked>;
     /// @}
 
     /// Creates the model for the running lane. `try_launch` calls this.
-    explicit checked(detail::simulator& m) : simulator_(&m) {}
+    explicit basic_checked(detail::simulator& m) : simulator_(&m) {}
 
     unsigned lane() const { return simulator_->lane(); }            ///< Number of the lane in its warp
     unsigned thread_index() const { return simulator_->thread(); }  ///< Index of the thread in its block
@@ -48,12 +51,12 @@ class checked {
 
     /// The collective of this name of the concept `warp`.
     /// @{
-    std::uint32_t ballot(bool p, call_site at = call_site::here("ballot")) const {
+    lane_bits ballot(bool p, call_site at = call_site::here("ballot")) const {
         return vote(all_lanes, p, at);
     }
     bool any(bool p, call_site at = call_site::here("any")) const { return vote(all_lanes, p, at) != 0; }
     template <class Key>
-    std::uint32_t match(Key key, call_site at = call_site::here("match")) const {
+    lane_bits match(Key key, call_site at = call_site::here("match")) const {
         return equal(all_lanes, key, at);
     }
 
@@ -79,7 +82,7 @@ class checked {
                                     call_site at = call_site::here("atomic")) const {
         T* const to = active ? dst(index) : nullptr;
         commit mine{to};
-        meet<T>(all_lanes, at, mine, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
+        meet<T>(all_lanes, at, mine, [](detail::simulator& m, unsigned warp, std::uint64_t lanes) {
             if (counters* c = m.count()) count_commit(*c, {m, warp, lanes});
         });
         if (to == nullptr) return;
@@ -97,45 +100,43 @@ class checked {
     /// Works as the CUDA function of this name with two leading underscores. All lanes of the mask that
     /// have not returned call this with the same mask.
     /// @{
-    std::uint32_t ballot_sync(std::uint32_t mask, bool p,
-                              call_site at = call_site::here("ballot_sync")) const {
+    lane_bits ballot_sync(lane_bits mask, bool p, call_site at = call_site::here("ballot_sync")) const {
         return vote({mask}, p, at);
     }
-    bool any_sync(std::uint32_t mask, bool p, call_site at = call_site::here("any_sync")) const {
+    bool any_sync(lane_bits mask, bool p, call_site at = call_site::here("any_sync")) const {
         return vote({mask}, p, at) != 0;
     }
     template <class T>
-    std::uint32_t match_any_sync(std::uint32_t mask, T key,
-                                 call_site at = call_site::here("match_any_sync")) const {
+    lane_bits match_any_sync(lane_bits mask, T key, call_site at = call_site::here("match_any_sync")) const {
         return equal({mask}, key, at);
     }
     /// Works as the CUDA function of this name. A value from a lane that is not in the mask, or has
     /// returned, is undefined; memory must not depend on it.
     template <class T>
-    T shfl_sync(std::uint32_t mask, T v, unsigned from, call_site at = call_site::here("shfl_sync")) const {
+    T shfl_sync(lane_bits mask, T v, unsigned from, call_site at = call_site::here("shfl_sync")) const {
         return exchange({mask}, v, from % size, at);
     }
     template <class T>
-    T shfl_down_sync(std::uint32_t mask, T v, unsigned distance,
+    T shfl_down_sync(lane_bits mask, T v, unsigned distance,
                      call_site at = call_site::here("shfl_down_sync")) const {
         return exchange({mask}, v, down(distance), at);
     }
     template <class T>
-    T shfl_xor_sync(std::uint32_t mask, T v, unsigned distance,
+    T shfl_xor_sync(lane_bits mask, T v, unsigned distance,
                     call_site at = call_site::here("shfl_xor_sync")) const {
         return exchange({mask}, v, (lane() ^ distance) % size, at);
     }
     /// @}
     /// Works as `__syncwarp(mask)`.
-    void sync(std::uint32_t mask, call_site at = call_site::here("sync")) const { synchronize({mask}, at); }
+    void sync(lane_bits mask, call_site at = call_site::here("sync")) const { synchronize({mask}, at); }
 
     /// Works as `__activemask()`: returns some of the lanes that wait at this line, with the caller
     /// among them. All lanes in the result get the same result. The seed decides which lanes these
     /// are, because a compiler may split lanes in any way.
-    std::uint32_t activemask(call_site at = call_site::here("activemask")) const {
-        std::uint32_t mask = 0;
-        simulator_->meet({~std::uint32_t{0}, false, 0, at, &mask, nullptr});
-        return mask;
+    lane_bits activemask(call_site at = call_site::here("activemask")) const {
+        std::uint64_t mask = 0;
+        simulator_->meet({all_lanes.mask, false, 0, at, &mask, nullptr});
+        return static_cast<lane_bits>(mask);
     }
 
     // ------------------------------------------------------- for a single lane
@@ -193,7 +194,7 @@ class checked {
 
     void observe(bool active, call_site at = call_site::here("observe")) const {
         if (simulator_->count() == nullptr) return;
-        meet<bool>(all_lanes, at, active, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
+        meet<bool>(all_lanes, at, active, [](detail::simulator& m, unsigned warp, std::uint64_t lanes) {
             unsigned busy = 0;
             group<bool>{m, warp, lanes}.each(
                 [&](unsigned, bool active_there) { busy += active_there ? 1u : 0u; });
@@ -201,18 +202,20 @@ class checked {
         });
     }
     void require_uniform(const void* destination, call_site at = call_site::here("require_uniform")) const {
-        meet<void*>(all_lanes, at, destination, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
+        meet<void*>(all_lanes, at, destination, [](detail::simulator& m, unsigned warp, std::uint64_t lanes) {
             const group<const void*> g{m, warp, lanes};
             const unsigned first = detail::first_of(lanes);
-            std::uint32_t other = 0;
-            g.each([&](unsigned lane, const void* there) { other |= there != g[first] ? 1u << lane : 0u; });
+            std::uint64_t other = 0;
+            g.each([&](unsigned lane, const void* there) {
+                if (there != g[first]) other |= detail::bit_of(lane);
+            });
             if (other == 0) return;
             m.diagnose(warp,
                        [&] { return detail::not_uniform(m.warp(warp).lane[first].site(), other, first); });
         });
     }
     void require_busy(bool busy, call_site at = call_site::here("require_busy")) const {
-        meet<bool>(all_lanes, at, busy, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
+        meet<bool>(all_lanes, at, busy, [](detail::simulator& m, unsigned warp, std::uint64_t lanes) {
             bool some = false;
             group<bool>{m, warp, lanes}.each([&](unsigned, bool there) { some = some || there; });
             if (!some) m.diagnose(warp, [&] { return detail::idle_warp(m.self().site(), lanes); });
@@ -228,17 +231,17 @@ class checked {
     friend struct detail::cuda_collectives;
 
     struct who {
-        std::uint32_t mask;
+        lane_bits mask;
         bool all_lanes = false;
     };
-    static constexpr who all_lanes{~std::uint32_t{0}, true};
+    static constexpr who all_lanes{~lane_bits{0}, true};
 
     /// The operands of the lanes that have met.
     template <class Operands>
     struct group {
         detail::simulator& m;
         unsigned warp;
-        std::uint32_t lanes;
+        std::uint64_t lanes;
         Operands& operator[](unsigned lane) const {
             return *static_cast<Operands*>(m.warp(warp).lane[lane].at.operands);
         }
@@ -257,15 +260,15 @@ class checked {
 
     struct ballot_part {
         bool p;
-        std::uint32_t bits = 0;
+        lane_bits bits = 0;
     };
-    WARPAGG_OUT_OF_LINE std::uint32_t vote(who w, bool p, const call_site& at) const {
+    WARPAGG_OUT_OF_LINE lane_bits vote(who w, bool p, const call_site& at) const {
         ballot_part mine{p};
-        meet<bool>(w, at, mine, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
+        meet<bool>(w, at, mine, [](detail::simulator& m, unsigned warp, std::uint64_t lanes) {
             if (counters* c = m.count()) ++c->votes;  // mutate: votes_not_counted
             const group<ballot_part> g{m, warp, lanes};
-            std::uint32_t bits = 0;
-            g.each([&](unsigned lane, ballot_part& part) { bits |= part.p ? 1u << lane : 0u; });
+            lane_bits bits = 0;
+            g.each([&](unsigned lane, ballot_part& part) { bits |= lane_bits{part.p} << lane; });
             g.each([&](unsigned, ballot_part& part) { part.bits = bits; });
         });
         return mine.bits;
@@ -274,17 +277,17 @@ class checked {
     template <class T>
     struct match_part {
         T key;
-        std::uint32_t lanes = 0;
+        lane_bits lanes = 0;
     };
     template <class T>
-    std::uint32_t equal(who w, T key, const call_site& at) const {
+    lane_bits equal(who w, T key, const call_site& at) const {
         match_part<T> mine{key};
-        meet<T>(w, at, mine, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
+        meet<T>(w, at, mine, [](detail::simulator& m, unsigned warp, std::uint64_t lanes) {
             if (counters* c = m.count()) ++c->votes;
             const group<match_part<T>> g{m, warp, lanes};
             g.each([&](unsigned, match_part<T>& part) {
                 g.each([&](unsigned lane, const match_part<T>& other) {
-                    part.lanes |= part.key == other.key ? 1u << lane : 0u;
+                    part.lanes |= lane_bits{part.key == other.key} << lane;
                 });
             });
         });
@@ -301,7 +304,7 @@ class checked {
     template <class T>
     WARPAGG_OUT_OF_LINE T exchange(who w, T v, unsigned from, const call_site& at) const {
         shuffle_part<T> mine{v, from, v};
-        meet<T>(w, at, mine, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
+        meet<T>(w, at, mine, [](detail::simulator& m, unsigned warp, std::uint64_t lanes) {
             if (counters* c = m.count()) c->shuffles += (sizeof(T) + 3) / 4;
             const group<shuffle_part<T>> g{m, warp, lanes};
             g.each([&](unsigned lane, shuffle_part<T>& part) {
@@ -314,7 +317,7 @@ class checked {
 
     void synchronize(who w, const call_site& at) const {
         bool nothing = false;
-        meet<bool>(w, at, nothing, [](detail::simulator& m, unsigned warp, std::uint32_t lanes) {
+        meet<bool>(w, at, nothing, [](detail::simulator& m, unsigned warp, std::uint64_t lanes) {
             m.warp(warp).synchronize(lanes);
         });
     }
@@ -350,5 +353,10 @@ class checked {
 
     detail::simulator* simulator_;
 };
+
+/// The checked model with 32 lanes, as on NVIDIA's GPUs.
+using checked = basic_checked<32>;
+/// The checked model with 64 lanes, as on AMD's GPUs for data centers.
+using wide_checked = basic_checked<64>;
 
 }  // namespace warpagg::emulator

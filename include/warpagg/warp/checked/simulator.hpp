@@ -28,9 +28,15 @@ namespace warpagg::emulator::detail {
 /// memory accesses.
 class simulator {
   public:
-    simulator(unsigned blocks, unsigned threads, std::uint64_t seed, counters* count)
+    /// Simulates blocks of `threads` threads each, in warps of `width` lanes.
+    simulator(unsigned blocks, unsigned threads, unsigned width, std::uint64_t seed, counters* count)
         // mutate: seed_ignored
-        : blocks_(blocks), threads_(threads), count_(count), random_(seed), scheduler_(random_) {
+        : blocks_(blocks),
+          threads_(threads),
+          width_(width),
+          count_(count),
+          random_(seed),
+          scheduler_(random_) {
         report_.seed = seed;
     }
     simulator(const simulator&) = delete;
@@ -73,8 +79,8 @@ class simulator {
     unsigned threads() const { return threads_; }
     unsigned block() const { return block_; }
     unsigned thread() const { return scheduler_.current(); }
-    unsigned lane() const { return thread() % warp_state::size; }
-    unsigned warp_number() const { return thread() / warp_state::size; }
+    unsigned lane() const { return thread() % width_; }
+    unsigned warp_number() const { return thread() / width_; }
     warp_state& warp() { return warps_[warp_number()]; }
     lane_state& self() { return warp().lane[lane()]; }
     warp_state& warp(unsigned number) { return warps_[number]; }
@@ -87,7 +93,7 @@ class simulator {
 
     /// Waits for the other lanes of the mask. The last lane to arrive calls `complete` for all lanes.
     WARPAGG_OUT_OF_LINE void meet(const arrival& a) {
-        const std::uint32_t bit = 1u << lane();
+        const std::uint64_t bit = bit_of(lane());
         // mutate: own_bit_not_asked_for
         if ((a.mask & bit) == 0) diagnose([&] { return not_in_mask(self(), a, bit); });
         self().at = a;
@@ -99,7 +105,7 @@ class simulator {
 
     void barrier(const call_site& at) {
         self().at.at = at;
-        warp().in_barrier |= 1u << lane();
+        warp().in_barrier |= bit_of(lane());
         ++in_barrier_;
         settle(warp_number());
         check_barrier();
@@ -112,7 +118,7 @@ class simulator {
     T undefined(unsigned number, unsigned lane, unsigned from) {
         if (shadow_process_ == nullptr && start_shadow_process != nullptr)
             shadow_process_ = start_shadow_process();
-        const unsigned thread = number * warp_state::size + lane;
+        const unsigned thread = number * width_ + lane;
         const undefined_read read{warps_[number].lane[lane].site(), block_, thread, from};
         // mutate: shadow_process_reads_the_same_values
         return undefined_.make<T>(read, random_, is_shadow());
@@ -137,7 +143,7 @@ class simulator {
         const access now{block_, thread(), phase_, warp().known[lane()][lane()], kind, 0, at};
         const access* before =
             shadow_.note(address, size, now, [this](const access& a) { return ordered(a); });
-        if (before != nullptr) diagnose([&] { return conflict(*before, now); });
+        if (before != nullptr) diagnose([&] { return conflict(*before, now, width_); });
     }
     /// Diagnoses conflicts and undefined values. Call it before a write of `value`, or before an atomic
     /// with the operand `value`.
@@ -152,7 +158,8 @@ class simulator {
     void find_undefined(const void* address, const T& value, const call_site& here) {
         const call_site& at = self().kernel_site(here);
         if (const undefined_read* read = undefined_.origin(value))
-            diagnose(read->thread / warp_state::size, [&] { return inactive_lane_read(*read, at); });
+            diagnose(read->thread / width_,
+                     [&] { return inactive_lane_read(*read, read->thread % width_, at); });
         if (shadow_process_ != nullptr)
             shadow_process_->note({at, block_, thread(), undefined_.count()}, address, &value, sizeof(T));
     }
@@ -176,10 +183,9 @@ class simulator {
         phase_ = 0;
         in_barrier_ = 0;
         returned_ = 0;
-        warps_.assign((threads_ + warp_state::size - 1) / warp_state::size, warp_state{});
-        if (const unsigned rest = threads_ % warp_state::size; rest != 0)
-            // mutate: absent_lanes_not_known
-            warps_.back().absent = warps_.back().returned = ~std::uint32_t{0} << rest;
+        warps_.assign((threads_ + width_ - 1) / width_, warp_state(width_));
+        if (const unsigned rest = threads_ % width_; rest != 0)
+            warps_.back() = warp_state(rest);  // mutate: absent_lanes_not_known
         shared_.begin_block([this](const void* first, std::size_t size) { shadow_.forget(first, size); });
         scheduler_.run(threads_, run_threads);
     }
@@ -209,7 +215,7 @@ class simulator {
 
     void lane_returns() {
         const unsigned number = warp_number();
-        warp().returned |= 1u << lane();
+        warp().returned |= bit_of(lane());
         ++returned_;
         // A mask may name lanes that have returned, so this return may complete a collective.
         for_each_lane(warp().waiting, [&](unsigned other) {
@@ -223,14 +229,14 @@ class simulator {
         warp_state& w = warps_[number];
         const lane_state& first = w.lane[leader];
         if (first.at.complete == nullptr) return false;
-        const std::uint32_t lanes = first.at.all_lanes ? first.at.mask : first.at.mask & ~w.returned;
+        const std::uint64_t lanes = first.at.all_lanes ? first.at.mask : first.at.mask & ~w.returned;
         if ((w.waiting & lanes) != lanes) return false;
         bool all_meet = true;
-        std::uint32_t apart = 0;
+        std::uint64_t apart = 0;
         for_each_lane(lanes, [&](unsigned lane) {
             all_meet = all_meet && first.meets(w.lane[lane]);
             // mutate: iterations_not_compared
-            if (w.lane[lane].out_of_step(w.lane[first_of(lanes)])) apart |= 1u << lane;
+            if (w.lane[lane].out_of_step(w.lane[first_of(lanes)])) apart |= bit_of(lane);
         });
         if (!all_meet) return false;
         if (apart != 0) diagnose(number, [&] { return out_of_step(first.site(), apart, lanes & ~apart); });
@@ -239,11 +245,11 @@ class simulator {
         return true;
     }
 
-    void release(unsigned number, std::uint32_t lanes) {
+    void release(unsigned number, std::uint64_t lanes) {
         warps_[number].waiting &= ~lanes;
         for_each_lane(lanes, [&](unsigned lane) {
             warps_[number].lane[lane].waiting = false;
-            scheduler_.wake(number * warp_state::size + lane);
+            scheduler_.wake(number * width_ + lane);
         });
     }
 
@@ -251,16 +257,16 @@ class simulator {
     void settle(unsigned number) {
         warp_state& w = warps_[number];
         if (!w.stands() || w.waiting == 0) return;
-        std::uint32_t asking = 0;
+        std::uint64_t asking = 0;
         for_each_lane(w.waiting, [&](unsigned lane) {
-            if (w.lane[lane].at.complete == nullptr) asking |= 1u << lane;
+            if (w.lane[lane].at.complete == nullptr) asking |= bit_of(lane);
         });
         if (asking == 0) diagnose(number, [&] { return stuck(w); });
         while (asking != 0) {
             const lane_state& first = w.lane[first_of(asking)];
-            std::uint32_t together = 0;
+            std::uint64_t together = 0;
             for_each_lane(asking, [&](unsigned lane) {
-                if (first.meets(w.lane[lane]) && !first.out_of_step(w.lane[lane])) together |= 1u << lane;
+                if (first.meets(w.lane[lane]) && !first.out_of_step(w.lane[lane])) together |= bit_of(lane);
             });
             partition(w, together);
             asking &= ~together;
@@ -270,12 +276,13 @@ class simulator {
 
     /// Splits these lanes into random groups and returns each lane's group from `activemask`, because a
     /// compiler may split a divergent warp in any way.
-    void partition(warp_state& w, std::uint32_t lanes) {
+    void partition(warp_state& w, std::uint64_t lanes) {
         const std::uint32_t parts = 1 + random_.below(3);  // mutate: activemask_names_all
-        std::uint32_t part[3] = {}, of[warp_state::size] = {};
-        for_each_lane(lanes, [&](unsigned lane) { part[of[lane] = random_.below(parts)] |= 1u << lane; });
+        std::uint64_t part[3] = {};
+        std::uint32_t of[warp_state::size] = {};
+        for_each_lane(lanes, [&](unsigned lane) { part[of[lane] = random_.below(parts)] |= bit_of(lane); });
         for_each_lane(lanes, [&](unsigned lane) {
-            *static_cast<std::uint32_t*>(w.lane[lane].at.operands) = part[of[lane]];
+            *static_cast<std::uint64_t*>(w.lane[lane].at.operands) = part[of[lane]];
         });
     }
 
@@ -289,12 +296,12 @@ class simulator {
         for (unsigned number = 0; number < warps_.size(); ++number) {
             const warp_state& w = warps_[number];
             // mutate: barrier_waits_for_absent_lanes
-            if (const std::uint32_t returned = w.returned & ~w.absent; returned != 0)
+            if (const std::uint64_t returned = w.returned & ~w.absent; returned != 0)
                 diagnose(number, [&] { return barrier_not_reached(*at, returned, in_barrier_, threads_); });
-            std::uint32_t elsewhere = 0;
+            std::uint64_t elsewhere = 0;
             for_each_lane(w.in_barrier, [&](unsigned lane) {
                 // mutate: barriers_not_compared
-                if (!same(w.lane[lane].site(), *at)) elsewhere |= 1u << lane;
+                if (!same(w.lane[lane].site(), *at)) elsewhere |= bit_of(lane);
             });
             if (elsewhere != 0)
                 diagnose(number,
@@ -310,8 +317,7 @@ class simulator {
     bool ordered(const access& a) {
         if (a.block != block_) return false;
         if (a.thread == thread() || a.phase < phase_) return true;
-        return a.thread / warp_state::size == warp_number() &&
-               warp().known[lane()][a.thread % warp_state::size] >= a.clock;
+        return a.thread / width_ == warp_number() && warp().known[lane()][a.thread % width_] >= a.clock;
     }
 
     bool is_shadow() const { return shadow_process_ != nullptr && shadow_process_->is_child(); }
@@ -323,8 +329,8 @@ class simulator {
             write != nullptr ? undefined_.last_of(write->reads_before, write->block, write->thread)
                              : undefined_.last();
         block_ = read.block;
-        note(read.thread / warp_state::size,
-             inactive_lane_read(read, write != nullptr ? write->at : read.at));
+        note(read.thread / width_,
+             inactive_lane_read(read, read.thread % width_, write != nullptr ? write->at : read.at));
     }
     void note(unsigned number, violation v) {
         report_.what = v.what;
@@ -336,7 +342,7 @@ class simulator {
         report_.warp = number;
     }
 
-    unsigned blocks_, threads_;
+    unsigned blocks_, threads_, width_;
     counters* count_;
     random_source random_;
     scheduler scheduler_;
