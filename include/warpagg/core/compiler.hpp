@@ -15,6 +15,9 @@
 /// Allows a host-device template to call a device-only member. Host code must not instantiate the
 /// template with such a member.
 #define WARPAGG_EXEC_CHECK_DISABLE _Pragma("nv_exec_check_disable")
+#elif defined(__HIPCC__)
+#define WARPAGG_HD __host__ __device__ __forceinline__
+#define WARPAGG_EXEC_CHECK_DISABLE
 #elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 // Not always inlined, because GCC would take minutes to instrument the inlined code.
 #define WARPAGG_HD inline
