@@ -4,6 +4,7 @@
 
 #include <vector>
 #include <warpagg/atomic.hpp>
+#include <warpagg/warp/checked.hpp>
 #include <warpagg/warp/serial.hpp>
 #include <warpagg/warp/simd.hpp>
 
@@ -35,4 +36,14 @@ TEST_CASE("One kernel on every warp") {
     CHECK(on_lanes[1] == 3);
     CHECK(on_serial[0] == 3);
     CHECK(on_serial[1] == 3);
+    //! [launch on the checked model]
+    float on_checked[2] = {};
+    warpagg::emulator::launch({.blocks = 2, .threads = 64}, [&](const warpagg::emulator::checked& w) {
+        const unsigned first = w.block_index() * w.block_size() + w.thread_index() - w.lane();
+        sum_and_count(w, numbers.data(), 5, first, on_checked);
+    });
+    // 3, 3
+    //! [launch on the checked model]
+    CHECK(on_checked[0] == 3);
+    CHECK(on_checked[1] == 3);
 }

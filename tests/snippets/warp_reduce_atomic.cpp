@@ -51,11 +51,12 @@ TEST_CASE("warp_reduce_atomic with a policy") {
     //! [policy]
     using namespace warpagg;
     warp_reduce_atomic(w, record, values, x < 10.0f, policy{shfl_down, scalar});
-    // 45 shuffles, 9 atomics, one vote: the method of the paper
+    // 45 shuffles, 9 atomics in 9 commits, one vote: the method of the paper
     //! [policy]
     CHECK(record[8] == 45);
     CHECK(did.shuffles == 45);
     CHECK(did.atomics == 9);
+    CHECK(did.commits == 9);
     CHECK(did.votes == 1);
 }
 
