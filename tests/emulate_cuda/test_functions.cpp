@@ -116,6 +116,12 @@ __global__ void reduce_by_warp(float* sum) {
     const float one[1] = {1};
     warpagg::warp_reduce_atomic(warpagg::cuda_warp{}, sum, one, threadIdx.x % 2 == 0);
 }
+__global__ void reduce_by_wide_key(float* sums) {
+    const std::uint64_t far = std::uint64_t{1} << 32, key = threadIdx.x % 2 * far;
+    const float one[1] = {1};
+    const auto base = [sums](std::uint64_t k, unsigned) { return sums + (k >= far ? 1 : 0); };
+    warpagg::warp_match_reduce_atomic(warpagg::cuda_warp{}, base, key, one, threadIdx.x < 30);
+}
 __global__ void skip_and_reduce(float* sums) {
     const float one[1] = {1};
     for (int i = 0; i < 2; ++i) {
@@ -245,6 +251,13 @@ TEST_CASE("blocks of any size") {
     CHECK(r.what == diagnosis::collective_not_reached);
     CHECK(r.sentence ==
           "Lanes 0-7 wait for lanes 8-31 in warp_reduce_atomic, but lanes 8-31 do not exist in this block.");
+}
+
+TEST_CASE("keys of 64 bits that differ in their upper halves only") {
+    device_array<float> sums{0, 0};
+    CHECK(try_launch(reduce_by_wide_key, {}, sums).text() == "");
+    CHECK(sums[0] == 15);
+    CHECK(sums[1] == 15);
 }
 
 TEST_CASE("the destination after a continue") {

@@ -28,7 +28,8 @@ class cuda_warp {
     bool any(bool p, call_site at = call_site::here("any")) const {
         return emulator::detail::runtime::vote({}, p, at) != 0;
     }
-    std::uint32_t match(unsigned key, call_site at = call_site::here("match")) const {
+    template <class Key>
+    std::uint32_t match(Key key, call_site at = call_site::here("match")) const {
         return emulator::detail::runtime::match({}, key, at);
     }
     template <class T>
@@ -78,9 +79,8 @@ class cuda_warp {
         if (active) emulator::detail::runtime::write(to + first + lane(), v, at);
     }
     void sync(call_site at = call_site::here("sync")) const { emulator::detail::runtime::sync({}, at); }
-    template <class Op, class Dst, class T>
-    void atomic(Op, Dst dst, unsigned index, T v, bool active,
-                call_site at = call_site::here("atomic")) const {
+    template <class Op, class Dst, class Index, class T>
+    void atomic(Op, Dst dst, Index index, T v, bool active, call_site at = call_site::here("atomic")) const {
         emulator::detail::runtime::vote({}, active, at);
         if (active)
             emulator::detail::runtime::update(
