@@ -42,7 +42,7 @@ bool counts() {
     const warpagg::lanes<float, 32> values[2] = {x, x * x};
     float memory[2] = {};
     warpagg::warp_reduce_atomic(w, memory, values, x < 10.0f);
-    return memory[0] == 45 && memory[1] == 285 && did.atomics == 2 && did.commits == 1 && did.votes == 1;
+    return memory[0] == 45 && memory[1] == 285 && did.atomics == 2 && did.commits == 1 && did.votes == 2;
 }
 
 bool adds_components() {
