@@ -65,6 +65,13 @@ __global__ void interpolate_at_run_time(float* gradients, int count) {
     add_to_vertices(gradients, t.vertex, t.weight, t.dy, count, t.covered);
 }
 
+__global__ void add_to_all_arrays(float* colors, float2* centers, float* radii) {
+    const unsigned pixel = blockIdx.x * blockDim.x + threadIdx.x;
+    const auto x = static_cast<float>(pixel);
+    const float color[3] = {x, x + 1, x + 2}, center[2] = {x + 3, x + 4};
+    add_to_arrays(colors, centers, radii, pixel * 7 % vertices, color, center, x + 5, pixel % 3 != 0);
+}
+
 }  // namespace
 
 TEST_CASE("rows of several floats") {
@@ -156,5 +163,45 @@ TEST_CASE("gradients of attributes at vertices") {
         CHECK(try_launch(interpolate_at_run_time, grid, at_run_time, attributes).text() == "");
         CHECK(std::vector<float>(sums.begin(), sums.end()) == wanted);
         CHECK(std::vector<float>(at_run_time.begin(), at_run_time.end()) == wanted);
+    });
+}
+
+TEST_CASE("a loop that lanes leave at different times") {
+    constexpr unsigned n = 50, items = 12;
+    const device_array<float> prices{1, 2, 1, 3, 1, 2, 1, 3, 1, 2, 1, 3};
+    device_array<float> money(n);
+    std::vector<float> wanted(items);
+    for (unsigned thread = 0; thread < n; ++thread) {
+        money[thread] = static_cast<float>(thread % 32 < 4 ? 16 : thread % 7);
+        float rest = money[thread];
+        for (unsigned i = 0; i < items && prices[i] <= rest; ++i) {
+            rest -= prices[i];
+            ++wanted[i];
+        }
+    }
+    for_each_seed(20, [&](std::uint64_t seed) {
+        device_array<float> sold(items, 0.0f);
+        const cuda_grid grid{.blocks = 1, .threads = 64, .seed = seed};
+        CHECK(try_launch(sell, grid, prices, static_cast<int>(items), money, n, sold).text() == "");
+        CHECK(std::vector<float>(sold.begin(), sold.end()) == wanted);
+    });
+}
+
+TEST_CASE("several arrays by one comparison of keys") {
+    std::vector<float> wanted(6 * vertices);
+    for (unsigned pixel = 0; pixel < pixels; ++pixel)
+        for (unsigned i = 0; pixel % 3 != 0 && i < 6; ++i)
+            wanted[6 * (pixel * 7 % vertices) + i] += static_cast<float>(pixel + i);
+    for_each_seed(20, [&](std::uint64_t seed) {
+        device_array<float> colors(3 * vertices, 0.0f), radii(vertices, 0.0f);
+        device_array<float2> centers(vertices, float2{});
+        const cuda_grid grid{.blocks = 1, .threads = pixels, .seed = seed};
+        CHECK(try_launch(add_to_all_arrays, grid, colors, centers, radii).text() == "");
+        for (unsigned v = 0; v < vertices; ++v) {
+            const float2 center = centers[v];
+            const float got[] = {colors[3 * v], colors[3 * v + 1], colors[3 * v + 2],
+                                 center.x,      center.y,          radii[v]};
+            for (unsigned i = 0; i < 6; ++i) CHECK(got[i] == wanted[6 * v + i]);
+        }
     });
 }

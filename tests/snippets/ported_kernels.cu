@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 
-// The code of docs/explanation/when_not_to_use.md and docs/how-to/port_five_kernels.md.
+// The code of docs/explanation/when_not_to_use.md, docs/how-to/port_five_kernels.md and
+// docs/tutorials/port_a_kernel.md.
 
 #include <cuda_runtime.h>
 
@@ -75,6 +76,38 @@ __device__ inline void add_to_vertices(float* gradients, const int (&vertex)[3],
             peers.add([=](unsigned v, unsigned) { return gradients + v * attributes + a; }, value);
         }
     }
+}
+
+/// Each thread buys items in order until its money is spent. Counts how often each item is sold.
+__global__ void sell(const float* prices, int items, const float* money, unsigned n, float* sold) {
+    const warpagg::cuda_warp w;
+    const unsigned thread = blockIdx.x * blockDim.x + threadIdx.x;
+    float rest = thread < n ? money[thread] : 0.0f;
+    bool done = thread >= n;
+    for (int i = 0; i < items; ++i) {
+        if (warpagg::skip_if_warp_idle(w, !done)) break;  // all lanes are done
+        const auto buy = [&]() -> bool {
+            if (done) return false;
+            if (prices[i] > rest) {  // was: if (prices[i] > rest) break;
+                done = true;
+                return false;
+            }
+            rest -= prices[i];
+            return true;
+        };
+        const bool active = buy();
+        warpagg::warp_reduce_atomic(w, sold + i, {1.0f}, active);
+    }
+}
+
+/// Adds to the records of a vertex in three arrays.
+__device__ inline void add_to_arrays(float* colors, float2* centers, float* radii, unsigned vertex,
+                                     const float (&color)[3], const float (&center)[2], float radius,
+                                     bool active) {
+    const auto peers = warpagg::match(warpagg::cuda_warp{}, vertex, active);
+    peers.add(colors, color);        // to colors[3 * vertex] and the next two
+    peers.add(&centers->x, center);  // to centers[vertex]
+    peers.add(radii, {radius});      // to radii[vertex]
 }
 
 #if defined(__CUDACC__)

@@ -82,6 +82,7 @@ configure("${consumers_dir}/old_names" -B "${WORK_DIR}/old_names" "-DCMAKE_PREFI
 build_and_run("${WORK_DIR}/old_names")
 include("${consumers_dir}/unit_testing.cmake")
 include("${consumers_dir}/existing_kernel.cmake")
+include("${consumers_dir}/ported_kernel.cmake")
 
 # The one version number is everywhere the same, and another major version is refused.
 warpagg_version("${prefix}/include" version)
