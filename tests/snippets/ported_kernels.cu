@@ -104,7 +104,8 @@ __global__ void sell(const float* prices, int items, const float* money, unsigne
 __device__ inline void add_to_arrays(float* colors, float2* centers, float* radii, unsigned vertex,
                                      const float (&color)[3], const float (&center)[2], float radius,
                                      bool active) {
-    const auto peers = warpagg::match(warpagg::cuda_warp{}, vertex, active);
+    const warpagg::cuda_warp w;
+    const auto peers = warpagg::match(w, vertex, active);
     peers.add(colors, color);        // to colors[3 * vertex] and the next two
     peers.add(&centers->x, center);  // to centers[vertex]
     peers.add(radii, {radius});      // to radii[vertex]
