@@ -347,6 +347,7 @@ requires(!std::is_same_v<Next, call_site>)
 template <warp W, class Key>
 class matched_lanes {
   public:
+    /// `match` calls this.
     WARPAGG_HD matched_lanes(const W& w, const detail::lanes_by_key<W, Key>& lanes) : w_(w), lanes_(lanes) {}
 
     /// Adds the values of each active lane to the record of its key, as `warp_match_reduce_atomic`

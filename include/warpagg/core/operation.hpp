@@ -64,6 +64,7 @@ struct for_integers {
 /// The base class of `minimum` and `maximum`, for floats and for integers of 32 and 64 bits. Floats
 /// compare as in IEEE 754-2019: NaN wins over every number, and -0 is smaller than +0.
 struct for_ordered : for_integers {
+    /// Is true for float and double.
     template <class T>
     static constexpr bool is_float = std::is_same_v<T, float> || std::is_same_v<T, double>;
     template <class T>
@@ -173,7 +174,7 @@ struct bit_xor : for_integers {
 /// the emulators, treat it as `Op`.
 template <class Op, class Scope>
 struct scoped : Op {
-    using scope = Scope;
+    using scope = Scope;  ///< which threads see the atomics
 };
 
 namespace detail {

@@ -18,18 +18,21 @@ struct contiguous_record {
 /// at `first`, and the others in `rest`. See `warpagg::fields`.
 template <class T, int First, int... Rest>
 struct field_list {
-    T* first;
-    field_list<T, Rest...> rest;
-    static constexpr int components = (First + ... + Rest);
+    T* first;                                                ///< component 0
+    field_list<T, Rest...> rest;                             ///< the other fields
+    static constexpr int components = (First + ... + Rest);  ///< number of components of all fields
+    /// Returns the address of component i.
     WARPAGG_HD T* operator()(unsigned i) const {
         constexpr unsigned here = First;
         return i < here ? first + i : rest(i - here);
     }
 };
+/// An accessor to a single field.
 template <class T, int First>
 struct field_list<T, First> {
-    T* first;
-    static constexpr int components = First;
+    T* first;                                 ///< component 0
+    static constexpr int components = First;  ///< number of components
+    /// Returns the address of component i.
     WARPAGG_HD T* operator()(unsigned i) const { return first + i; }
 };
 
