@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -98,6 +99,17 @@ TEST_CASE_TEMPLATE("votes", W, narrow, half, wide) {
     for (int i = 0; i < static_cast<int>(W::size); ++i)
         for (int k = 0; k < static_cast<int>(W::size); ++k)
             CHECK(((equal[i] >> k) & 1u) == (i % 3 == k % 3 ? 1u : 0u));
+}
+
+TEST_CASE_TEMPLATE("bits of lanes: the lowest one, and their number", W, narrow, half, wide) {
+    const W w;
+    const auto equal = w.match(w.lane() / 40u);
+    const auto first = countr_zero(equal), count = popcount(equal);
+    for (unsigned i = 0; i < W::size; ++i) {
+        const int lane = static_cast<int>(i);
+        CHECK(first[lane] == i / 40 * 40);
+        CHECK(count[lane] == (i < 40 ? std::min(W::size, 40u) : W::size - 40));
+    }
 }
 
 TEST_CASE_TEMPLATE("memory", W, narrow, half, wide) {

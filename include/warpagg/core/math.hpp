@@ -181,6 +181,7 @@ constexpr WARPAGG_HD std::uint32_t popcount(std::uint32_t bits) {
 #endif
 }
 constexpr WARPAGG_HD std::uint32_t popcount(std::uint64_t bits) {
+    // mutate: upper_lanes_not_counted
     return popcount(static_cast<std::uint32_t>(bits)) + popcount(static_cast<std::uint32_t>(bits >> 32));
 }
 /// @}
@@ -196,6 +197,7 @@ WARPAGG_HD std::uint32_t countr_zero(std::uint32_t bits) {
 }
 WARPAGG_HD std::uint32_t countr_zero(std::uint64_t bits) {
     const auto low = static_cast<std::uint32_t>(bits);
+    // mutate: upper_lanes_not_found
     return low != 0 ? countr_zero(low) : 32 + countr_zero(static_cast<std::uint32_t>(bits >> 32));
 }
 /// @}
