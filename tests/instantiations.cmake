@@ -77,6 +77,7 @@ instantiate(reduce_atomic/sums.hpp cuda full __half2 __nv_bfloat162)
 
 # Its kernels take scalars, so they do not compile on lanes.
 instantiate(scatter_rows/scatter_rows.hpp checked quick)
+instantiate(scatter_rows/scatter_rows.hpp wide_checked full)
 instantiate(scatter_rows/scatter_rows.hpp serial quick)
 instantiate(scatter_rows/scatter_rows.hpp cuda quick)
 

@@ -139,14 +139,16 @@ WARPAGG_HD void transpose_fours(const W& w, V (&v)[4]) {
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, class W, class V>
 WARPAGG_HD void add_fours(const W& w, V* table, unsigned key, V (&v)[4], bool active) {
-    const std::uint32_t everyone = w.ballot(active);
-    const std::uint32_t peers = math::select(active, w.match(key) & everyone, 0u);
+    using bits = lane_bits_t<W>;
+    const bits everyone = w.ballot(active);
+    const bits peers = math::select(active, w.match(key) & everyone, bits{0});
     combine_peers<Op>(w, v, peers);
-    const std::uint32_t leaders = w.ballot(active && math::countr_zero(peers) == w.lane());
+    const bits leaders = w.ballot(active && math::countr_zero(peers) == w.lane());
     transpose_fours(w, v);
     WARPAGG_UNROLL
     for (unsigned i = 0; i < 4; ++i) {
-        if ((leaders >> i & 0x11111111u) == 0) continue;
+        constexpr bits every_fourth = ~bits{0} / 15;
+        if ((leaders >> i & every_fourth) == 0) continue;
         const unsigned row = (w.lane() & ~3u) + i;
         const unsigned key_of_row = w.shfl(key, row);
         w.atomic(Op{}, component_of_four<V>{table, w.lane() & 3u}, key_of_row, v[i],
@@ -184,7 +186,7 @@ struct scatter_narrow_rows {
         using operation = typename Rows::operation;
         const auto convert = rows.convert(w);
         const unsigned parts = rows.width / Each;
-        // For i up to 32, i / parts = (i inverse) / 65536.
+        // For i up to 64, i / parts = (i inverse) / 65536.
         const unsigned inverse = 65536 / parts + 1;
         const unsigned in_tile = W::size * inverse >> 16;
         const std::size_t first = std::size_t{index} * in_tile;
@@ -247,7 +249,7 @@ struct scatter_wide_rows {
         // mutate: scatter_last_row_lost
         const bool is_last = w.lane() + 1 == count || key_after != key_of_row;
         // The places in sorted order where a key has its last row.
-        const std::uint32_t ends = w.ballot(w.lane() < count && is_last);
+        const lane_bits_t<W> ends = w.ballot(w.lane() < count && is_last);
 
         sum so_far[PerLane];
         clear(so_far);
@@ -295,7 +297,7 @@ struct scatter_wide_rows {
         for (auto& sum : sums) sum = Rows::operation::template identity<typename Rows::sum>();
     }
     /// Sorts one number per lane in rising order, by a bitonic network. Cost: one shuffle and one
-    /// vote if the numbers rise already, and 16 shuffles otherwise.
+    /// vote if the numbers rise already, and 16 shuffles otherwise on 32 lanes.
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
     WARPAGG_HD static std::uint64_t sort(const W& w, std::uint64_t mine) {
