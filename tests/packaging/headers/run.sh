@@ -11,7 +11,7 @@ cd "$(dirname "$0")/../../../include/warpagg"
 export LC_ALL=C
 
 # Those that only nvcc takes, as they call CUDA's intrinsics; and those that it does not, as they are for the host.
-nvcc_only=(warp/cuda.hpp simt/cuda.hpp reduce/cooperative.hpp reduce/cub.hpp)
+nvcc_only=(warp/cuda.hpp warp/cuda_atomics.hpp simt/cuda.hpp reduce/cooperative.hpp reduce/cub.hpp)
 host_only=(warp/fork_shadow_process.hpp warp/simd_value.hpp warp/simd.hpp simt/simd.hpp simt/lanes.hpp simt/checked.hpp 'warp/checked.*')
 # Those for CUDA kernels on the emulator, which need a compiler option. They declare CUDA's names.
 emulate_cuda=(emulate_cuda.hpp 'emulate_cuda/.*')
