@@ -15,6 +15,14 @@ struct field {
     T* first;  ///< the first of the N components
 };
 
+namespace detail {
+/// Returns the fields of `rest` after a field of N components at `first`.
+template <int N, class T, int... Rest>
+WARPAGG_HD commit::field_list<T, N, Rest...> prepended(T* first, const commit::field_list<T, Rest...>& rest) {
+    return {first, rest};
+}
+}  // namespace detail
+
 /// Returns the field of the N components at `first`. Precondition: N > 0.
 template <int N, class T>
 WARPAGG_HD field<T, N> at(T* first) {
@@ -38,11 +46,7 @@ WARPAGG_HD commit::field_list<T, N> fields(field<T, N> last) {
 }
 template <class T, int N, class... Rest>
 WARPAGG_HD auto fields(field<T, N> first, Rest... rest) {
-    const auto others = fields(rest...);
-    return [&]<int... Ns>(const commit::field_list<T, Ns...>& list) {
-        return commit::field_list<T, N, Ns...>{first.first, list};
-    }
-    (others);
+    return detail::prepended<N>(first.first, fields(rest...));
 }
 /// @}
 

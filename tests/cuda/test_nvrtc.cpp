@@ -51,6 +51,8 @@ extern "C" __global__ void the_rest(float* floats, long long* wide, unsigned* wo
     warp_reduce_atomic(w, block.record(5), nine, active, policy{staged, butterfly});
     __syncthreads();
     block.flush(w, 0, 1);
+    warp_reduce_atomic(w, floats, nine, active, policy{maximum, block_scope});
+    warp_reduce_atomic(w, fields(at<4>(floats), at<5>(floats + 8)), nine, active);
     const long long two[2] = {1, -1};
     warp_reduce_atomic(w, wide, two, active, policy{maximum, at_least<4>});
     const unsigned bits[1] = {w.lane()};

@@ -53,6 +53,24 @@ requires std::is_arithmetic_v<T> WARPAGG_HD T min(T a, T b) { return b < a ? b :
 template <class T>
 requires std::is_arithmetic_v<T> WARPAGG_HD T max(T a, T b) { return a < b ? b : a; }
 /// @}
+/// Returns the infinity of float or double. NVRTC has neither a builtin nor a header for it.
+template <class T>
+WARPAGG_HD T infinity() {
+    using bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+    const bits raw = sizeof(T) == 8 ? static_cast<bits>(0x7ff0000000000000ull) : bits{0x7f800000u};
+    T value;
+    std::memcpy(&value, &raw, sizeof value);
+    return value;
+}
+/// Returns whether the sign bit of a float or double is set.
+template <class T>
+WARPAGG_HD bool is_negative(T a) {
+    using bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+    bits raw;
+    std::memcpy(&raw, &a, sizeof raw);
+    return (raw >> (8 * sizeof(T) - 1)) != 0;
+}
+
 /// Returns the smaller or the larger of two values. Floats compare as in IEEE 754-2019: the result is NaN
 /// if either is NaN, and -0 is smaller than +0.
 /// @{
@@ -62,7 +80,7 @@ requires std::is_arithmetic_v<T> WARPAGG_HD T ieee_minimum(T a, T b) {
         return b < a ? b : a;
     } else {
         if (a != a) return a;
-        if (a == b) return __builtin_signbit(a) ? a : b;
+        if (a == b) return is_negative(a) ? a : b;
         return a < b ? a : b;
     }
 }
@@ -72,7 +90,7 @@ requires std::is_arithmetic_v<T> WARPAGG_HD T ieee_maximum(T a, T b) {
         return a < b ? b : a;
     } else {
         if (a != a) return a;
-        if (a == b) return __builtin_signbit(a) ? b : a;
+        if (a == b) return is_negative(a) ? b : a;
         return a > b ? a : b;
     }
 }

@@ -81,7 +81,7 @@ struct minimum : for_ordered {
     template <class T>
     WARPAGG_HD static T identity() {
         if constexpr (is_float<T>) {
-            return static_cast<T>(__builtin_huge_val());
+            return math::infinity<T>();
         } else {
             return static_cast<T>(~least<T>);  // mutate: minimum_from_zero
         }
@@ -98,7 +98,7 @@ struct maximum : for_ordered {
     template <class T>
     WARPAGG_HD static T identity() {
         if constexpr (is_float<T>) {
-            return static_cast<T>(-__builtin_huge_val());
+            return -math::infinity<T>();
         } else {
             return least<T>;  // mutate: maximum_from_zero
         }
