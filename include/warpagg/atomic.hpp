@@ -7,6 +7,7 @@
 /// and then updates memory once per warp, not once per lane. Under nvcc this header includes `cuda_warp`.
 /// The emulators are in warp/simd.hpp, warp/checked.hpp and warp/serial.hpp.
 
+#include "detail/mistakes.hpp"  // directly, so that its errors name few files
 #include "iterations.hpp"
 #include "match_reduce_atomic.hpp"
 #include "reduce_atomic.hpp"

@@ -152,7 +152,6 @@ WARPAGG_HD auto base_of_limbs(Base base) {
 template <class W, class Key>
 WARPAGG_HD auto unsigned_key(const Key& key) {
     using scalar = scalar_t<Key>;
-    static_assert(std::is_integral_v<scalar>, "a key is an integer: the index of the lane's record");
     using wide = std::conditional_t<sizeof(scalar) == 8, std::uint64_t, std::uint32_t>;
     if constexpr (std::is_same_v<Key, scalar>) {
         return value_t<W, wide>(static_cast<wide>(key));
@@ -233,9 +232,6 @@ WARPAGG_HD void commit_by_relation(const W& w, const lanes_by_key<W, Key>& lanes
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Chosen, warp W, class Base>
 WARPAGG_HD void check_base(const W& w, Base base) {
-    static_assert(
-        requires { *(base + 0); } || requires { *base(0u, 0u); },
-        "the base is a pointer to the record of key 0, or an accessor base(key, i) -> T*");
     static_assert(!std::is_same_v<typename Chosen::commit, commit::staged>,
                   "warp_match_reduce_atomic takes the stage's copy as its base: staged says nothing here");
     static_assert(
@@ -300,9 +296,8 @@ WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Base, class Key, class V, int N, class Policy = policy<>>
 WARPAGG_HD void warp_match_reduce_atomic(const W& w, Base base, const Key& key, const V (&values)[N],
                                          const mask_t<W>& active, Policy how = {},
-                                         call_site at = call_site::here("warp_match_reduce_atomic")) {
-    static_assert(detail::is_policy<Policy>,
-                  "warp_match_reduce_atomic takes one policy: put the tags into policy{...}");
+                                         call_site at = call_site::here("warp_match_reduce_atomic")) requires
+    detail::match_reduce_call<W, Base, Key, V[N], mask_t<W>, Policy> {
     using accumulation = typename Policy::accumulate;
     static_assert(!detail::is_between_warps<accumulation>,
                   "between_warps goes with warp_reduce_atomic: here take what it is of");
@@ -327,19 +322,17 @@ WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, aggregate R, class Key, class Policy = policy<>>
 WARPAGG_HD void warp_match_reduce_atomic(const W& w, R* base, const Key& key, const R& value,
                                          const mask_t<W>& active, Policy how = {},
-                                         call_site at = call_site::here("warp_match_reduce_atomic")) {
+                                         call_site at = call_site::here("warp_match_reduce_atomic")) requires
+    detail::match_reduce_call<W, R*, Key, R, mask_t<W>, Policy> {
     const detail::components_of<R> components(value);
     warp_match_reduce_atomic(w, detail::destination_of_components(base), key, components.component, active,
                              how, at);
 }
 
-/// Does not compile: put several tags into one policy.
-template <warp W, class Base, class Key, class V, class Tag, class Next, class... More>
-requires(!std::is_same_v<Next, call_site>)
-    WARPAGG_HD void warp_match_reduce_atomic(const W&, Base, const Key&, const V&, const mask_t<W>&, Tag,
-                                             Next, More...) {
-    static_assert(std::is_same_v<Next, call_site>,
-                  "warp_match_reduce_atomic takes one policy: put the tags into policy{...}");
+/// Does not compile. The message explains the mistake in the call.
+template <class... Args>
+requires(!detail::match_reduce_call<Args...>) WARPAGG_HD void warp_match_reduce_atomic(const Args&...) {
+    detail::explain<detail::mistake_in_match_reduce<Args...>()>();
 }
 
 /// The lanes of a warp, grouped by key. `match` returns it. It refers to the warp, which must outlive
@@ -362,9 +355,9 @@ class matched_lanes {
     /// @param at      the call site; leave it at its default
     WARPAGG_EXEC_CHECK_DISABLE
     template <class Base, class V, int N, class Policy = policy<>>
-    WARPAGG_HD void add(Base base, const V (&values)[N], [[maybe_unused]] Policy how = {},
-                        call_site at = call_site::here("add")) const {
-        static_assert(detail::is_policy<Policy>, "add takes one policy: put the tags into policy{...}");
+    WARPAGG_HD void add(
+        Base base, const V (&values)[N], [[maybe_unused]] Policy how = {},
+        call_site at = call_site::here("add")) const requires detail::add_call<Base, V[N], Policy> {
         static_assert(!detail::is_accumulated<typename Policy::accumulate>,
                       "add takes the accumulator native: for others, call warp_match_reduce_atomic");
         using chosen = detail::resolved_policy<scalar_t<V>, N, Policy>;
@@ -376,6 +369,12 @@ class matched_lanes {
         } else {
             detail::commit_by_relation<Policy>(w_, lanes_, base, values);
         }
+    }
+
+    /// Does not compile. The message explains the mistake in the call.
+    template <class... Args>
+    requires(!detail::add_call<Args...>) WARPAGG_HD void add(const Args&...) const {
+        detail::explain<detail::mistake_in_add<Args...>()>();
     }
 
   private:
@@ -406,6 +405,13 @@ WARPAGG_HD auto match(const W& w, const Key& key, const mask_t<W>& active,
     if constexpr (requires { w.observe(active); }) w.observe(active);
     const auto index = detail::unsigned_key<W>(key);
     return matched_lanes(w, detail::compare_keys(w, index, detail::opaque(w, active), 0));
+}
+
+/// Does not compile. The message explains the mistake in the call.
+template <class... Args>
+requires(!detail::match_call<Args...>) WARPAGG_HD detail::not_matched match(const Args&...) {
+    detail::explain<detail::mistake_in_match<Args...>()>();
+    return {};
 }
 
 }  // namespace warpagg

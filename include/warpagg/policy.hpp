@@ -94,23 +94,12 @@ inline constexpr bool is_gated = Gate::lanes > 0;
 template <>
 inline constexpr bool is_gated<unset> = false;
 
-/// Is true for every accumulator but `native`.
-template <class Accumulate>
-inline constexpr bool is_accumulated = requires {
-    typename Accumulate::limb;
-};
-
 /// Is true for `between_warps`, which accumulates only the warp's result.
 template <class Accumulate>
 inline constexpr bool is_between_warps = requires {
     typename Accumulate::storage;
 };
 
-template <class P>
-concept is_policy = requires {
-    typename P::reduce;
-    typename P::gate;
-};
 }  // namespace detail
 
 /// A set of tags, at most one per axis, in any order. Two tags of one axis do not compile, nor do

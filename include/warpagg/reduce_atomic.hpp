@@ -10,6 +10,7 @@
 #include "default_policy.hpp"
 #include "detail/accumulate/decompose.hpp"
 #include "detail/commit/commit.hpp"
+#include "detail/mistakes.hpp"
 #include "detail/reduce/scatter.hpp"
 #include "detail/reduce/tree.hpp"
 #include "fields.hpp"
@@ -30,6 +31,13 @@ WARPAGG_HD bool skip_if_warp_idle(const W& w, const mask_t<W>& active,
                                   call_site at = call_site::here("skip_if_warp_idle")) {
     const detail::library_call<W> call(w, at);
     return !w.any(active);  // mutate: idle_rule_inverted
+}
+
+/// Does not compile. The message explains the mistake in the call.
+template <class... Args>
+requires(!detail::skip_call<Args...>) WARPAGG_HD bool skip_if_warp_idle(const Args&...) {
+    detail::explain<detail::mistake_in_skip<Args...>()>();
+    return false;
 }
 
 namespace detail {
@@ -208,7 +216,9 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const value_t<W, T> (&va
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Dst, class V, int N, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const V (&values)[N], const mask_t<W>& active,
-                                   Policy how = {}, call_site at = call_site::here("warp_reduce_atomic")) {
+                                   Policy how = {},
+                                   call_site at = call_site::here("warp_reduce_atomic")) requires
+    detail::reduce_call<W, Dst, V[N], mask_t<W>, Policy> {
     warp_reduce_atomic<scalar_t<V>, N>(w, dst, values, active, how, at);
 }
 
@@ -219,17 +229,17 @@ WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const V (&values)[N], co
 WARPAGG_EXEC_CHECK_DISABLE
 template <warp W, class Dst, aggregate R, class Policy = policy<>>
 WARPAGG_HD void warp_reduce_atomic(const W& w, Dst dst, const R& value, const mask_t<W>& active,
-                                   Policy how = {}, call_site at = call_site::here("warp_reduce_atomic")) {
+                                   Policy how = {},
+                                   call_site at = call_site::here("warp_reduce_atomic")) requires
+    detail::reduce_call<W, Dst, R, mask_t<W>, Policy> {
     const detail::components_of<R> components(value);
     warp_reduce_atomic(w, detail::destination_of_components(dst), components.component, active, how, at);
 }
 
-/// Does not compile: put several tags into one policy.
-template <warp W, class Dst, class V, class Tag, class Next, class... More>
-requires(!std::is_same_v<Next, call_site>)
-    WARPAGG_HD void warp_reduce_atomic(const W&, Dst, const V&, const mask_t<W>&, Tag, Next, More...) {
-    static_assert(std::is_same_v<Next, call_site>,
-                  "warp_reduce_atomic takes one policy: put the tags into policy{...}");
+/// Does not compile. The message explains the mistake in the call.
+template <class... Args>
+requires(!detail::reduce_call<Args...>) WARPAGG_HD void warp_reduce_atomic(const Args&...) {
+    detail::explain<detail::mistake_in_reduce<Args...>()>();
 }
 
 }  // namespace warpagg

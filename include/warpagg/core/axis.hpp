@@ -25,4 +25,20 @@ enum class axis {
     scope,       ///< the threads that see the atomics
 };
 
+namespace detail {
+
+/// Is satisfied by every `policy`.
+template <class P>
+concept is_policy = requires {
+    typename P::reduce;
+    typename P::gate;
+};
+
+/// Is true for the tag of every accumulator but `native`.
+template <class Accumulate>
+inline constexpr bool is_accumulated = requires {
+    typename Accumulate::limb;
+};
+
+}  // namespace detail
 }  // namespace warpagg

@@ -1,4 +1,4 @@
-// expect: the destination is a pointer, a span or an accessor: of a container, pass its data()
+// expect only: the destination is a pointer, a span or an accessor: of a container, pass its data()
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <array>

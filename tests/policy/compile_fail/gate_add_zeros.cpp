@@ -1,4 +1,4 @@
-// expect: at_least<K> sends an idle warp to per-lane atomics, so it never adds zeros: take skip
+// expect only: at_least<K> sends an idle warp to per-lane atomics, so it never adds zeros: take skip
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/policy.hpp>

@@ -1,4 +1,4 @@
-// expect: a sum that is not native needs a
+// expect only: a sum that is not native needs a
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/atomic.hpp>

@@ -1,4 +1,4 @@
-// expect: per_lane has no sums, so an idle warp has no zeros to add: take skip
+// expect only: per_lane has no sums, so an idle warp has no zeros to add: take skip
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/policy.hpp>

@@ -1,4 +1,4 @@
-// expect: per_lane commits each lane's own values: contiguous has no sums to spread over the lanes
+// expect only: per_lane commits each lane's own values: contiguous has no sums to spread over the lanes
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/policy.hpp>

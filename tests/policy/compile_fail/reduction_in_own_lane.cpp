@@ -1,4 +1,4 @@
-// expect: own_lane is for per_lane: a reduction leaves its sums in first_lane, every_lane or spread
+// expect only: own_lane is for per_lane: a reduction leaves its sums in first_lane, every_lane or spread
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/policy.hpp>

@@ -1,4 +1,4 @@
-// expect: a policy takes one reduce tag: per_lane, shfl_down, butterfly, scatter or redux
+// expect only: a policy takes one reduce tag: per_lane, shfl_down, butterfly, scatter or redux
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/policy.hpp>

@@ -1,4 +1,4 @@
-// expect: a policy takes one accumulate tag
+// expect only: a policy takes one accumulate tag
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/atomic.hpp>

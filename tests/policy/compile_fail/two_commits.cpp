@@ -1,4 +1,4 @@
-// expect: a policy takes one commit tag: scalar, contiguous, packed<K> or staged
+// expect only: a policy takes one commit tag: scalar, contiguous, packed<K> or staged
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/policy.hpp>

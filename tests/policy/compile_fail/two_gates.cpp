@@ -1,4 +1,4 @@
-// expect: a policy takes one gate tag: always or at_least<K>
+// expect only: a policy takes one gate tag: always or at_least<K>
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/policy.hpp>

@@ -1,9 +1,11 @@
-// expect: warp_reduce_atomic takes one policy: put the tags into policy{...}
+// expect only: the tags go into one policy: write policy{...}
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <warpagg/atomic.hpp>
-#include <warpagg/warp/serial.hpp>
 
-void wrong(float* to, const float (&v)[3]) {
-    warpagg::warp_reduce_atomic(warpagg::emulator::serial{}, to, v, true, warpagg::shfl_down, warpagg::skip);
+#include "model.hpp"
+
+KERNEL wrong(float* to) {
+    const float v[3] = {1, 2, 3};
+    warpagg::warp_reduce_atomic(model{}, to, v, true, warpagg::shfl_down, warpagg::skip);
 }

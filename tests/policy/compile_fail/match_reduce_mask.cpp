@@ -1,0 +1,11 @@
+// expect only: active must be a bool, whether this lane is active: an integer or a mask of lanes is not
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <warpagg/atomic.hpp>
+
+#include "model.hpp"
+
+KERNEL wrong(float* to, unsigned key, unsigned activemask) {
+    const float v[3] = {1, 2, 3};
+    warpagg::warp_match_reduce_atomic(model{}, to, key, v, activemask);
+}
