@@ -307,6 +307,8 @@ struct accumulator {
     WARPAGG_HD float value() const { return Accumulate::value(limb); }
 };
 
+inline namespace tags {
+
 /// A tag as an object, for `policy{...}`.
 /// @{
 WARPAGG_TAG accumulate::native native{};
@@ -320,6 +322,8 @@ constexpr WARPAGG_HD accumulate::between_warps<A> between_warps(const A& how) {
     return {how};
 }
 /// @}
+
+}  // namespace tags
 
 /// @cond deprecated
 template <class Accumulate>

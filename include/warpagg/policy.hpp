@@ -175,6 +175,10 @@ struct policy : detail::optional_member<detail::named_t<axis::accumulate, Tags..
 template <class... Tags>
 policy(Tags...) -> policy<Tags...>;
 
+inline namespace tags {
+using warpagg::policy;
+}
+
 namespace detail {
 
 /// The policy that adds the limbs of decomposed values: the accumulator's operation in place of its

@@ -197,6 +197,8 @@ concept is_sum = std::convertible_to<Op, sum>;
 
 }  // namespace operation
 
+inline namespace tags {
+
 /// An operation as an object, for `policy{...}`.
 /// @{
 WARPAGG_TAG operation::minimum minimum{};
@@ -213,4 +215,5 @@ WARPAGG_TAG scope::device device_scope{};
 WARPAGG_TAG scope::system system_scope{};
 /// @}
 
+}  // namespace tags
 }  // namespace warpagg

@@ -132,6 +132,10 @@ struct at_least {
 
 }  // namespace gate
 
+/// All names that a policy needs. `using namespace warpagg::tags` makes them short and imports nothing
+/// else of the library. They are also members of `warpagg`.
+inline namespace tags {
+
 /// A tag as an object, for `policy{...}`.
 /// @{
 WARPAGG_TAG reduce::per_lane per_lane{};
@@ -152,4 +156,5 @@ template <unsigned K, unsigned Packed = K>
 WARPAGG_TAG gate::at_least<K, Packed> at_least{};
 /// @}
 
+}  // namespace tags
 }  // namespace warpagg

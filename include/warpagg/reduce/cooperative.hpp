@@ -35,7 +35,9 @@ __device__ __forceinline__ void reduce_over_warp(cooperative, const cuda_warp&, 
 
 }  // namespace reduce
 
+inline namespace tags {
 /// The tag `reduce::cooperative` as an object, for `policy{...}`.
 WARPAGG_TAG reduce::cooperative cooperative{};
+}  // namespace tags
 
 }  // namespace warpagg

@@ -36,7 +36,9 @@ __device__ __forceinline__ void reduce_over_warp(cub, const cuda_warp&, const Va
 
 }  // namespace reduce
 
+inline namespace tags {
 /// The tag `reduce::cub` as an object, for `policy{...}`.
 WARPAGG_TAG reduce::cub cub{};
+}  // namespace tags
 
 }  // namespace warpagg
