@@ -5,6 +5,8 @@
 /// @file
 /// The axes of a policy. Each tag has a static member `axis` that names its axis.
 
+#include "compiler.hpp"
+
 /// Declares the object of a tag as a constant for host and device code.
 #if defined(__CUDA_ARCH__)
 #define WARPAGG_TAG static __device__ constexpr

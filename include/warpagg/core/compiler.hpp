@@ -6,7 +6,11 @@
 /// Macros for attributes and pragmas that differ between compilers.
 
 #if __cplusplus < 202002L
+#if defined(__CUDACC__)
 #error "warpagg needs C++20: compile with -std=c++20"
+#else  // GCC and clang would continue after #error, but they stop if a file is missing
+#include "warpagg needs C++20: compile with -std=c++20"
+#endif
 #endif
 
 #if defined(__CUDACC__)
