@@ -134,24 +134,70 @@ WARPAGG_HD void transpose_fours(const W& w, V (&v)[4]) {
     }
 }
 
-/// Combines rows of 4 values of 64 bits by key and commits each record with one instruction, in
-/// which 4 lanes share the record's sector. A lane per record would touch each sector 4 times.
+/// Combines transposed rows of 4 values that belong together: lane 4 q + c has component c of the rows
+/// 4 q to 4 q + 3 in `v`. Bit r of `joined` tells that row r + 1 has the key of row r. The first row of
+/// each key receives the result. Cost: log2 of the warp's size shuffles of one value.
 WARPAGG_EXEC_CHECK_DISABLE
 template <class Op, class W, class V>
-WARPAGG_HD void add_fours(const W& w, V* table, unsigned key, V (&v)[4], bool active) {
+WARPAGG_HD void combine_joined(const W& w, V (&v)[4], lane_bits_t<W> joined) {
+    const lane_bits_t<W> here = joined >> (w.lane() & ~3u);
+    V head = v[3];  // of the rows of the first row's key
+    WARPAGG_UNROLL
+    for (int i = 2; i >= 0; --i) head = (here >> i & 1) != 0 ? Op::combine(v[i], head) : v[i];
+    const unsigned rows_after_first = math::countr_zero(~here);
+    WARPAGG_UNROLL
+    for (unsigned distance = 4; distance < W::size; distance *= 2) {
+        const V received = w.shfl_down(head, distance);
+        // mutate: scatter_joins_too_far
+        if (rows_after_first >= distance) head = Op::combine(head, received);
+    }
+    const V head_after = w.shfl_down(head, 4u);
+    // mutate: scatter_run_ends_with_fours
+    if ((here >> 3 & 1) != 0) v[3] = Op::combine(v[3], head_after);
+    WARPAGG_UNROLL
+    for (int i = 2; i >= 0; --i)
+        if ((here >> i & 1) != 0) v[i] = Op::combine(v[i], v[i + 1]);
+}
+
+/// Combines rows of 4 values by key and commits each record with one instruction, in which 4 lanes
+/// share the record's sector. A lane per record would touch each sector 4 times. The summands have 64
+/// bits, and `convert` returns them. Cost: rows whose keys do not fall from lane to lane take fewer
+/// shuffles than others, and the same atomics.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, class W, class T, class Convert, class V>
+WARPAGG_HD void add_fours(const W& w, V* table, unsigned key, T (&values)[4], const Convert& convert,
+                          bool active) {
     using bits = lane_bits_t<W>;
     const bits everyone = w.ballot(active);
-    const bits peers = math::select(active, w.match(key) & everyone, bits{0});
-    combine_peers<Op>(w, v, peers);
-    const bits leaders = w.ballot(active && math::countr_zero(peers) == w.lane());
-    transpose_fours(w, v);
+    const bool has_next = w.lane() + 1 < W::size;
+    const unsigned next_key = w.shfl_down(key, 1u);
+    // mutate: scatter_adds_what_is_left_out
+    const bool is_sorted = math::popcount(everyone) == W::size && !w.any(has_next && key > next_key);
+    V sums[4];
+    bits leaders;
+    if (is_sorted) {
+        // mutate: scatter_last_row_joined
+        const bits joined = w.ballot(has_next && key == next_key);
+        leaders = ~(joined << 1);
+        transpose_fours(w, values);  // before the conversion, which makes floats twice as large
+        WARPAGG_UNROLL
+        for (unsigned i = 0; i < 4; ++i) sums[i] = convert(values[i]);
+        combine_joined<Op>(w, sums, joined);
+    } else {
+        const bits peers = math::select(active, w.match(key) & everyone, bits{0});
+        WARPAGG_UNROLL
+        for (unsigned i = 0; i < 4; ++i) sums[i] = convert(values[i]);
+        combine_peers<Op>(w, sums, peers);
+        leaders = w.ballot(active && math::countr_zero(peers) == w.lane());
+        transpose_fours(w, sums);
+    }
     WARPAGG_UNROLL
     for (unsigned i = 0; i < 4; ++i) {
         constexpr bits every_fourth = ~bits{0} / 15;
         if ((leaders >> i & every_fourth) == 0) continue;
         const unsigned row = (w.lane() & ~3u) + i;
         const unsigned key_of_row = w.shfl(key, row);
-        w.atomic(Op{}, component_of_four<V>{table, w.lane() & 3u}, key_of_row, v[i],
+        w.atomic(Op{}, component_of_four<V>{table, w.lane() & 3u}, key_of_row, sums[i],
                  (leaders >> row & 1) != 0);
     }
 }
@@ -198,15 +244,16 @@ struct scatter_narrow_rows {
         else
             v[0] = w.load(rows.values + first * rows.width, w.lane(), inside);
         const unsigned key = rows.keys(w, first + row, inside) * parts + part;
-        sum sums[Each];
-        WARPAGG_UNROLL
-        for (unsigned i = 0; i < Each; ++i) sums[i] = convert(v[i]);
         if constexpr (Each == 4 && sizeof(sum) == 8 && W::size % 4 == 0) {
-            detail::add_fours<operation>(w, rows.table, key, sums, inside);
-        } else if constexpr (std::is_same_v<operation, warpagg::operation::sum>) {
-            warp_match_reduce_atomic(w, rows.table, key, sums, inside);
+            detail::add_fours<operation>(w, rows.table, key, v, convert, inside);
         } else {
-            warp_match_reduce_atomic(w, rows.table, key, sums, inside, policy{operation{}});
+            sum sums[Each];
+            WARPAGG_UNROLL
+            for (unsigned i = 0; i < Each; ++i) sums[i] = convert(v[i]);
+            if constexpr (std::is_same_v<operation, warpagg::operation::sum>)
+                warp_match_reduce_atomic(w, rows.table, key, sums, inside);
+            else
+                warp_match_reduce_atomic(w, rows.table, key, sums, inside, policy{operation{}});
         }
     }
 };
