@@ -65,3 +65,4 @@ std::vector<kernel_maker> blending_cases();
 std::vector<kernel_maker> hash_grid_cases();
 std::vector<kernel_maker> interpolation_cases();
 std::vector<kernel_maker> scatter_cases();
+std::vector<kernel_maker> deterministic_scatter_cases();

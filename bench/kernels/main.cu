@@ -77,8 +77,8 @@ int main(int argc, char** argv) {
         json["rounds"] = rounds;
         const std::string only = argc > 2 ? argv[2] : "";
         std::printf("kernel\tinput\tidle\tvariant\tms\n");
-        for (const auto& cases :
-             {blending_cases(), hash_grid_cases(), interpolation_cases(), scatter_cases()})
+        for (const auto& cases : {blending_cases(), hash_grid_cases(), interpolation_cases(), scatter_cases(),
+                                  deterministic_scatter_cases()})
             for (const kernel_maker& make : cases) {
                 const kernel_case of = make();
                 if (of.kernel.find(only) != std::string::npos) measure(of, json["rows"]);
