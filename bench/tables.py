@@ -55,10 +55,23 @@ def match(result):
             for r in result["rows"]]
     print_table(f"Keys that differ within a warp: milliseconds, median of {result['rounds']} rounds",
                 ["type", "N", "keys of a warp", "plain atomics", "warp_match_reduce_atomic", "times as fast"], rows)
+    slower = {}
+    for r in result["rows"]:
+        keys = slower.setdefault((r["type"], str(r["n"])), [])
+        if r["ratio_most"] < 1:
+            keys.append(f"{r['keys']} ({r['ratio']:.2f})")
+    print_table("Keys for which plain atomics are faster in every round, with the ratio of the times",
+                ["type", "N", "keys of a warp"], [[*case, "; ".join(keys) or "none"] for case, keys in slower.items()])
+
+
+RATIOS = {  # columns of tables of kernels: two variants
+    "deterministic / plain atomics": ("deterministic", "plain atomics"),
+    "sort and reduce by key / deterministic": ("sort and reduce by key", "deterministic"),
+}
 
 
 def kernels(result):
-    """A table for each kernel, with a column for each way to add."""
+    """A table for each kernel, with a column for each way to add, and for ratios of their times."""
     by_kernel, spreads = {}, []
     for row in result["rows"]:
         by_kernel.setdefault(row["kernel"], []).append(row)
@@ -67,10 +80,15 @@ def kernels(result):
     print(f"The spread between rounds is {100 * statistics.median(spreads):.1f} % in the median and at most {100 * max(spreads):.0f} %.\n")
     for kernel, rows in by_kernel.items():
         variants = list(rows[0]["median_least_most"])
+        ratios = {name: pair for name, pair in RATIOS.items() if set(pair) <= set(variants)}
         rasterizer = "blending" in kernel
-        cells = [[row["input"], *([f"{100 * row['idle_share']:.0f} %"] if rasterizer else []),
-                  *(f"{row['median_least_most'][v][0]:.3f}" for v in variants)] for row in rows]
-        print_table(f"{kernel[0].upper()}{kernel[1:]}: {about}", ["input", *(["idle warp steps"] if rasterizer else []), *variants], cells)
+        cells = []
+        for row in rows:
+            ms = {v: row["median_least_most"][v][0] for v in variants}
+            cells.append([row["input"], *([f"{100 * row['idle_share']:.0f} %"] if rasterizer else []),
+                          *(f"{ms[v]:.3f}" for v in variants), *(f"{ms[a] / ms[b]:.2f}" for a, b in ratios.values())])
+        columns = ["input", *(["idle warp steps"] if rasterizer else []), *variants, *ratios]
+        print_table(f"{kernel[0].upper()}{kernel[1:]}: {about}", columns, cells)
 
 
 def accuracy(result):
