@@ -21,15 +21,14 @@ struct measured {
     using gate = std::conditional_t<(N > 1 && N <= 4), gate::at_least<2>, gate::always>;
 };
 
-// Small records: few lanes commit faster on their own. Records of middle size: kernels that compute
-// between atomics lose more by the gate's test than they gain. Large records: a reduction takes so many
-// shuffles that the test pays.
+// Small records: few lanes commit faster on their own. From 9 values on, a reduction takes so many
+// shuffles that the gate's test pays in kernels with few active lanes; it costs little in others.
 template <int N>
 struct measured<float, N> : measured<void, N> {
     static constexpr unsigned lanes = N == 2 ? 3 : N < 5 ? 2 : 8;
     static constexpr unsigned lanes_if_packed = N == 2 ? 5 : N == 3 ? 3 : N == 4 ? 6 : 16;
     using gate =
-        std::conditional_t<N == 1 || (N > 4 && N < 16), gate::always, gate::at_least<lanes, lanes_if_packed>>;
+        std::conditional_t<N == 1 || (N > 4 && N < 9), gate::always, gate::at_least<lanes, lanes_if_packed>>;
 };
 
 template <class T, int N>

@@ -149,8 +149,8 @@ TEST_CASE("the default for floats, as docs/reference/policies.md has it") {
     CHECK(scatters<float, 3, gate::at_least<2, 3>>);
     CHECK(scatters<float, 4, gate::at_least<2, 6>>);
     CHECK(scatters<float, 5, gate::always>);
-    CHECK(scatters<float, 9, gate::always>);
-    CHECK(scatters<float, 15, gate::always>);
+    CHECK(scatters<float, 8, gate::always>);
+    CHECK(scatters<float, 9, gate::at_least<8, 16>>);
     CHECK(scatters<float, 16, gate::at_least<8, 16>>);
     CHECK(scatters<float, 40, gate::at_least<8, 16>>);
 }
