@@ -135,7 +135,7 @@ TEST_CASE("the default costs what its choice costs") {
     check_cost(default_cost<float, 9>(32), 12, 2, 9, 1, 2);
     check_cost(default_cost<float, 9>(8), 12, 2, 9, 1, 2);
     check_cost(default_cost<float, 9>(7), 0, 2, 7 * 9, 9, 9);  // its gate
-    check_cost(default_cost<float, 4>(1), 0, 2, 4, 4, 4);  // its gate
+    check_cost(default_cost<float, 4>(1), 0, 2, 4, 4, 4);      // its gate
     check_cost(default_cost<float, 4>(2), scatter_shuffles(4), 2, 4, 1, 1);
     check_cost(default_cost<float, 17>(7), 0, 2, 7 * 17, 17, 17);
     check_cost(default_cost<float, 17>(8), scatter_shuffles(17), 2, 17, 1, 3);
