@@ -9,23 +9,19 @@
 
 namespace warpagg {
 
-/// N neighboring components of a record, at one address.
-template <class T, int N>
-struct field {
-    T* first;  ///< the first of the N components
-};
-
 namespace detail {
-/// Returns the fields of `rest` after a field of N components at `first`.
-template <int N, class T, int... Rest>
-WARPAGG_HD commit::field_list<T, N, Rest...> prepended(T* first, const commit::field_list<T, Rest...>& rest) {
-    return {first, rest};
-}
+template <class T, int... N>
+void one_type(commit::field<T, N>...);
+/// Is satisfied by fields with one type of components.
+template <class... Fields>
+concept one_type_of_fields = requires(Fields... all) {
+    one_type(all...);
+};
 }  // namespace detail
 
 /// Returns the field of the N components at `first`. Precondition: N > 0.
 template <int N, class T>
-WARPAGG_HD field<T, N> at(T* first) {
+WARPAGG_HD commit::field<T, N> at(T* first) {
     static_assert(N > 0, "at<N>(address) takes N > 0 components");
     return {first};
 }
@@ -41,13 +37,21 @@ WARPAGG_HD field<T, N> at(T* first) {
 /// @snippet warp_reduce_atomic.cpp fields
 /// @{
 template <class T, int N>
-WARPAGG_HD commit::field_list<T, N> fields(field<T, N> last) {
+WARPAGG_HD commit::field_list<T, N> fields(commit::field<T, N> last) {
     return {last.first};
 }
-template <class T, int N, class... Rest>
-WARPAGG_HD auto fields(field<T, N> first, Rest... rest) {
-    return detail::prepended<N>(first.first, fields(rest...));
+template <class T, int N, int... Rest>
+requires(sizeof...(Rest) > 0)
+    WARPAGG_HD commit::field_list<T, N, Rest...> fields(commit::field<T, N> first,
+                                                        commit::field<T, Rest>... rest) {
+    return {first.first, fields(rest...)};
 }
 /// @}
+
+/// Takes other arguments, so that only the call with the destination reports the mistake.
+template <class... Args>
+requires(!detail::one_type_of_fields<Args...>) WARPAGG_HD commit::no_field_list fields(const Args&...) {
+    return {};
+}
 
 }  // namespace warpagg

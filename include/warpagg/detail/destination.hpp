@@ -36,6 +36,19 @@ struct field_list<T, First> {
     WARPAGG_HD T* operator()(unsigned i) const { return first + i; }
 };
 
+/// One of several arrays that form a destination: N neighboring components. See `warpagg::at`.
+template <class T, int N>
+struct field {
+    T* first;  ///< the first of the N components
+};
+template <class>
+inline constexpr bool is_field = false;
+template <class T, int N>
+inline constexpr bool is_field<field<T, N>> = true;
+
+/// The result of `warpagg::fields` for arguments that cannot form a destination.
+struct no_field_list {};
+
 /// Returns a destination as an accessor. The destination is a pointer, a span (an object with a const
 /// `data()` that gives write access), or already an accessor, as for a structure of arrays.
 /// @{

@@ -32,6 +32,8 @@ enum class mistake {
     base,
     destination_const,
     destination_type,
+    fields_missing,
+    fields_differ,
 };
 
 /// Does not compile. The message explains the mistake.
@@ -52,6 +54,11 @@ WARPAGG_HD void explain() {
     static_assert(Mistake != mistake::base,
                   "the base is a pointer to the record of key 0, or an accessor base(key, i) -> T*");
     static_assert(Mistake != mistake::destination_const, "the destination must not be const");
+    static_assert(Mistake != mistake::fields_missing,
+                  "several arrays are one destination: write fields(at<3>(a), at<2>(b))");
+    static_assert(
+        Mistake != mistake::fields_differ,
+        "all fields must have one type of components: pass float* to each at<N> for values of float");
     static_assert(Mistake != mistake::destination_type,
                   "the destination must have the type of the values: pass float* for values of float");
 }
@@ -133,6 +140,11 @@ WARPAGG_HD constexpr mistake mistake_in_policy() {
     const bool is_right = is_policy<Policy> && std::is_same_v<At, call_site> && sizeof...(More) == 0;
     return is_right ? mistake::none : mistake::policy;
 }
+template <class Dst>
+WARPAGG_HD constexpr mistake mistake_in_fields() {
+    if (commit::is_field<Dst>) return mistake::fields_missing;
+    return std::is_same_v<Dst, commit::no_field_list> ? mistake::fields_differ : mistake::none;
+}
 template <class Dst, class Values, class Policy>
 WARPAGG_HD constexpr mistake mistake_in_destination() {
     using T = component_t<Values>;
@@ -168,8 +180,9 @@ WARPAGG_HD constexpr mistake mistake_in_skip() {
 template <class W = missing, class Dst = missing, class Values = missing, class Active = missing,
           class Policy = policy<>, class At = call_site, class... More>
 WARPAGG_HD constexpr mistake mistake_in_reduce() {
-    return first_of(mistake_in_warp<W>(), mistake_in_values<Values>(), mistake_in_active<W, Active>(),
-                    mistake_in_policy<Policy, At, More...>(), mistake_in_destination<Dst, Values, Policy>());
+    return first_of(mistake_in_warp<W>(), mistake_in_fields<Dst>(), mistake_in_values<Values>(),
+                    mistake_in_active<W, Active>(), mistake_in_policy<Policy, At, More...>(),
+                    mistake_in_destination<Dst, Values, Policy>());
 }
 template <class W = missing, class Base = missing, class Key = missing, class Values = missing,
           class Active = missing, class Policy = policy<>, class At = call_site, class... More>
