@@ -26,6 +26,13 @@ TEST_CASE("a collective that lanes do not reach, as they have returned") {
                      if (w.lane() >= 20) return;
                      line = __LINE__, w.ballot(true);
                  });
+    CHECK(try_launch({},
+                     [](const checked& w) {
+                         if (w.lane() < 20) w.ballot(true);
+                     })
+              .sentence ==
+          "Lanes 0-19 wait for lanes 20-31 in ballot, but lanes 20-31 returned. A likely cause is "
+          "a continue, break or return before the call.");
     is_clean({}, [](const checked& w) {
         w.ballot(w.lane() < 20);
         if (w.lane() >= 20) return;

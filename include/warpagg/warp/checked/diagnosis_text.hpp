@@ -61,11 +61,13 @@ inline violation stuck(const warp_state& w) {
         add(never & w.absent, " do not exist in this block");
         add(never & w.returned & ~w.absent, " returned");
         add(never & w.in_barrier, " went to the barrier");
+        const bool left = (never & w.returned & ~w.absent) != 0;
         return {diagnosis::collective_not_reached,
                 at,
                 {},
                 never,
-                waiting + lanes_text(never) + " in " + at.function + ", but " + why + "."};
+                waiting + lanes_text(never) + " in " + at.function + ", but " + why + "." +
+                    (left ? " A likely cause is a continue, break or return before the call." : "")};
     }
     const lane_state& other = w.lane[first_of(missing)];
     if (same(first.at.at, other.at.at) && same(at, other.site()) && first.at.mask != other.at.mask)
