@@ -22,6 +22,11 @@ struct counter_random {
         state += 0x9e3779b97f4a7c15u;
         return (static_cast<float>(mix(state) >> 41) + 0.5f) * 0x1p-23f;
     }
+    /// Returns the next whole number below `limit`, which is far below 2^64.
+    WARPAGG_HD std::uint64_t below(std::uint64_t limit) {
+        state += 0x9e3779b97f4a7c15u;
+        return mix(state) % limit;
+    }
     /// Returns three independent standard normal numbers. Source: Box and Muller 1958.
     WARPAGG_HD glm::vec3 normal3() {
         const float r = warpagg::math::sqrt(-2 * glm::log(uniform())), a = 6.2831853f * uniform();

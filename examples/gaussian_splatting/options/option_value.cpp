@@ -39,6 +39,14 @@ double read_positive(const std::string& word) {
     return *value;
 }
 
+double read_not_negative(const std::string& word) {
+    const auto value = number_in<double>(word);
+    const float rounded = static_cast<float>(value.value_or(0));
+    if (!value || !std::isfinite(rounded) || !(*value >= 0))
+        throw refused_word("must be 0 or a positive number that float can hold, not '" + word + "'");
+    return *value;
+}
+
 double read_share(const std::string& word) {
     const auto value = number_in<double>(word);
     if (!value || !(*value >= 0 && *value < 1))

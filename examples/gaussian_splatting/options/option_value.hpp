@@ -41,6 +41,7 @@ inline constexpr std::uint64_t most_iterations = 10'000'000;
 /// @{
 std::uint64_t read_whole(const std::string& word, std::uint64_t least, std::uint64_t most);
 double read_positive(const std::string& word);
+double read_not_negative(const std::string& word);
 double read_share(const std::string& word);
 /// @}
 
@@ -106,6 +107,15 @@ option_value positive(Member& member) {
     return {.type = "NUMBER",
             .range = "above 0",
             .read = [&member](const std::string& word) { member = read_positive(word); },
+            .json = [&member] { return json_of(member); }};
+}
+
+/// 0, or a positive number that float can hold.
+template <class Member>
+option_value not_negative(Member& member) {
+    return {.type = "NUMBER",
+            .range = "0 or more",
+            .read = [&member](const std::string& word) { member = read_not_negative(word); },
             .json = [&member] { return json_of(member); }};
 }
 

@@ -34,6 +34,7 @@ struct option_case {
 const gs::train::adaptive_config& adaptive(const settings& s) {
     return s.densification.of<gs::train::adaptive_config>();
 }
+const gs::train::mcmc_config& mcmc(const settings& s) { return s.densification.of<gs::train::mcmc_config>(); }
 
 /// Indexed by name, without second names of the same option.
 const std::map<std::string, option_case> cases{
@@ -71,8 +72,12 @@ const std::map<std::string, option_case> cases{
     {"--scaling-lr", {{"4e-3"}, [](const settings& s) { return s.schedule.scaling_lr == 4e-3; }}},
     {"--rotation-lr", {{"5e-3"}, [](const settings& s) { return s.schedule.rotation_lr == 5e-3; }}},
     {"--loss", {{"l1_ssim"}, [](const settings& s) { return s.loss == "l1_ssim"; }, {}, true}},
-    {"--strategy",
-     {{"adaptive"}, [](const settings& s) { return s.densification.name == "adaptive"; }, {}, true}},
+    {"--strategy", {{"mcmc"}, [](const settings& s) { return s.densification.name == "mcmc"; }}},
+    {"--mcmc-noise", {{"0"}, [](const settings& s) { return mcmc(s).noise == 0; }, {"--strategy", "mcmc"}}},
+    {"--mcmc-opacity-penalty",
+     {{"0.5"}, [](const settings& s) { return mcmc(s).opacity_penalty == 0.5; }, {"--strategy", "mcmc"}}},
+    {"--mcmc-scale-penalty",
+     {{"1e-3"}, [](const settings& s) { return mcmc(s).scale_penalty == 1e-3; }, {"--strategy", "mcmc"}}},
     {"--densify-from-iter", {{"0"}, [](const settings& s) { return adaptive(s).densify_from_iter == 0; }}},
     {"--densify-until-iter", {{"9"}, [](const settings& s) { return adaptive(s).densify_until_iter == 9; }}},
     {"--densification-interval",
@@ -184,7 +189,7 @@ TEST_CASE("an option of a densification strategy is refused beside another strat
                          gs::error);
     settings defaults;
     for (const option& known : option_table(defaults))
-        CHECK(known.strategy == (known.group == "Densification strategy adaptive" ? "adaptive" : ""));
+        CHECK((known.strategy.empty() || known.group == "Densification strategy " + known.strategy));
 }
 
 TEST_CASE("settings.json leaves out the options of other densification strategies") {
@@ -195,19 +200,25 @@ TEST_CASE("settings.json leaves out the options of other densification strategie
     CHECK(settings_json(s).contains("max_cap"));
 }
 
-TEST_CASE("settings.json has every option of train exactly once") {
-    std::set<std::string> expected;
-    const settings defaults = parse({"train", "-d", "a scene", "-o", "results"});
-    const auto recorded = settings_json(defaults);
-    for_each_option([&](command c, const option& row) {
-        if (c != command::train || !row.is_recorded) return;
-        CHECK(expected.insert(row.key()).second);
-        CHECK(recorded.contains(row.key()));
-        if (row.is_required_by(c) || case_of(row, row.name()).is_only_value) return;
-        CHECK(settings_json(parse(command_line(c, row, row.all_names().back()))).at(row.key()) !=
-              recorded.at(row.key()));
-    });
-    CHECK(recorded.size() == expected.size());
+TEST_CASE("settings.json has every option of train and of its strategy exactly once") {
+    for (const std::string& strategy : gs::train::strategy_settings::names()) {
+        CAPTURE(strategy);
+        std::set<std::string> expected;
+        const auto recorded =
+            settings_json(parse({"train", "-d", "a scene", "-o", "results", "--strategy", strategy}));
+        for_each_option([&](command c, const option& row) {
+            if (c != command::train || !row.is_recorded) return;
+            if (!row.strategy.empty() && row.strategy != strategy) return;
+            CHECK(expected.insert(row.key()).second);
+            CHECK(recorded.contains(row.key()));
+            if (row.is_required_by(c) || case_of(row, row.name()).is_only_value) return;
+            if (row.name() == "--strategy") return;  // the loop over strategies tests it
+            words line = command_line(c, row, row.all_names().back());
+            if (std::ranges::find(line, "--strategy") == line.end()) append(line, {"--strategy", strategy});
+            CHECK(settings_json(parse(line)).at(row.key()) != recorded.at(row.key()));
+        });
+        CHECK(recorded.size() == expected.size());
+    }
 }
 
 TEST_CASE("rows of the option table refer to options of the same command") {

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "../../model/opacity.hpp"
+#include "../hide_near_camera.hpp"
 #include "../strategy.hpp"
 #include "adaptive_schedule.hpp"
 #include "densifier.hpp"
@@ -45,9 +46,7 @@ class adaptive final : public strategy<Device> {
             g.device.for_each_index(g.count,
                                     lower_opacity{values.opacity, g.parameters.first.write().opacity,
                                                   g.parameters.second.write().opacity, logit(reset_opacity)});
-        if (schedule_.hides_near_cameras(iteration))
-            g.device.for_each_index(
-                g.count, hide_near_camera{g.cameras, g.camera_count, values.mean, values.opacity, logit(0)});
+        if (schedule_.hides_near_cameras(iteration)) hide_near_cameras(g);
     }
 
   private:

@@ -150,27 +150,4 @@ struct lower_opacity {
     }
 };
 
-/// Hides Gaussians that are closer to a training camera than its near plane. That camera cannot see
-/// them, so its image does not remove them, and they would appear as floaters in other views. One
-/// index per Gaussian.
-struct hide_near_camera {
-    const glm::vec3* cameras;
-    std::size_t camera_count;
-    const float* mean;
-    float* opacity;
-    float hidden;  ///< logit of the largest opacity of a hidden Gaussian
-
-    WARPAGG_HD void operator()(std::size_t index) const {
-        const auto i = static_cast<unsigned>(index);
-        const glm::vec3 at = raster::load3(mean, i);
-        constexpr auto near = static_cast<float>(raster::near_plane);
-        bool is_near = false;
-        for (std::size_t c = 0; c < camera_count; ++c) {
-            const glm::vec3 offset = at - cameras[c];
-            is_near = is_near || glm::dot(offset, offset) < near * near;
-        }
-        if (is_near) opacity[i] = warpagg::math::min(opacity[i], hidden);
-    }
-};
-
 }  // namespace gs::train

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "../../optimize/adam.hpp"
+#include "../hide_near_camera.hpp"
+#include "../strategy.hpp"
+#include "mcmc_config.hpp"
+#include "mcmc_kernels.hpp"
+
+namespace gs::train {
+
+/// Densification as Markov chain Monte Carlo (Kheradmand et al. 2024). Noise moves transparent
+/// Gaussians, penalties make unneeded ones transparent, and at intervals dead Gaussians move to
+/// opaque ones. The number of Gaussians grows by a constant factor, reaches the limit in the last run,
+/// and never shrinks.
+template <device::device Device>
+class mcmc final : public strategy<Device> {
+  public:
+    using settings = mcmc_config;
+
+    mcmc(Device& device, const mcmc_config& config, const training_facts& facts)
+        : device_(device), config_(config), facts_(facts) {}
+
+    bool wants(int) const override { return false; }
+    bool due(int iteration) const override {
+        return iteration > first && iteration % interval == 0 && iteration <= count_is_final_after();
+    }
+    int count_is_final_after() const override { return facts_.iterations / 6 * 5; }
+
+    void after_step(int iteration, const step_context<Device>& c) override {
+        const auto rate = [&](parameter p) { return c.rates[static_cast<std::size_t>(p)]; };
+        const auto count = static_cast<double>(c.count);
+        const double unit = facts_.extent * facts_.extent;  // makes the noise independent of units
+        device_.for_each_index(
+            c.count,
+            explore{c.parameters.values.write(), c.parameters.second.read(),
+                    static_cast<float>(1 / (1 - std::pow(adam<float>::beta2, iteration))),
+                    static_cast<float>(config_.noise * static_cast<double>(rate(parameter::mean)) / unit),
+                    rate(parameter::opacity), rate(parameter::log_scale),
+                    static_cast<float>(config_.opacity_penalty / count),
+                    static_cast<float>(config_.scale_penalty / (3 * count * facts_.extent)), facts_.seed,
+                    static_cast<std::uint64_t>(iteration), c.capacity});
+    }
+
+    densify_report run(int iteration, const run_context<Device>& c) override {
+        for (auto* b : {&dead_, &weight_, &drawn_}) b->resize(c.count);
+        weight_before_.resize(c.count + 1);
+        device_.for_each_index(c.count, weigh_by_opacity{c.parameters.values.read().opacity, dead_.data(),
+                                                         weight_.data(), drawn_.data()});
+        device_.prefix_sum(weight_, weight_before_, c.count);
+        std::uint64_t weight = 0;
+        device_.download(&weight, weight_before_.data() + c.count, 1);
+        if (weight == 0) return {c.count};  // nothing to copy
+        const std::size_t count = grown(c.count, iteration);
+        c.gather.reserve(count);
+        device_.for_each_index(count, draw_origins{c.count, dead_.data(), weight_before_.data(), facts_.seed,
+                                                   static_cast<std::uint64_t>(iteration), drawn_.data(),
+                                                   c.gather.origins(), c.gather.births()});
+        device_.for_each_index(c.count, forget_moments{drawn_.data(), c.gather.births()});
+        c.gather.run(c.parameters, count, count, c.sh_degree);
+        device_.for_each_index(
+            count, share_appearance{c.gather.origins(), drawn_.data(), c.parameters.values.write()});
+        return {count};
+    }
+
+    void adjust(int iteration, const trained_gaussians<Device>& g) override {
+        if (iteration % interval == 0 || iteration == facts_.iterations) hide_near_cameras(g);
+    }
+
+  private:
+    static constexpr int first = 500, interval = 100;
+
+    /// Returns the number of Gaussians after the run of this iteration.
+    std::size_t grown(std::size_t count, int iteration) const {
+        const int runs = count_is_final_after() / interval - (iteration - 1) / interval;
+        const double now = static_cast<double>(count), most = static_cast<double>(facts_.max_gaussians);
+        const auto more = static_cast<std::size_t>(std::ceil(now * std::pow(most / now, 1.0 / runs)));
+        return std::max(count, std::min(more, facts_.max_gaussians));
+    }
+
+    Device& device_;
+    mcmc_config config_;
+    training_facts facts_;
+    typename Device::template buffer<std::uint32_t> dead_, weight_, drawn_;
+    typename Device::template buffer<std::uint64_t> weight_before_;
+};
+
+}  // namespace gs::train

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "../timetable.hpp"
+
+namespace gs::options {
+struct option;
+}
+
+namespace gs::train {
+
+/// The opacity up to which the strategy `mcmc` considers a Gaussian dead.
+inline constexpr float dead_opacity = 0.005f;
+
+/// Settings of the strategy `mcmc`. The defaults are those of Kheradmand et al. 2024.
+struct mcmc_config {
+    static constexpr std::string_view name = "mcmc";
+
+    double noise = 5e5;             ///< see `explore`
+    double opacity_penalty = 0.01;  ///< weight of the mean opacity, next to a mean loss of a pixel
+    double scale_penalty = 0.01;    ///< weight of the mean scale, relative to the scene's extent
+
+    /// A member of every strategy's settings: see `strategy_config`.
+    /// @{
+    std::vector<options::option> options();
+    void check(const training_facts&) const {}
+    mcmc_config resolved(const training_facts&) const { return *this; }
+    std::optional<std::size_t> target_count() const { return {}; }
+    /// @}
+};
+
+}  // namespace gs::train
