@@ -69,20 +69,28 @@ void measure(const kernel_case& of, nlohmann::ordered_json& rows) {
                     {"median_least_most", variants}});
 }
 
+struct group {
+    const char* name;
+    std::vector<kernel_maker> (*cases)();
+};
+constexpr group groups[] = {{"blending", blending_cases},
+                            {"hash_grid", hash_grid_cases},
+                            {"interpolation", interpolation_cases},
+                            {"scatter", scatter_cases},
+                            {"deterministic_scatter", deterministic_scatter_cases}};
+
 }  // namespace
 
+/// Usage: bench_kernels [FILE.json [GROUP]]
 int main(int argc, char** argv) {
     try {
         nlohmann::ordered_json json = figures_of_this_gpu("kernels");
         json["rounds"] = rounds;
-        const std::string only = argc > 2 ? argv[2] : "";
         std::printf("kernel\tinput\tidle\tvariant\tms\n");
-        for (const auto& cases : {blending_cases(), hash_grid_cases(), interpolation_cases(), scatter_cases(),
-                                  deterministic_scatter_cases()})
-            for (const kernel_maker& make : cases) {
-                const kernel_case of = make();
-                if (of.kernel.find(only) != std::string::npos) measure(of, json["rows"]);
-            }
+        for (const group& g : groups) {
+            if (argc > 2 && std::string(g.name) != argv[2]) continue;
+            for (const kernel_maker& make : g.cases()) measure(make(), json["rows"]);
+        }
         if (argc > 1) std::ofstream(argv[1]) << json.dump(1) << '\n';
     } catch (const std::exception& e) {
         std::fprintf(stderr, "error: %s\n", e.what());
