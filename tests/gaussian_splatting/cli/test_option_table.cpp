@@ -91,6 +91,7 @@ const std::map<std::string, option_case> cases{
     {"--no-revised-opacity", {{}, [](const settings& s) { return !adaptive(s).revised_opacity; }}},
     {"--revised-opacity",
      {{}, [](const settings& s) { return adaptive(s).revised_opacity; }, {"--no-revised-opacity"}}},
+    {"--opacity-penalty", {{"0.02"}, [](const settings& s) { return adaptive(s).opacity_penalty == 0.02; }}},
     {"--prune-share", {{"0.5"}, [](const settings& s) { return adaptive(s).prune_share == 0.5; }}},
     {"--test-iterations", {{"15"}, [](const settings& s) { return s.test_iterations == std::set{15}; }}},
     {"--fit-exposure", {{}, [](const settings& s) { return s.fit_exposure; }}},

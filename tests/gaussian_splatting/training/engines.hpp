@@ -38,6 +38,7 @@ inline gs::scene small_scene(const char* name = "synthetic:spheres", int side = 
 inline gs::train::step_plan plan_for(std::size_t view) {
     gs::train::schedule s;
     gs::train::step_plan p;
+    p.iteration = 1;
     p.view = view;
     p.rates = s.rates_at(1);
     return p;
@@ -47,6 +48,13 @@ inline gs::train::step_plan plan_for(std::size_t view) {
 inline gs::train::training_setup setup_with(gs::accumulator sums) {
     gs::train::training_setup setup;
     setup.facts.gradient = sums;
+    return setup;
+}
+
+/// The same without penalties: only Adam moves parameters.
+inline gs::train::training_setup setup_without_penalties(gs::accumulator sums) {
+    gs::train::training_setup setup = setup_with(sums);
+    setup.densification.of<gs::train::adaptive_config>().opacity_penalty = 0;
     return setup;
 }
 

@@ -6,6 +6,7 @@
 
 #include "../../model/opacity.hpp"
 #include "../hide_near_camera.hpp"
+#include "../penalties.hpp"
 #include "../strategy.hpp"
 #include "adaptive_schedule.hpp"
 #include "densifier.hpp"
@@ -14,18 +15,23 @@ namespace gs::train {
 
 /// Adaptive density control (Kerbl et al. 2023, section 5.2). At intervals it clones or splits
 /// Gaussians with large gradients, removes transparent Gaussians, and resets opacities. After the
-/// last densification it removes a share of the Gaussians. `adaptive_schedule` has the timetable.
+/// last densification it removes a share of the Gaussians. In each step, a penalty lowers the
+/// opacities of Gaussians that no view needs. `adaptive_schedule` has the timetable.
 template <device::device Device>
 class adaptive final : public strategy<Device> {
   public:
     using settings = adaptive_config;
 
     adaptive(Device& device, const adaptive_config& config, const training_facts& facts)
-        : schedule_(config, facts), densifier_(device) {}
+        : schedule_(config, facts), densifier_(device), penalties_{config.opacity_penalty} {}
 
     bool wants(int iteration) const override { return schedule_.wants(iteration); }
     bool due(int iteration) const override { return schedule_.due(iteration); }
     int count_is_final_after() const override { return schedule_.count_is_final_after(); }
+
+    void after_step(int iteration, const step_context<Device>& c) override {
+        apply_penalties(penalties_, 1, iteration, c);
+    }
 
     densify_report run(int iteration, const run_context<Device>& c) override {
         if (c.count == 0) return {};
@@ -52,6 +58,7 @@ class adaptive final : public strategy<Device> {
   private:
     adaptive_schedule schedule_;
     densifier<Device> densifier_;
+    penalty_weights penalties_;
 };
 
 }  // namespace gs::train

@@ -51,6 +51,9 @@ std::vector<option> growth_options(adaptive_config& c) {
          .value = flag(c.revised_opacity),
          .help = "Lowers the opacities of a Gaussian and its new copy, so that together they are as "
                  "opaque as the Gaussian was (Rota Bulò et al. 2024)"},
+        {.names = "--opacity-penalty",
+         .value = not_negative(c.opacity_penalty),
+         .help = "Weight of the mean opacity in the loss; removes Gaussians that no training view needs"},
         {.names = "--prune-share",
          .value = share(c.prune_share),
          .help = "Share of the Gaussians that is removed after densification, those with the smallest "

@@ -3,13 +3,12 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
-#include "../../optimize/adam.hpp"
 #include "../hide_near_camera.hpp"
+#include "../penalties.hpp"
 #include "../strategy.hpp"
 #include "mcmc_config.hpp"
 #include "mcmc_kernels.hpp"
@@ -35,18 +34,13 @@ class mcmc final : public strategy<Device> {
     int count_is_final_after() const override { return facts_.iterations / 6 * 5; }
 
     void after_step(int iteration, const step_context<Device>& c) override {
-        const auto rate = [&](parameter p) { return c.rates[static_cast<std::size_t>(p)]; };
-        const auto count = static_cast<double>(c.count);
-        const double unit = facts_.extent * facts_.extent;  // makes the noise independent of units
+        const double rate = c.rates[static_cast<std::size_t>(parameter::mean)];
+        // Divided by the square of the extent, the noise does not depend on the unit of length.
+        const double strength = config_.noise * rate / (facts_.extent * facts_.extent);
         device_.for_each_index(
-            c.count,
-            explore{c.parameters.values.write(), c.parameters.second.read(),
-                    static_cast<float>(1 / (1 - std::pow(adam<float>::beta2, iteration))),
-                    static_cast<float>(config_.noise * static_cast<double>(rate(parameter::mean)) / unit),
-                    rate(parameter::opacity), rate(parameter::log_scale),
-                    static_cast<float>(config_.opacity_penalty / count),
-                    static_cast<float>(config_.scale_penalty / (3 * count * facts_.extent)), facts_.seed,
-                    static_cast<std::uint64_t>(iteration), c.capacity});
+            c.count, add_noise{c.parameters.values.write(), static_cast<float>(strength), facts_.seed,
+                               static_cast<std::uint64_t>(iteration), c.capacity});
+        apply_penalties({config_.opacity_penalty, config_.scale_penalty}, facts_.extent, iteration, c);
     }
 
     densify_report run(int iteration, const run_context<Device>& c) override {

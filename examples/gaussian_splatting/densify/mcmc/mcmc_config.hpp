@@ -22,9 +22,9 @@ inline constexpr float dead_opacity = 0.005f;
 struct mcmc_config {
     static constexpr std::string_view name = "mcmc";
 
-    double noise = 5e5;             ///< see `explore`
-    double opacity_penalty = 0.01;  ///< weight of the mean opacity, next to a mean loss of a pixel
-    double scale_penalty = 0.01;    ///< weight of the mean scale, relative to the scene's extent
+    double noise = 5e5;             ///< see `add_noise`
+    double opacity_penalty = 0.01;  ///< see `penalty_weights`
+    double scale_penalty = 0.01;    ///< see `penalty_weights`
 
     /// A member of every strategy's settings: see `strategy_config`.
     /// @{

@@ -98,55 +98,25 @@ struct share_appearance {
     }
 };
 
-/// The work of each step. Adds noise to positions, and lowers opacities and scales. One index per
-/// Gaussian.
-///
-/// The noise has the shape of the Gaussian and fades as its opacity rises (Kheradmand et al. 2024,
-/// equation 8). The penalties are apart from Adam's moments, as weight decay is in AdamW (Loshchilov
-/// and Hutter 2019): a value moves by its learning rate times the ratio of the penalty's gradient to
-/// the root of the second moment, and at most by a tenth of its learning rate.
-struct explore {
+/// Adds noise to the positions of transparent Gaussians. The noise has the shape of the Gaussian and
+/// fades as its opacity rises (Kheradmand et al. 2024, equation 8). One index per Gaussian.
+struct add_noise {
     parameter_arrays<float> values;
-    parameter_arrays<const float> second;  ///< second moments
-    float correction;                      ///< 1 / (1 - beta2^t) for the second moments
-    float noise;                           ///< strength times the learning rate of positions
-    float opacity_rate, scale_rate;        ///< learning rates
-    float opacity_gradient;                ///< gradient of the penalty by an opacity
-    float scale_gradient;                  ///< gradient of the penalty by a scale
+    float strength;  ///< the strength times the learning rate of positions
     std::uint64_t seed, step;
     raster::list_capacity capacity;
 
     WARPAGG_HD void operator()(std::size_t index) const {
         if (capacity.exceeded()) return;
         const auto i = static_cast<unsigned>(index);
-        const float o = sigmoid(values.opacity[i]);
-        const glm::vec3 log_scale = raster::load3(values.log_scale, i);
-        move(i, o, log_scale);
-        values.opacity[i] -= opacity_rate * relative(opacity_gradient * o * (1 - o), second.opacity[i]);
-        for (unsigned k = 0; k < 3; ++k) {
-            const std::size_t at = aosoa_index(index, k, 3);
-            const float by = scale_rate * relative(scale_gradient * glm::exp(log_scale[static_cast<int>(k)]),
-                                                   second.log_scale[at]);
-            if (raster::is_finite(by)) values.log_scale[at] -= by;
-        }
-    }
-
-  private:
-    WARPAGG_HD float relative(float gradient, float second_moment) const {
-        constexpr float most = 0.1f;  // slow enough for new Gaussians that no view has shown yet
-        const float root = warpagg::math::inverse_sqrt(second_moment * correction + 1e-30f);
-        return warpagg::math::min(gradient * root, most);
-    }
-
-    WARPAGG_HD void move(unsigned i, float o, const glm::vec3& log_scale) const {
-        const float fade = sigmoid(100 * (0.005f - o)) * noise;
-        if (!(fade > noise * 1e-6f)) return;
+        const float fade = sigmoid(100 * (0.005f - sigmoid(values.opacity[i])));
+        if (!(fade > 1e-6f)) return;
         const glm::vec3 mean = raster::load3(values.mean, i);
         const raster::unit turn(raster::load4(values.quaternion, i));
         const glm::mat3 rotation = raster::rotation_of(turn.direction);
-        const glm::vec3 variance = glm::exp(2.0f * log_scale);
+        const glm::vec3 variance = glm::exp(2.0f * raster::load3(values.log_scale, i));
         const glm::vec3 normal = counter_random(seed, step, i).normal3();
-        const glm::vec3 moved = mean + fade * (rotation * (variance * (normal * rotation)));
+        const glm::vec3 moved = mean + strength * fade * (rotation * (variance * (normal * rotation)));
         if (raster::is_finite(moved)) raster::store3(values.mean, i, moved);
     }
 };
