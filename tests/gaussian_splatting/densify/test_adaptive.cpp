@@ -265,7 +265,7 @@ TEST_CASE("adaptive: Gaussians that pruning keeps also keep their moments") {
             auto plan = plan_for(0);
             plan.sh_degree = 1;
             plan.rates.fill(0.01f);
-            e->begin(setup_without_penalties(in_any_order));
+            e->begin(setup_with(in_any_order));
             e->step(plan);
             return e->get_model();
         };
@@ -317,7 +317,6 @@ TEST_CASE("adaptive: Adam's catch-up steps survive the removal of other Gaussian
     for (const auto make : engines()) {
         const auto e = make();
         e->set_views(scene.train, scene.test);
-        e->begin(setup_without_penalties(in_any_order));
         const auto seen_by = [&](std::size_t view) {
             e->set_model(model);
             e->reserve();
@@ -331,7 +330,7 @@ TEST_CASE("adaptive: Adam's catch-up steps survive the removal of other Gaussian
         e->set_model(model);
         e->step(plan(0, 0));  // gives momentum to visible Gaussians
         for (int i = 0; i < missed; ++i) e->step(plan(1, 0));
-        densify_once(*e, {.densify_grad_threshold = 1e30, .opacity_penalty = 0}, 0);
+        densify_once(*e, {.densify_grad_threshold = 1e30}, 0);
         REQUIRE(e->count() == model.count() - dropped);
         e->reserve();
         e->step(plan(0, rate));

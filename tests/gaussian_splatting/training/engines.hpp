@@ -51,13 +51,6 @@ inline gs::train::training_setup setup_with(gs::accumulator sums) {
     return setup;
 }
 
-/// The same without penalties: only Adam moves parameters.
-inline gs::train::training_setup setup_without_penalties(gs::accumulator sums) {
-    gs::train::training_setup setup = setup_with(sums);
-    setup.densification.of<gs::train::adaptive_config>().opacity_penalty = 0;
-    return setup;
-}
-
 inline gs::train::sh_degree_state& sh_of(gs::train::engine& e) {
     return dynamic_cast<gs::train::sh_degree_state&>(e.feature("direction"));
 }

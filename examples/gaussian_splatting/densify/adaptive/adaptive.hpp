@@ -15,8 +15,8 @@ namespace gs::train {
 
 /// Adaptive density control (Kerbl et al. 2023, section 5.2). At intervals it clones or splits
 /// Gaussians with large gradients, removes transparent Gaussians, and resets opacities. After the
-/// last densification it removes a share of the Gaussians. In each step, a penalty lowers the
-/// opacities of Gaussians that no view needs. `adaptive_schedule` has the timetable.
+/// last densification it removes a share of the Gaussians. A penalty can lower the opacities of
+/// Gaussians that no view needs in each step. `adaptive_schedule` has the timetable.
 template <device::device Device>
 class adaptive final : public strategy<Device> {
   public:

@@ -53,7 +53,7 @@ std::vector<option> growth_options(adaptive_config& c) {
                  "opaque as the Gaussian was (Rota Bulò et al. 2024)"},
         {.names = "--opacity-penalty",
          .value = not_negative(c.opacity_penalty),
-         .help = "Weight of the mean opacity in the loss; removes Gaussians that no training view needs"},
+         .help = "Weight of the mean opacity in the loss; 0.01 removes floaters of scenes with few photos"},
         {.names = "--prune-share",
          .value = share(c.prune_share),
          .help = "Share of the Gaussians that is removed after densification, those with the smallest "
