@@ -42,9 +42,9 @@ struct field {
     T* first;  ///< the first of the N components
 };
 template <class>
-inline constexpr bool is_field = false;
+inline constexpr bool is_field = false;  ///< Whether a type is a `field`
 template <class T, int N>
-inline constexpr bool is_field<field<T, N>> = true;
+inline constexpr bool is_field<field<T, N>> = true;  ///< Whether a type is a `field`
 
 /// The result of `warpagg::fields` for arguments that cannot form a destination.
 struct no_field_list {};
