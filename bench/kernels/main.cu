@@ -87,10 +87,17 @@ int main(int argc, char** argv) {
         nlohmann::ordered_json json = figures_of_this_gpu("kernels");
         json["rounds"] = rounds;
         std::printf("kernel\tinput\tidle\tvariant\tms\n");
+        const std::string only = argc > 2 ? argv[2] : "";
+        bool found = only.empty();
         for (const group& g : groups) {
-            if (argc > 2 && std::string(g.name) != argv[2]) continue;
+            if (!only.empty() && only != g.name) continue;
+            found = true;
             for (const kernel_maker& make : g.cases()) measure(make(), json["rows"]);
         }
+        if (!found)
+            throw std::runtime_error("there is no group '" + only +
+                                     "': choose blending, hash_grid, interpolation, scatter or "
+                                     "deterministic_scatter");
         if (argc > 1) std::ofstream(argv[1]) << json.dump(1) << '\n';
     } catch (const std::exception& e) {
         std::fprintf(stderr, "error: %s\n", e.what());

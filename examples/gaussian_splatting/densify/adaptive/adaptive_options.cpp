@@ -53,7 +53,8 @@ std::vector<option> growth_options(adaptive_config& c) {
                  "opaque as the Gaussian was (Rota Bulò et al. 2024)"},
         {.names = "--opacity-penalty",
          .value = not_negative(c.opacity_penalty),
-         .help = "Weight of the mean opacity in the loss; 0.01 removes floaters of scenes with few photos"},
+         .help = "Strength of the penalty on opacities, as a weight of their mean beside the loss; 0.01 "
+                 "reduces floaters in scenes with few photos"},
         {.names = "--prune-share",
          .value = share(c.prune_share),
          .help = "Share of the Gaussians that is removed after densification, those with the smallest "

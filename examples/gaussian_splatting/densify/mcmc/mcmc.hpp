@@ -19,6 +19,9 @@ namespace gs::train {
 /// Gaussians, penalties make unneeded ones transparent, and at intervals dead Gaussians move to
 /// opaque ones. The number of Gaussians grows by a constant factor, reaches the limit in the last run,
 /// and never shrinks.
+///
+/// Unlike in the paper, noise and scale penalty are relative to the extent of the scene, penalties do
+/// not change Adam's moments, and one draw finds the origins of dead and of new Gaussians.
 template <device::device Device>
 class mcmc final : public strategy<Device> {
   public:
@@ -29,11 +32,12 @@ class mcmc final : public strategy<Device> {
 
     bool wants(int) const override { return false; }
     bool due(int iteration) const override {
-        return iteration > first && iteration % interval == 0 && iteration <= count_is_final_after();
+        return iteration > first() && iteration % interval == 0 && iteration <= count_is_final_after();
     }
     int count_is_final_after() const override { return facts_.iterations / 6 * 5; }
 
     void after_step(int iteration, const step_context<Device>& c) override {
+        if (is_last(iteration)) return;  // the result has no noise
         const double rate = c.rates[static_cast<std::size_t>(parameter::mean)];
         // Divided by the square of the extent, the noise does not depend on the unit of length.
         const double strength = config_.noise * rate / (facts_.extent * facts_.extent);
@@ -42,6 +46,8 @@ class mcmc final : public strategy<Device> {
                                static_cast<std::uint64_t>(iteration), c.capacity});
         apply_penalties({config_.opacity_penalty, config_.scale_penalty}, facts_.extent, iteration, c);
     }
+
+    std::size_t memory_key(int iteration) const override { return is_last(iteration) ? 1 : 0; }
 
     densify_report run(int iteration, const run_context<Device>& c) override {
         for (auto* b : {&dead_, &weight_, &drawn_}) b->resize(c.count);
@@ -65,15 +71,18 @@ class mcmc final : public strategy<Device> {
     }
 
     void adjust(int iteration, const trained_gaussians<Device>& g) override {
-        if (iteration % interval == 0 || iteration == facts_.iterations) hide_near_cameras(g);
+        if (iteration % interval == 0 || is_last(iteration)) hide_near_cameras(g);
     }
 
   private:
-    static constexpr int first = 500, interval = 100;
+    static constexpr int interval = 100;
 
+    bool is_last(int iteration) const { return iteration == facts_.iterations; }
+    /// Returns the last iteration before the first run.
+    int first() const { return std::min(500, facts_.iterations / 10); }
     /// Returns the number of Gaussians after the run of this iteration.
     std::size_t grown(std::size_t count, int iteration) const {
-        const int runs = count_is_final_after() / interval - (iteration - 1) / interval;
+        const int runs = std::max(1, count_is_final_after() / interval - (iteration - 1) / interval);
         const double now = static_cast<double>(count), most = static_cast<double>(facts_.max_gaussians);
         const auto more = static_cast<std::size_t>(std::ceil(now * std::pow(most / now, 1.0 / runs)));
         return std::max(count, std::min(more, facts_.max_gaussians));

@@ -18,7 +18,8 @@ namespace gs::train {
 /// The opacity up to which the strategy `mcmc` considers a Gaussian dead.
 inline constexpr float dead_opacity = 0.005f;
 
-/// Settings of the strategy `mcmc`. The defaults are those of Kheradmand et al. 2024.
+/// Settings of the strategy `mcmc`. The numbers are those of Kheradmand et al. 2024; unlike there, noise
+/// and scale penalty are relative to the extent of the scene.
 struct mcmc_config {
     static constexpr std::string_view name = "mcmc";
 

@@ -38,7 +38,7 @@ struct weigh_by_opacity {
 struct draw_origins {
     std::size_t count;  ///< number of old Gaussians
     const std::uint32_t* dead;
-    const std::uint64_t* weight_before;  ///< sums of the weights of all previous Gaussians, and of all
+    const std::uint64_t* weight_before;  ///< count + 1 prefix sums; the last is the total
     std::uint64_t seed, step;
     std::uint32_t* drawn;  ///< number of copies of each old Gaussian
     std::uint32_t* origin;
@@ -55,7 +55,7 @@ struct draw_origins {
   private:
     WARPAGG_HD std::uint32_t draw(std::size_t i) const {
         const std::uint64_t at = counter_random(seed, step, i).below(weight_before[count]);
-        // The last Gaussian whose previous weights sum to at most `at`.
+        // Finds the Gaussian whose range of cumulated weights contains `at`.
         std::size_t low = 0, high = count;
         while (high - low > 1) {
             const std::size_t middle = low + (high - low) / 2;
@@ -89,8 +89,8 @@ struct share_appearance {
         constexpr double most = 1 - 0x1p-24;
         const double opacity = warpagg::math::min(sigmoid(static_cast<double>(gaussians.opacity[i])), most);
         const relocated each = relocate(opacity, copies);
-        // A copy that is born dead would be moved again at once.
-        const double q = warpagg::math::max(each.opacity, static_cast<double>(dead_opacity) * 1.001);
+        // A copy that is born dead would be moved again in the next run.
+        const double q = warpagg::math::max(each.opacity, 1.1 * static_cast<double>(dead_opacity));
         gaussians.opacity[i] = static_cast<float>(glm::log(q / (1 - q)));
         const glm::vec3 log_scale = raster::load3(gaussians.log_scale, i);
         raster::store3(gaussians.log_scale, i,

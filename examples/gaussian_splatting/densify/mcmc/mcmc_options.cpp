@@ -11,10 +11,11 @@ std::vector<options::option> mcmc_config::options() {
              .help = "Strength of the noise that moves transparent Gaussians in each iteration"},
             {.names = "--mcmc-opacity-penalty",
              .value = options::not_negative(opacity_penalty),
-             .help = "Weight of the mean opacity in the loss"},
+             .help = "Strength of the penalty on opacities, as a weight of their mean beside the loss"},
             {.names = "--mcmc-scale-penalty",
              .value = options::not_negative(scale_penalty),
-             .help = "Weight of the mean scale, relative to the scene's extent, in the loss"}};
+             .help = "Strength of the penalty on scales, as a weight of their mean, relative to the "
+                     "scene's extent, beside the loss"}};
 }
 
 }  // namespace gs::train

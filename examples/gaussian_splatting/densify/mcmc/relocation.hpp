@@ -20,8 +20,8 @@ struct relocated {
 /// this opacity. Source: Kheradmand et al. 2024, equation 9. The equation's sum is alternating and
 /// cancels for many copies. This function uses the identity 1/sqrt(k) = 2/sqrt(pi) * integral of
 /// exp(-k s^2) over s > 0, which turns the sum into the integral of 1 - (1 - q exp(-s^2))^copies for
-/// copies of opacity q. The trapezoidal rule integrates it to 1e-6. Preconditions: `opacity` is in
-/// (0, 1), `copies` is positive. Cost: 60 pairs of an exponential and a logarithm.
+/// copies of opacity q. The trapezoidal rule integrates it to rounding errors. Preconditions:
+/// `opacity` is in (0, 1), `copies` is positive. Cost: 120 exponentials and 60 logarithms.
 WARPAGG_HD relocated relocate(double opacity, std::uint32_t copies) {
     if (copies == 1) return {opacity, 1};
     const double n = copies, each = 1 - glm::exp(glm::log(1 - opacity) / n);
