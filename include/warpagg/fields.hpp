@@ -11,7 +11,7 @@ namespace warpagg {
 
 namespace detail {
 template <class T, int... N>
-void one_type(commit::field<T, N>...);
+WARPAGG_HD void one_type(commit::field<T, N>...) {}
 /// Is satisfied by fields with one type of components.
 template <class... Fields>
 concept one_type_of_fields = requires(Fields... all) {
