@@ -221,7 +221,12 @@ rows learning_rate_options(settings& s) {
                          "a tenth of --feature-lr"),
                     rate("--opacity-lr", plan.opacity_lr, "Learning rate of opacities"),
                     rate("--scaling-lr", plan.scaling_lr, "Learning rate of the logarithms of scales"),
-                    rate("--rotation-lr", plan.rotation_lr, "Learning rate of rotation quaternions")});
+                    rate("--rotation-lr", plan.rotation_lr, "Learning rate of rotation quaternions"),
+                    {.names = "--dropout",
+                     .commands = {train},
+                     .value = share(plan.dropout),
+                     .help = "Share of the Gaussians that each step leaves out at random (Park et al. 2025)",
+                     .default_text = "0.05, or 0 if photos have transparent parts"}});
 }
 
 rows densification_options(settings& s) {

@@ -21,7 +21,9 @@ train::train_options options_of(const settings& s, const scene& scene, const com
                                 features::feature_set features) {
     train::train_options o;
     o.schedule = s.schedule;
-    o.densification = s.densification;
+    o.schedule.dropout = s.schedule.dropout.value_or(train::default_dropout(scene));
+    o.densification = s.densification.resolved(
+        {.iterations = s.schedule.iterations, .transparent = scene.has_alpha, .seed = s.seed});
     o.loss = s.loss;
     o.max_cap =
         s.max_cap.value_or(std::max(train::default_cap(scene), s.densification.target_count().value_or(0)));

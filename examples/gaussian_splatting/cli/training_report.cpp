@@ -41,7 +41,7 @@ settings resolved(settings s, const train::train_options& options, const std::st
     s.schedule = plan;
     s.schedule.sh_lr = plan.sh_rate();
     s.schedule.resolution_schedule = plan.resolution_interval();
-    s.densification = s.densification.resolved({.iterations = plan.iterations, .seed = s.seed});
+    s.densification = options.densification;
     s.sh_degree = features::first_sh_degree(options.features.values_if_on("direction"));
     s.effects.text = effects_in_use;
     s.max_cap = options.max_cap;

@@ -49,7 +49,8 @@ struct lower_by_penalty {
     WARPAGG_HD void lower(float& value, float second_moment, float rate, float gradient) const {
         constexpr float most = 0.1f;  // slow enough for new Gaussians that no view has shown yet
         const float root = warpagg::math::inverse_sqrt(second_moment + 1e-30f);
-        value -= rate * warpagg::math::min(gradient * root, most);
+        const float lowered = value - rate * warpagg::math::min(gradient * root, most);
+        if (raster::is_finite(lowered)) value = lowered;
     }
 };
 

@@ -15,6 +15,7 @@ struct training_facts {
     int views = 1;                  ///< number of training views
     double extent = 1;              ///< extent of the scene, see `scene::extent`
     bool white = false;             ///< whether images have transparent parts, shown on white
+    bool transparent = false;       ///< whether photos have transparent parts
     std::size_t max_gaussians = 0;  ///< largest number of Gaussians
     std::uint64_t seed = 0;
     accumulator gradient = accumulator::native;  ///< accumulator of the sums of scores

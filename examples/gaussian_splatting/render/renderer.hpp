@@ -75,10 +75,11 @@ class renderer {
     }
 
     /// The first part of `forward`: projects the Gaussians and makes the tile lists.
-    void list(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
+    void list(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
+              const dropout& dropped = {}) {
         using device::stage;
         device_.begin(stage::project);
-        project_all(gaussians, count, view, sh_degree);
+        project_all(gaussians, count, view, sh_degree, dropped);
         device_.begin(stage::bin);
         bin(count);
         device_.begin(stage::blend_forward);
@@ -246,7 +247,8 @@ class renderer {
         return all;
     }
 
-    void project_all(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
+    void project_all(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
+                     const dropout& dropped = {}) {
         require_drawable(view);
         tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
@@ -259,7 +261,7 @@ class renderer {
                 projection{gaussians, count, for_device<value_t<narrow, Real>>(view), sh_degree,
                            tiles_across_, tiles_down_, reserve(splats_, count).data(),
                            reserve(boxes_, count).data(), reserve(depths_, count).data(),
-                           reserve(order_, count).data(), reserve(tiles_, count).data()});
+                           reserve(order_, count).data(), reserve(tiles_, count).data(), dropped});
         });
     }
 

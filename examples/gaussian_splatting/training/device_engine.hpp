@@ -259,7 +259,7 @@ class device_engine final : public engine, device::profiler {
 
     void iterate(const step_type& s) {
         const step_plan& plan = s.plan;
-        renderer_.list(trained_.values.read(), count_, s.camera, plan.sh_degree);
+        renderer_.list(trained_.values.read(), count_, s.camera, plan.sh_degree, dropout_of(plan));
         features_.before_blend(s);
         renderer_.blend(plan.background, features_.background(s.camera));
         device_.begin(device::stage::loss);
@@ -270,6 +270,11 @@ class device_engine final : public engine, device::profiler {
                            descent(plan), strategy_->wants(plan.iteration) ? seen_.data() : nullptr);
         strategy_->after_step(plan.iteration, {in_training(), plan.rates, renderer_.capacity()});
         monitor_.close(renderer_, loss_->sums(), lists_.length(plan.view), plan.iteration);
+    }
+
+    raster::dropout dropout_of(const step_plan& plan) const {
+        counter_random random(setup_.facts.seed, static_cast<std::uint64_t>(plan.iteration), 0);
+        return {plan.dropout, static_cast<std::uint32_t>(random.below(std::uint64_t{1} << 32))};
     }
 
     adam<float> descent(const step_plan& plan) {

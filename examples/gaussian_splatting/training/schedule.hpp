@@ -25,6 +25,8 @@ struct schedule {
     std::optional<double> sh_lr;  ///< learning rate of SH degrees 1 to 3; see `sh_rate`
     double opacity_lr = 2.5e-2, scaling_lr = 1e-2, rotation_lr = 1e-3;
 
+    std::optional<double> dropout;  ///< see `step_plan`, and `default_dropout`
+
     /// Images are halved `num_downscales` times at first, and once less after every
     /// `resolution_interval` iterations.
     int num_downscales = 1;

@@ -25,6 +25,7 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     setup.facts.views = static_cast<int>(scene.train.size());
     setup.facts.extent = schedule.extent;
     setup.facts.white = scene.has_alpha && options.background.color == std::array<float, 3>{1, 1, 1};
+    setup.facts.transparent = scene.has_alpha;
     setup.facts.max_gaussians = options.max_cap;
     setup.facts.seed = options.seed;
     setup.facts.gradient = options.gradient;
@@ -66,6 +67,7 @@ void training::add_step() {
              plan.sh_degree = schedule_.sh_degree_at(iteration);
              plan.updates_sh = schedule_.updates_sh(iteration);
              plan.background = options_.background.random ? random_color(*colors) : options_.background.color;
+             plan.dropout = schedule_.dropout.value_or(default_dropout(scene_));
              plan.rates = schedule_.rates_at(iteration);
              engine_.step(plan);
              faults_.steps(plan.view);
@@ -156,6 +158,8 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     options.features.schedule(training);
     return training.run();
 }
+
+double default_dropout(const scene& scene) { return scene.has_alpha ? 0 : 0.05; }
 
 std::size_t default_cap(const scene& scene) {
     std::size_t pixels = 0;

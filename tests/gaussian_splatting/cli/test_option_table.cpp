@@ -71,6 +71,7 @@ const std::map<std::string, option_case> cases{
     {"--opacity-lr", {{"3e-2"}, [](const settings& s) { return s.schedule.opacity_lr == 3e-2; }}},
     {"--scaling-lr", {{"4e-3"}, [](const settings& s) { return s.schedule.scaling_lr == 4e-3; }}},
     {"--rotation-lr", {{"5e-3"}, [](const settings& s) { return s.schedule.rotation_lr == 5e-3; }}},
+    {"--dropout", {{"0.2"}, [](const settings& s) { return s.schedule.dropout == 0.2; }}},
     {"--loss", {{"l1_ssim"}, [](const settings& s) { return s.loss == "l1_ssim"; }, {}, true}},
     {"--strategy", {{"mcmc"}, [](const settings& s) { return s.densification.name == "mcmc"; }}},
     {"--mcmc-noise", {{"0"}, [](const settings& s) { return mcmc(s).noise == 0; }, {"--strategy", "mcmc"}}},

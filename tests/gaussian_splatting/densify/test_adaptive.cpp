@@ -319,6 +319,7 @@ TEST_CASE("adaptive: Adam's catch-up steps survive the removal of other Gaussian
         e->set_views(scene.train, scene.test);
         const auto seen_by = [&](std::size_t view) {
             e->set_model(model);
+            e->begin(setup_with(in_any_order));
             e->reserve();
             e->step(plan(view, rate));
             const gaussians moved = e->get_model();

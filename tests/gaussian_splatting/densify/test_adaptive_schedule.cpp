@@ -50,6 +50,15 @@ TEST_CASE("the shorter densification is, the larger is the growth threshold, unl
     CHECK(threshold({.densify_until_iter = 0, .densify_grad_threshold = 3e-4}, 7000) == 3e-4);
 }
 
+TEST_CASE("the penalty on opacities is 0.01, or 0 if photos have transparent parts, unless it is set") {
+    gs::train::training_facts facts;
+    CHECK(adaptive_schedule({}, facts).opacity_penalty() == 0.01);
+    CHECK(adaptive_schedule({.opacity_penalty = 0}, facts).opacity_penalty() == 0);
+    facts.transparent = true;
+    CHECK(adaptive_schedule({}, facts).opacity_penalty() == 0);
+    CHECK(adaptive_schedule({.opacity_penalty = 0.5}, facts).opacity_penalty() == 0.5);
+}
+
 TEST_CASE("pruning follows densification, half-way to the end at the latest") {
     adaptive_config config{.densify_from_iter = 400, .densify_until_iter = 600};
     CHECK(adaptive_schedule(config, {.iterations = 1000}).share_to_prune() == 0.2);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "../training/engines.hpp"
@@ -112,6 +113,14 @@ TEST_CASE("penalties: opaque and transparent Gaussians stay finite") {
         CHECK(std::isfinite(p.opacity[0]));
         CHECK(std::isfinite(p.log_scale[0]));
     }
+}
+
+TEST_CASE("penalties: a learning rate that would drive a value out of range changes nothing") {
+    penalized p(0, 1, 0);
+    p.penalty.opacity_rate = p.penalty.scale_rate = std::numeric_limits<float>::infinity();
+    p.penalty(0);
+    CHECK(p.opacity[0] == 0);
+    CHECK(p.log_scale[0] == 1);
 }
 
 TEST_CASE("penalties: without a weight of scales, scales stay") {

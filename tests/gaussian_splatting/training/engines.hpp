@@ -44,10 +44,12 @@ inline gs::train::step_plan plan_for(std::size_t view) {
     return p;
 }
 
-/// A training run with these sums of gradients, and the defaults otherwise.
+/// A training run with these sums of gradients, without a penalty on opacities, which also changes Gaussians
+/// that no view shows. Otherwise it has the defaults.
 inline gs::train::training_setup setup_with(gs::accumulator sums) {
     gs::train::training_setup setup;
     setup.facts.gradient = sums;
+    setup.densification.of<gs::train::adaptive_config>().opacity_penalty = 0;
     return setup;
 }
 
@@ -62,6 +64,7 @@ inline std::uint64_t densify_once(gs::train::engine& e, gs::train::adaptive_conf
                                   double extent = 1) {
     config.densify_from_iter = 0;
     config.densification_interval = 1;
+    config.opacity_penalty = config.opacity_penalty.value_or(0);
     gs::train::training_setup setup;
     setup.facts.extent = extent;
     setup.facts.max_gaussians = cap;

@@ -219,6 +219,7 @@ TEST_CASE("a Gaussian that a view does not see keeps its bits, whatever its mome
         // From no momentum, a step moves those that its view sees.
         const auto seen_by = [&](std::size_t view) {
             e->set_model(model);
+            e->begin(setup_with(gs::accumulator::native));
             e->reserve();
             e->step(plan(view, 0.01f));
             return changed(model, e->get_model());

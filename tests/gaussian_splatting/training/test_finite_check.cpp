@@ -48,6 +48,7 @@ std::unique_ptr<gs::train::engine> ready(make_engine make, const gs::scene& scen
     auto e = make();
     e->set_views(scene.train, {}, gs::train::schedule{}.num_downscales);
     e->set_model(model);
+    e->begin(setup_with(gs::accumulator::native));
     e->reserve();
     return e;
 }

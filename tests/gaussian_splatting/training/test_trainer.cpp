@@ -119,8 +119,8 @@ struct revision {
 
 /// What happens in 21 iterations, densifying after 4, 6, ..., 14.
 std::unique_ptr<recorder> trained(gs::train::train_options o, std::size_t gaussians = 50,
-                                  std::size_t dropped = 0, const revision& revision = {}) {
-    gs::scene scene;
+                                  std::size_t dropped = 0, const revision& revision = {},
+                                  gs::scene scene = {}) {
     scene.train.resize(3);
     o.schedule.iterations = 21;
     auto& adaptive = o.densification.of<adaptive_config>();
@@ -157,6 +157,17 @@ TEST_CASE(
         CHECK(c.revised_opacity);
         CHECK(c.gradient == doctest::Approx(8e-5 * std::pow(1000, 0.25)));
     }
+}
+
+TEST_CASE("dropout: each step leaves out the share of the option, or a default without transparent photos") {
+    gs::scene cut_out;
+    cut_out.has_alpha = true;
+    CHECK(trained({})->steps[20].plan.dropout == 0.05);
+    CHECK(trained({}, 50, 0, {}, cut_out)->steps[20].plan.dropout == 0);
+    gs::train::train_options o;
+    o.schedule.dropout = 0.2;
+    CHECK(trained(o)->steps[0].plan.dropout == 0.2);
+    CHECK(trained(o, 50, 0, {}, cut_out)->steps[20].plan.dropout == 0.2);
 }
 
 TEST_CASE("photos grow by the schedule, and lists are sized anew for them") {

@@ -23,7 +23,7 @@ class adaptive final : public strategy<Device> {
     using settings = adaptive_config;
 
     adaptive(Device& device, const adaptive_config& config, const training_facts& facts)
-        : schedule_(config, facts), densifier_(device), penalties_{config.opacity_penalty} {}
+        : schedule_(config, facts), densifier_(device), penalties_{schedule_.opacity_penalty()} {}
 
     bool wants(int iteration) const override { return schedule_.wants(iteration); }
     bool due(int iteration) const override { return schedule_.due(iteration); }

@@ -30,8 +30,8 @@ struct adaptive_config {
     /// Number of Gaussians to grow to, evenly and regardless of the gradient threshold. Without a
     /// budget the threshold decides.
     std::optional<std::size_t> budget{};
-    bool revised_opacity = true;  ///< see `densify_config`
-    double opacity_penalty = 0;   ///< see `penalty_weights`
+    bool revised_opacity = true;              ///< see `densify_config`
+    std::optional<double> opacity_penalty{};  ///< see `penalty_weights`
 
     /// A member of every strategy's settings: see `strategy_config`.
     /// @{

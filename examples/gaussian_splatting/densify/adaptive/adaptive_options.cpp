@@ -53,8 +53,8 @@ std::vector<option> growth_options(adaptive_config& c) {
                  "opaque as the Gaussian was (Rota Bulò et al. 2024)"},
         {.names = "--opacity-penalty",
          .value = not_negative(c.opacity_penalty),
-         .help = "Strength of the penalty on opacities, as a weight of their mean beside the loss; 0.01 "
-                 "reduces floaters in scenes with few photos"},
+         .help = "Weight of the mean opacity beside the loss; reduces floaters",
+         .default_text = "0.01, or 0 if photos have transparent parts"},
         {.names = "--prune-share",
          .value = share(c.prune_share),
          .help = "Share of the Gaussians that is removed after densification, those with the smallest "
@@ -87,6 +87,7 @@ adaptive_config adaptive_config::resolved(const training_facts& facts) const {
     adaptive_config all = *this;
     all.densify_until_iter = schedule.densify_until();
     all.densify_grad_threshold = schedule.growth_threshold();
+    all.opacity_penalty = schedule.opacity_penalty();
     all.prune_share = schedule.share_to_prune();
     return all;
 }

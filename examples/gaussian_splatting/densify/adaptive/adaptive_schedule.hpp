@@ -51,6 +51,9 @@ class adaptive_schedule final : public timetable {
     /// densification, because opacities need time to recover. On a white background also when
     /// densification begins.
     bool resets_opacity(int iteration) const;
+    /// Returns the weight of the mean opacity. The default is 0.01, or 0 if photos have transparent
+    /// parts: they show where the scene is empty.
+    double opacity_penalty() const { return config_.opacity_penalty.value_or(facts_.transparent ? 0 : 0.01); }
     /// Returns whether Gaussians near a camera are hidden: at each densification interval until the
     /// end.
     bool hides_near_cameras(int iteration) const {

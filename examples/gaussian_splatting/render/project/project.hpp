@@ -11,6 +11,7 @@
 #include "../geometry/splat.hpp"
 #include "../tiles/tile_reach.hpp"
 #include "antialiasing.hpp"
+#include "dropout.hpp"
 #include "gaussian_row.hpp"
 #include "geometry.hpp"
 
@@ -33,6 +34,7 @@ struct project {
     std::uint32_t* depths;      ///< sort keys: the bits of positive floats have their order
     std::uint32_t* identities;  ///< index of each Gaussian, sorted along with the key
     std::uint32_t* tiles;       ///< number of tiles in the splat's box; zero if it is not drawn
+    raster::dropout dropout = {};
 
     static std::size_t warps(std::size_t count) { return (count + W::size - 1) / W::size; }
 
@@ -43,6 +45,7 @@ struct project {
         const vec3<real> mean = row.template load<3>(w, gaussians.mean, 0, 3);
         const vec3<real> at = in_camera(mean, camera);
         row.active = inside && projection_of<real, Effects>::is_drawn(at, camera);
+        if (dropout.limit != 0) row.active = row.active && !dropout.leaves_out(i);
         drawing d{};
         if (w.any(row.active)) draw(w, row, mean, at, d);
 
@@ -80,6 +83,7 @@ struct project {
         const footprint<real, Effects> f(at, log_scale, quaternion, camera);
         real opacity = sigmoid(logit);
         if constexpr (Effects.antialiasing) opacity *= opacity_left(whitened_axes<real>(f.shape, f.ax, f.ay));
+        opacity *= real(Real(dropout.gain));
         splat<real>& s = d.shape;
         s.log2_opacity = warpagg::math::log2(opacity);
         s.cutoff = warpagg::math::log2(opacity * constant<real>(1 / least_alpha));
