@@ -21,7 +21,7 @@ train::train_options options_of(const settings& s, const scene& scene, const com
                                 features::feature_set features) {
     train::train_options o;
     o.schedule = s.schedule;
-    o.schedule.dropout = s.schedule.dropout.value_or(train::default_dropout(scene));
+    o.schedule.transparent = scene.has_alpha;
     o.densification = s.densification.resolved(
         {.iterations = s.schedule.iterations, .transparent = scene.has_alpha, .seed = s.seed});
     o.loss = s.loss;

@@ -39,7 +39,10 @@ std::size_t peak_host_bytes() {
 settings resolved(settings s, const train::train_options& options, const std::string& effects_in_use) {
     const train::schedule& plan = options.schedule;
     s.schedule = plan;
+    s.schedule.position_lr_init = plan.position_rate_init();
+    s.schedule.position_lr_final = plan.position_rate_final();
     s.schedule.sh_lr = plan.sh_rate();
+    s.schedule.dropout = plan.dropout_share();
     s.schedule.resolution_schedule = plan.resolution_interval();
     s.densification = options.densification;
     s.sh_degree = features::first_sh_degree(options.features.values_if_on("direction"));

@@ -23,7 +23,7 @@ int schedule::resolution_interval() const {
 std::array<float, 8> schedule::rates_at(int iteration) const {
     const double t = std::min(1.0, static_cast<double>(iteration) / iterations);
     const double mean =
-        extent * std::exp(std::log(position_lr_init) * (1 - t) + std::log(position_lr_final) * t);
+        extent * std::exp(std::log(position_rate_init()) * (1 - t) + std::log(position_rate_final()) * t);
     const double sh = feature_lr, band = sh_rate();
     std::array<float, 8> rates{};
     std::ranges::transform(std::array{mean, scaling_lr, rotation_lr, opacity_lr, sh, band, band, band},

@@ -17,15 +17,18 @@ struct schedule {
     int sh_degree = 3;
     int sh_degree_interval = 500;  ///< iterations between two increases of the SH degree
     double extent = 1;             ///< see `scene::extent`
+    /// Whether photos have transparent parts. Such photos show where the scene is empty. Gaussians
+    /// then need no regularization and may move faster.
+    bool transparent = false;
 
     /// Learning rates of Adam. Rates of positions are relative to the extent and decay
-    /// exponentially from `init` to `final`.
-    double position_lr_init = 1.6e-4, position_lr_final = 1.6e-6;
+    /// exponentially from `init` to `final`: see `position_rate_init` and `position_rate_final`.
+    std::optional<double> position_lr_init, position_lr_final;
     double feature_lr = 2.5e-3;   ///< learning rate of SH degree 0
     std::optional<double> sh_lr;  ///< learning rate of SH degrees 1 to 3; see `sh_rate`
     double opacity_lr = 2.5e-2, scaling_lr = 1e-2, rotation_lr = 1e-3;
 
-    std::optional<double> dropout;  ///< see `step_plan`, and `default_dropout`
+    std::optional<double> dropout;  ///< see `dropout_share`
 
     /// Images are halved `num_downscales` times at first, and once less after every
     /// `resolution_interval` iterations.
@@ -45,9 +48,18 @@ struct schedule {
     /// `resolution_schedule`, or if that is unset, a fifth of the iterations, and less if
     /// `num_downscales` exceeds 1. Returns 0 if the run is too short; images then have full size.
     int resolution_interval() const;
+    /// Returns the first and the last learning rate of positions. The defaults are those of Kerbl
+    /// et al. 2023, or 2 and 5 times as large for `transparent` photos.
+    /// @{
+    double position_rate_init() const { return position_lr_init.value_or(transparent ? 3.2e-4 : 1.6e-4); }
+    double position_rate_final() const { return position_lr_final.value_or(transparent ? 8e-6 : 1.6e-6); }
+    /// @}
     /// Returns the learning rate of SH degrees 1 to 3: `sh_lr`, or if it is unset, a tenth of
-    /// `feature_lr`.
-    double sh_rate() const { return sh_lr.value_or(feature_lr / 10); }
+    /// `feature_lr`, or a fifth for `transparent` photos.
+    double sh_rate() const { return sh_lr.value_or(feature_lr / (transparent ? 5 : 10)); }
+    /// Returns the share of the Gaussians that each step leaves out: see `raster::dropout`. The
+    /// default is 0.05, or 0 for `transparent` photos.
+    double dropout_share() const { return dropout.value_or(transparent ? 0 : 0.05); }
     /// Returns Adam's learning rates by `parameter`.
     std::array<float, 8> rates_at(int iteration) const;
 };

@@ -42,6 +42,7 @@ training::training(train::engine& engine, const gs::scene& scene, const train_op
                    const train_events& events)
     : engine_(engine), scene_(scene), options_(options), schedule_(options.schedule), clock_(events.seconds) {
     schedule_.extent = scene.extent();
+    schedule_.transparent = scene.has_alpha;
     engine_.begin(setup_of(scene, options, schedule_));
     add_step();
     add_memory();
@@ -67,7 +68,7 @@ void training::add_step() {
              plan.sh_degree = schedule_.sh_degree_at(iteration);
              plan.updates_sh = schedule_.updates_sh(iteration);
              plan.background = options_.background.random ? random_color(*colors) : options_.background.color;
-             plan.dropout = schedule_.dropout.value_or(default_dropout(scene_));
+             plan.dropout = schedule_.dropout_share();
              plan.rates = schedule_.rates_at(iteration);
              engine_.step(plan);
              faults_.steps(plan.view);
@@ -158,8 +159,6 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     options.features.schedule(training);
     return training.run();
 }
-
-double default_dropout(const scene& scene) { return scene.has_alpha ? 0 : 0.05; }
 
 std::size_t default_cap(const scene& scene) {
     std::size_t pixels = 0;

@@ -159,10 +159,6 @@ class training {
 train_result train(engine& engine, const scene& scene, const train_options& options,
                    const train_events& events);
 
-/// Returns the default of `schedule::dropout`: 0.05, or 0 if photos have transparent parts. Such
-/// photos show where the scene is empty, and need no regularization.
-double default_dropout(const scene& scene);
-
 /// Returns the default limit of the number of Gaussians: one per 32 pixels of all training views,
 /// and at least 10,000.
 std::size_t default_cap(const scene& scene);

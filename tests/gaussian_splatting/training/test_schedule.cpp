@@ -18,6 +18,23 @@ TEST_CASE("rates of the positions fall a hundredfold, by the scene's extent") {
     CHECK(s.rates_at(1)[5] == doctest::Approx(s.rates_at(1)[4] / 10));
 }
 
+TEST_CASE("photos with transparent parts have faster rates, and no dropout, unless they are set") {
+    schedule opaque, cut_out;
+    cut_out.transparent = true;
+    CHECK(opaque.rates_at(7000)[0] == doctest::Approx(1.6e-6));
+    CHECK(cut_out.rates_at(0)[0] == doctest::Approx(3.2e-4));
+    CHECK(cut_out.rates_at(7000)[0] == doctest::Approx(8e-6));
+    CHECK(cut_out.rates_at(1)[5] == doctest::Approx(cut_out.rates_at(1)[4] / 5));
+    CHECK(opaque.dropout_share() == 0.05);
+    CHECK(cut_out.dropout_share() == 0);
+    cut_out.position_lr_init = cut_out.position_lr_final = 1e-3;
+    cut_out.sh_lr = 2e-3;
+    cut_out.dropout = 0.2;
+    CHECK(cut_out.rates_at(3500)[0] == doctest::Approx(1e-3));
+    CHECK(cut_out.rates_at(1)[5] == doctest::Approx(2e-3));
+    CHECK(cut_out.dropout_share() == 0.2);
+}
+
 TEST_CASE("a degree of spherical harmonics every interval") {
     schedule s;
     s.sh_degree = 2;
