@@ -14,7 +14,6 @@ struct step_plan {
     int sh_degree = 0;       ///< SH degree of the rendered colors
     bool updates_sh = true;  ///< if false, the step does not change view-dependent color
     std::array<float, 3> background{};
-    double dropout = 0;            ///< share of the Gaussians that the step leaves out: see `raster::dropout`
     std::array<float, 8> rates{};  ///< Adam's learning rates by `parameter`
 };
 

@@ -21,6 +21,7 @@ struct training_setup {
     training_facts facts;
     strategy_settings densification;
     std::string loss = default_loss;
+    double dropout = 0;  ///< share of the Gaussians that each step leaves out: see `raster::dropout`
     /// The features that are on, by name, with their initial values.
     std::map<std::string, std::vector<float>, std::less<>> features;
 

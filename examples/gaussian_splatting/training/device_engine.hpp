@@ -274,7 +274,7 @@ class device_engine final : public engine, device::profiler {
 
     raster::dropout dropout_of(const step_plan& plan) const {
         counter_random random(setup_.facts.seed, static_cast<std::uint64_t>(plan.iteration), 0);
-        return {plan.dropout, static_cast<std::uint32_t>(random.below(std::uint64_t{1} << 32))};
+        return {setup_.dropout, static_cast<std::uint32_t>(random.below(std::uint64_t{1} << 32))};
     }
 
     adam<float> descent(const step_plan& plan) {

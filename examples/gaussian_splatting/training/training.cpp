@@ -31,6 +31,7 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     setup.facts.gradient = options.gradient;
     setup.densification = options.densification;
     setup.loss = options.loss;
+    setup.dropout = schedule.dropout_share();
     for (const auto& feature : options.features.all())
         if (feature.on) setup.features[feature.name] = feature.values;
     return setup;
@@ -68,7 +69,6 @@ void training::add_step() {
              plan.sh_degree = schedule_.sh_degree_at(iteration);
              plan.updates_sh = schedule_.updates_sh(iteration);
              plan.background = options_.background.random ? random_color(*colors) : options_.background.color;
-             plan.dropout = schedule_.dropout_share();
              plan.rates = schedule_.rates_at(iteration);
              engine_.step(plan);
              faults_.steps(plan.view);

@@ -37,6 +37,7 @@ class recorder final : public gs::train::engine, gs::device::profiler {
     std::vector<int> degrees;
     std::vector<std::size_t> pruned_sh_after;  ///< number of steps
     double seconds = 0;                        ///< one per step
+    double dropout = 0;
 
     explicit recorder(std::size_t count) : sh_(*this) {
         count_ = count;
@@ -47,6 +48,7 @@ class recorder final : public gs::train::engine, gs::device::profiler {
     void set_model(const gs::gaussians&) override {}
     gs::gaussians get_model() override { return {}; }
     void begin(const gs::train::training_setup& setup) override {
+        dropout = setup.dropout;
         schedule_ = std::make_unique<gs::train::adaptive_schedule>(setup.densification.of<adaptive_config>(),
                                                                    setup.facts);
         timetable_ = schedule_.get();
@@ -159,15 +161,15 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("dropout: each step leaves out the share of the option, or a default without transparent photos") {
+TEST_CASE("dropout: training has the share of the option, or a default without transparent photos") {
     gs::scene cut_out;
     cut_out.has_alpha = true;
-    CHECK(trained({})->steps[20].plan.dropout == 0.05);
-    CHECK(trained({}, 50, 0, {}, cut_out)->steps[20].plan.dropout == 0);
+    CHECK(trained({})->dropout == 0.05);
+    CHECK(trained({}, 50, 0, {}, cut_out)->dropout == 0);
     gs::train::train_options o;
     o.schedule.dropout = 0.2;
-    CHECK(trained(o)->steps[0].plan.dropout == 0.2);
-    CHECK(trained(o, 50, 0, {}, cut_out)->steps[20].plan.dropout == 0.2);
+    CHECK(trained(o)->dropout == 0.2);
+    CHECK(trained(o, 50, 0, {}, cut_out)->dropout == 0.2);
 }
 
 TEST_CASE("photos grow by the schedule, and lists are sized anew for them") {
