@@ -22,8 +22,10 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     train::train_options o;
     o.schedule = s.schedule;
     o.schedule.transparent = scene.has_alpha;
-    o.densification = s.densification.resolved(
-        {.iterations = s.schedule.iterations, .transparent = scene.has_alpha, .seed = s.seed});
+    o.densification = s.densification.resolved({.iterations = s.schedule.iterations,
+                                                .views = static_cast<int>(scene.train.size()),
+                                                .transparent = scene.has_alpha,
+                                                .seed = s.seed});
     o.loss = s.loss;
     o.max_cap =
         s.max_cap.value_or(std::max(train::default_cap(scene), s.densification.target_count().value_or(0)));

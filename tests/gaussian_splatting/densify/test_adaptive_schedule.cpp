@@ -50,9 +50,13 @@ TEST_CASE("the shorter densification is, the larger is the growth threshold, unl
     CHECK(threshold({.densify_until_iter = 0, .densify_grad_threshold = 3e-4}, 7000) == 3e-4);
 }
 
-TEST_CASE("the penalty on opacities is 0.01, or 0 if photos have transparent parts, unless it is set") {
+TEST_CASE(
+    "the penalty on opacities falls with the views, and is 0 for transparent photos, unless it is set") {
     gs::train::training_facts facts;
+    facts.views = 25;
     CHECK(adaptive_schedule({}, facts).opacity_penalty() == 0.01);
+    facts.views = 250;
+    CHECK(adaptive_schedule({}, facts).opacity_penalty() == doctest::Approx(0.001));
     CHECK(adaptive_schedule({.opacity_penalty = 0}, facts).opacity_penalty() == 0);
     facts.transparent = true;
     CHECK(adaptive_schedule({}, facts).opacity_penalty() == 0);

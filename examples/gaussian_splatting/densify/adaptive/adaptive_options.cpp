@@ -54,7 +54,7 @@ std::vector<option> growth_options(adaptive_config& c) {
         {.names = "--opacity-penalty",
          .value = not_negative(c.opacity_penalty),
          .help = "Weight of the mean opacity beside the loss; reduces floaters",
-         .default_text = "0.01, or 0 if photos have transparent parts"},
+         .default_text = "0.25 / photos, at most 0.01; 0 if they have transparent parts"},
         {.names = "--prune-share",
          .value = share(c.prune_share),
          .help = "Share of the Gaussians that is removed after densification, those with the smallest "

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "../timetable.hpp"
@@ -51,9 +52,13 @@ class adaptive_schedule final : public timetable {
     /// densification, because opacities need time to recover. On a white background also when
     /// densification begins.
     bool resets_opacity(int iteration) const;
-    /// Returns the weight of the mean opacity. The default is 0.01, or 0 if photos have transparent
-    /// parts: they show where the scene is empty.
-    double opacity_penalty() const { return config_.opacity_penalty.value_or(facts_.transparent ? 0 : 0.01); }
+    /// Returns the weight of the mean opacity. The default is 0.25 divided by the number of training
+    /// views, at most 0.01, because many views correct floaters themselves. It is 0 if photos have
+    /// transparent parts: they show where the scene is empty.
+    double opacity_penalty() const {
+        const double by_views = std::min(0.01, 0.25 / std::max(1, facts_.views));
+        return config_.opacity_penalty.value_or(facts_.transparent ? 0 : by_views);
+    }
     /// Returns whether Gaussians near a camera are hidden: at each densification interval until the
     /// end.
     bool hides_near_cameras(int iteration) const {
