@@ -36,12 +36,8 @@ TEST_CASE("quality: with few photos, dropout and the penalty on opacities make a
             }
             return sum / 4;
         };
-        const double none = mean_psnr(0, 0), dropout = mean_psnr(0.05, 0), penalty = mean_psnr(0, 0.01),
-                     both = mean_psnr(0.05, 0.01);
-        MESSAGE("without " << none << " dB, dropout " << dropout << ", penalty " << penalty << ", both "
-                           << both);
-        CHECK(dropout > none + 0.1);
-        CHECK(penalty > none + 0.1);
-        CHECK(both > none + 0.5);
+        const double without = mean_psnr(0, 0), with_both = mean_psnr(0.05, 0.01);
+        MESSAGE("without " << without << " dB, with both " << with_both << " dB");
+        CHECK(with_both > without + 0.5);
     }
 }
