@@ -35,9 +35,9 @@ struct hard_case {
 };
 
 inline void speed_up(gs::train::schedule& s) {
-    for (double* rate : {&s.position_lr_init, &s.position_lr_final, &s.feature_lr, &s.opacity_lr,
-                         &s.scaling_lr, &s.rotation_lr})
-        *rate *= 10;
+    s.position_lr_init = 10 * s.position_rate_init();
+    s.position_lr_final = 10 * s.position_rate_final();
+    for (double* rate : {&s.feature_lr, &s.opacity_lr, &s.scaling_lr, &s.rotation_lr}) *rate *= 10;
 }
 
 inline void draw_points(trial& t, std::size_t count) {
