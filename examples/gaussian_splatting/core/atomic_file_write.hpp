@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <string>
 
 #include "error.hpp"
 
@@ -19,10 +22,13 @@ inline void atomic_file_write(const std::filesystem::path& file,
     const std::filesystem::path temporary = file.string() + ".part";
     std::error_code ignored;
     try {
+        errno = 0;
         std::ofstream out(temporary, std::ios::binary);
         if (out) fill(out);
         out.close();
-        if (!out) throw error("cannot write " + file.string());
+        if (!out)
+            throw error("cannot write " + file.string() +
+                        (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
     } catch (...) {
         std::filesystem::remove(temporary, ignored);
         throw;
