@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../checkpoint/state_archive.hpp"
 #include "../model/parameters.hpp"
 #include "../optimize/trained_parameters.hpp"
 #include "../render/geometry/list_capacity.hpp"
@@ -75,6 +76,10 @@ class strategy : public timetable {
     /// Adds, moves and removes Gaussians. May wait for the device. Afterwards the statistics are
     /// zero.
     virtual densify_report run(int iteration, const run_context<Device>& context) = 0;
+
+    /// Saves or loads the state that later calls depend on: see `state_archive`. An archive that
+    /// loads has no such state if another strategy saved it.
+    virtual void exchange(state_archive&) {}
 
     /// Changes parameters between two steps, for example in an opacity reset. Must keep the number
     /// and order of the Gaussians, and must not wait for the device.

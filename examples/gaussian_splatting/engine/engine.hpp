@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../checkpoint/state_archive.hpp"
 #include "../device/profiler.hpp"
 #include "../model/gaussians.hpp"
 #include "../scene/scene.hpp"
@@ -67,11 +68,16 @@ class engine {
     /// Returns the timetable of the densification strategy. Precondition: `begin` was called.
     const train::timetable& timetable() const { return *timetable_; }
     device::profiler& profile() { return *profiler_; }
+    /// Returns the state that determines all later steps, for checkpoints. Precondition for saving
+    /// it: `take_report` was called after the last step. Precondition for loading it: `begin` was
+    /// called, with the same training views.
+    checkpointed& state() { return *state_; }
 
   protected:
     std::size_t count_ = 0;  ///< number of Gaussians
     const train::timetable* timetable_ = nullptr;
     device::profiler* profiler_ = nullptr;
+    checkpointed* state_ = nullptr;
 };
 
 /// Returns a factory of CPU engines for each instruction set that this machine can run, the best

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "../checkpoint/state_archive.hpp"
 #include "../engine/feature_state.hpp"
 #include "../engine/training_setup.hpp"
 #include "../model/gaussians.hpp"
@@ -42,6 +43,10 @@ class device_feature : public train::feature_state {
     virtual void set_views(const image_pyramid&) {}
     virtual void set_model(const gaussians&) {}
     virtual void get_model(gaussians&) {}
+
+    /// Saves or loads the state that changes during training: see `state_archive`. An archive that
+    /// loads has no such state if the feature was off when it was saved.
+    virtual void exchange(state_archive&) {}
 
     /// Returns the memory key. In steps with equal keys, the hooks below must launch the same
     /// kernels over the same ranges and allocate nothing: see `device::graph_key`. The key must

@@ -54,6 +54,13 @@ class device_features {
         for (auto& [name, f] : parts_) f->get_model(model);
     }
 
+    void exchange(state_archive& archive) {
+        for (auto& [name, f] : parts_) {
+            const state_archive::scope scope(archive, name);
+            f->exchange(archive);
+        }
+    }
+
     void add_memory_keys(const step& s, device::graph_key& key) const {
         for (const auto& [name, f] : parts_) key.push_back(f->memory_key(s));
     }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "../checkpoint/exchange_buffer.hpp"
 #include "../device/device.hpp"
 #include "aosoa.hpp"
 #include "gaussians.hpp"
@@ -52,6 +53,24 @@ class parameter_memory {
 
     void zero(Device& device) {
         for (auto& a : arrays_) device.zero(a.data(), a.size());
+    }
+    /// Saves or loads all arrays. Waits for the device.
+    void exchange(state_archive& archive, Device& device) {
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            exchange_buffer(archive, device, parameter_names[p], arrays_[p]);
+        archive.exchange("gaussians_with_sh", gaussians_with_sh_);
+    }
+    /// Returns whether the arrays have the sizes for this number of Gaussians and this SH degree.
+    bool fits(std::size_t count, int sh_degree) const {
+        bool fits = gaussians_with_sh_ <= count;
+        for (std::size_t p = 0; p < parameter_count; ++p) {
+            const std::size_t rows = is_view_dependent(p) ? gaussians_with_sh_ : count;
+            fits = fits &&
+                   arrays_[p].size() == (has_parameter(p, sh_degree)
+                                             ? in_whole_blocks(rows) * width_of(static_cast<parameter>(p))
+                                             : 0);
+        }
+        return fits;
     }
     /// Resizes the arrays and copies the model to them. Waits for the device.
     void upload(Device& device, const gaussians& model) {

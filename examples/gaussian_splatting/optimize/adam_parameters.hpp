@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "../checkpoint/exchange_buffer.hpp"
 #include "../device/device.hpp"
 #include "ordered_sums.hpp"
 
@@ -35,6 +36,19 @@ class adam_parameters {
         std::vector<float> values(Width * rows());
         device_.download(values.data(), values_.data(), values.size());
         return values;
+    }
+
+    /// Saves or loads all rows with the state of Adam. Keeps the present rows if the archive has none
+    /// or another number of them.
+    void exchange(state_archive& archive) {
+        std::vector<int> steps = steps_;
+        if (archive.loads() && !archive.has("steps")) return;
+        archive.exchange("steps", steps);
+        if (steps.size() != steps_.size()) return;
+        steps_ = steps;
+        exchange_buffer(archive, device_, "values", values_);
+        exchange_buffer(archive, device_, "first_moments", first_);
+        exchange_buffer(archive, device_, "second_moments", second_);
     }
 
     std::size_t rows() const { return steps_.size(); }

@@ -15,6 +15,23 @@ struct trained_parameters {
     parameter_memory<Device> values, first, second;  ///< `first` and `second`: Adam's moments
     /// The last step that updated each Gaussian.
     typename Device::template buffer<std::uint32_t> last_step;
+
+    /// Returns whether all arrays have the sizes for this number of Gaussians and this SH degree.
+    bool fits(std::size_t count, int sh_degree) const {
+        return values.fits(count, sh_degree) && first.fits(count, sh_degree) &&
+               second.fits(count, sh_degree) && last_step.size() == count;
+    }
+    /// Saves or loads all parameters. Waits for the device.
+    void exchange(state_archive& archive, Device& device) {
+        const auto exchange_memory = [&](const char* name, parameter_memory<Device>& memory) {
+            const state_archive::scope scope(archive, name);
+            memory.exchange(archive, device);
+        };
+        exchange_memory("values", values);
+        exchange_memory("first_moments", first);
+        exchange_memory("second_moments", second);
+        exchange_buffer(archive, device, "last_step", last_step);
+    }
 };
 
 }  // namespace gs::train

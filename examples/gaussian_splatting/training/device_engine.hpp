@@ -36,7 +36,7 @@ struct clamp_render {
 /// The engine for a device. It determines the order of the kernels and owns the memory that they
 /// share.
 template <device::device Device, class Accumulators = raster::product_accumulators>
-class device_engine final : public engine, device::profiler {
+class device_engine final : public engine, device::profiler, checkpointed {
     using renderer_type =
         raster::renderer<Device, float, raster::cut_for<typename Device::warp>, Accumulators>;
     using step_type = features::step<renderer_type>;
@@ -56,6 +56,7 @@ class device_engine final : public engine, device::profiler {
           monitor_(device_),
           gather_(device_) {
         profiler_ = this;
+        state_ = this;
         start({});
     }
 
@@ -208,6 +209,44 @@ class device_engine final : public engine, device::profiler {
     std::size_t peak_device_bytes() const override { return device_.peak_bytes(); }
     void wait() override { device_.wait(); }
     /// @}
+
+    void exchange(state_archive& archive) override {
+        const state_archive::scope scope(archive, "engine");
+        archive.exchange("gaussians", count_);
+        archive.exchange("sh_degree", sh_degree_);
+        archive.exchange("steps", steps_);
+        trained_.exchange(archive, device_);
+        exchange_buffer(archive, device_, "statistics", seen_);
+        if (!trained_.fits(count_, sh_degree_) || seen_.size() != count_)
+            throw error("the checkpoint has arrays that do not fit its number of Gaussians");
+        exchange_lists(archive);
+        std::uint64_t trained_pairs = pairs();
+        archive.exchange("pairs", trained_pairs);
+        drawn_pairs_ = all_pairs() - trained_pairs;
+        features_.exchange(archive);
+        const state_archive::scope strategy(archive, "strategy." + setup_.densification.name);
+        strategy_->exchange(archive);
+    }
+    /// Saves or loads the size level and the lengths of tile lists. Measures the lists again if the
+    /// sizes of the views differ from those of the checkpoint.
+    void exchange_lists(state_archive& archive) {
+        std::size_t level = level_;
+        std::uint64_t capacity = renderer_.reserved_instances();
+        archive.exchange("level", level);
+        archive.exchange("list_capacity", capacity);
+        if (level != level_) set_level(level);
+        std::vector<std::uint64_t> pixels;
+        for (const photo& shot : views_.train(level_)) pixels.push_back(shot.pixels());
+        const auto present_pixels = pixels;
+        archive.exchange("pixels", pixels);
+        if (pixels == present_pixels) {
+            lists_.exchange(archive);
+            if (archive.loads()) renderer_.reserve_instances(capacity);
+        } else {
+            lists_.reset(pixels.size());
+            reserve(static_cast<int>(level_));
+        }
+    }
 
     void start(const training_setup& setup) {
         auto strategy = parts_.make_strategy(device_, setup.densification, setup.facts);

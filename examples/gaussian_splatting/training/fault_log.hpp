@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../checkpoint/state_archive.hpp"
 #include "../optimize/fault_report.hpp"
 #include "../scene/scene.hpp"
 
@@ -24,6 +25,11 @@ class fault_log {
     /// the loss is not finite, or if a parameter would not be finite.
     void check(const fault_reports& found, const scene& scene, int iteration,
                const std::function<void(const std::string&)>& warn);
+
+    void exchange(state_archive& archive) {
+        archive.exchange("left_out_gradients", left_out_gradients_);
+        archive.exchange("left_out_sums", left_out_sums_);
+    }
 
     std::uint64_t left_out_gradients() const { return left_out_gradients_; }
     std::uint64_t left_out_sums() const { return left_out_sums_; }

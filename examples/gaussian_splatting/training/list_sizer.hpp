@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "../checkpoint/exchange_buffer.hpp"
 #include "../device/device.hpp"
 #include "../render/renderer.hpp"
 
@@ -31,6 +32,11 @@ class list_sizer {
     void reset(std::size_t views) {
         lengths_.resize(views);
         counts_.assign(views, 0);
+    }
+    /// Saves or loads the lengths. Waits for the device.
+    void exchange(state_archive& archive) {
+        exchange_buffer(archive, device_, "lengths", lengths_);
+        archive.exchange("counts", counts_);
     }
     /// Returns the address in device memory where a step stores the length of this view.
     std::uint64_t* length(std::size_t view) { return lengths_.data() + view; }

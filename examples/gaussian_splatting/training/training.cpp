@@ -7,6 +7,8 @@
 #include <random>
 #include <utility>
 
+#include "../core/error.hpp"
+#include "../core/sanitize_for_message.hpp"
 #include "view_order.hpp"
 
 namespace gs::train {
@@ -37,11 +39,43 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     return setup;
 }
 
+/// Returns the names of the training photos as JSON.
+std::string photos_of(const scene& scene) {
+    auto names = nlohmann::json::array();
+    for (const view& v : scene.train) names.push_back(v.name);
+    return names.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
+/// Throws `error` if the training photos are not those of a checkpoint.
+void require_photos(const std::string& in_checkpoint, const scene& scene) {
+    if (in_checkpoint == photos_of(scene)) return;
+    const auto saved = nlohmann::json::parse(in_checkpoint, nullptr, false);
+    for (std::size_t i = 0; i < std::max(saved.size(), scene.train.size()); ++i) {
+        const std::string before = i < saved.size() ? saved[i].dump() : "none",
+                          now = i < scene.train.size() ? '"' + scene.train[i].name + '"' : "none";
+        if (before != now)
+            throw error("the checkpoint belongs to other training photos: photo " + std::to_string(i + 1) +
+                        " was " + sanitize_for_message(before) + " and is " + sanitize_for_message(now) +
+                        ": restore the photos and the options of the scene, or give --overwrite");
+    }
+}
+
+void exchange_reports(state_archive& archive, std::map<std::string, nlohmann::ordered_json>& reports) {
+    std::string text = nlohmann::ordered_json(reports).dump();
+    archive.exchange("reports", text);
+    reports = nlohmann::ordered_json::parse(text).get<std::map<std::string, nlohmann::ordered_json>>();
+}
+
 }  // namespace
 
 training::training(train::engine& engine, const gs::scene& scene, const train_options& options,
                    const train_events& events)
-    : engine_(engine), scene_(scene), options_(options), schedule_(options.schedule), clock_(events.seconds) {
+    : engine_(engine),
+      scene_(scene),
+      options_(options),
+      schedule_(options.schedule),
+      is_interrupted_(events.is_interrupted),
+      clock_(events.seconds) {
     schedule_.extent = scene.extent();
     schedule_.transparent = scene.has_alpha;
     engine_.begin(setup_of(scene, options, schedule_));
@@ -61,6 +95,10 @@ void training::add(action action) { actions_.push_back(std::move(action)); }
 void training::add_step() {
     const auto order = std::make_shared<view_order>(scene_.train.size(), options_.seed);
     const auto colors = std::make_shared<std::mt19937_64>(options_.seed + 1);
+    add_state([=](state_archive& archive) {
+        order->exchange(archive);
+        exchange_random(archive, "random_colors", *colors);
+    });
     add({phase::step, "step", [](int) { return true; },
          [=, this](int iteration) {
              step_plan plan;
@@ -97,7 +135,9 @@ void training::add_reports(const train_events& events) {
         return iteration % report_every == 0 || iteration == last || tests(iteration);
     };
     add({phase::observe, "check for faults",
-         [=](int iteration) { return reports(iteration) || saves(iteration); },
+         [=, this](int iteration) {
+             return reports(iteration) || saves(iteration) || makes_checkpoint(iteration);
+         },
          [=, this](int iteration) {
              const step_report report = engine_.take_report();
              const auto steps = static_cast<std::uint64_t>(iteration - checked_);
@@ -108,19 +148,33 @@ void training::add_reports(const train_events& events) {
          }});
     add({phase::observe, "report", reports, [=, this](int iteration) {
              const loss_report mean = losses_.take();
-             events.report(
-                 {iteration, last, mean.loss, mean.psnr(), engine_.count(), clock_() - start_ - outside_});
+             events.report({iteration, last, mean.loss, mean.psnr(), engine_.count(), seconds()});
          }});
     const auto call = [this](const std::function<void(int)>& callback) {
-        return [=, this](int iteration) {
-            engine_.profile().wait();
-            const double from = clock_();
-            callback(iteration);
-            outside_ += clock_() - from;
-        };
+        return [=, this](int iteration) { call_untimed([&] { callback(iteration); }); };
     };
     add({phase::observe, "test", tests, call(events.test)});
+    add_checkpoints(events);
     add({phase::observe, "save", saves, call(events.save)});
+}
+
+void training::add_checkpoints(const train_events& events) {
+    add({phase::observe, "checkpoint", [this](int iteration) { return makes_checkpoint(iteration); },
+         [this, make = events.checkpoint](int iteration) {
+             call_untimed([&] {
+                 finished_ = iteration;
+                 state_archive archive;
+                 exchange(archive);
+                 make(iteration, archive);
+             });
+         }});
+}
+
+void training::call_untimed(const std::function<void()>& callback) {
+    engine_.profile().wait();
+    const double from = clock_();
+    callback();
+    outside_ += clock_() - from;
 }
 
 void training::run_phase(train::phase phase, int iteration) {
@@ -135,19 +189,55 @@ void training::run_phase(train::phase phase, int iteration) {
     }
 }
 
+void training::exchange(state_archive& archive) {
+    {
+        const state_archive::scope scope(archive, "training");
+        std::string photos = photos_of(scene_);
+        archive.exchange("photos", photos);
+        require_photos(photos, scene_);
+        archive.exchange("iteration", finished_);
+        archive.exchange("size_level", level_);
+        double seconds_so_far = archive.loads() ? 0 : seconds();
+        archive.exchange("seconds", seconds_so_far);
+        if (archive.loads()) before_ = seconds_so_far;
+        archive.exchange("densify_seconds", result_.densify_seconds);
+        archive.exchange("skipped_steps", result_.skipped_steps);
+        archive.exchange("without_gradient", result_.without_gradient);
+        exchange_reports(archive, result_.feature_reports);
+        faults_.exchange(archive);
+        losses_.exchange(archive);
+    }
+    engine_.state().exchange(archive);
+    for (const auto& state : states_) state(archive);
+}
+
+void training::restore(state_archive& checkpoint) {
+    exchange(checkpoint);
+    checked_ = finished_;
+    if (finished_ > schedule_.iterations)
+        throw error("the checkpoint is from iteration " + std::to_string(finished_) +
+                    ", after the last iteration " + std::to_string(schedule_.iterations) +
+                    ": raise --iterations");
+}
+
 train_result training::run() {
-    level_ = schedule_.downscales_at(1);
-    engine_.reserve(level_);
+    if (finished_ == 0) {
+        level_ = schedule_.downscales_at(1);
+        engine_.reserve(level_);
+    }
     engine_.profile().wait();
     start_ = clock_();
-    for (int iteration = 1; iteration <= schedule_.iterations; ++iteration) {
+    for (int iteration = finished_ + 1; iteration <= schedule_.iterations && !interrupted_; ++iteration) {
+        interrupted_ = is_interrupted_();
         restructured_ = false;
         for (const auto phase : {phase::prepare, phase::step, phase::restructure, phase::size_lists,
                                  phase::upkeep, phase::observe})
             run_phase(phase, iteration);
+        finished_ = iteration;
     }
     engine_.profile().wait();
-    result_.seconds = clock_() - start_ - outside_;
+    result_.iterations = finished_;
+    result_.seconds = seconds();
     result_.left_out_gradients = faults_.left_out_gradients();
     result_.left_out_sums = faults_.left_out_sums();
     return result_;
@@ -157,7 +247,14 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
                    const train_events& events) {
     training training(engine, scene, options, events);
     options.features.schedule(training);
+    if (options.resume_from != nullptr) training.restore(*options.resume_from);
     return training.run();
+}
+
+bool train_options::has_checkpoint_after(int iteration) const {
+    if (checkpoint_iterations.contains(iteration)) return true;
+    if (iteration == schedule.iterations) return checkpoint_every || !checkpoint_iterations.empty();
+    return checkpoint_every && iteration % *checkpoint_every == 0;
 }
 
 std::size_t default_cap(const scene& scene) {

@@ -7,10 +7,12 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "../checkpoint/state_archive.hpp"
 #include "../engine/engine.hpp"
 #include "../features/resolve.hpp"
 #include "fault_log.hpp"
@@ -35,6 +37,13 @@ struct train_options {
     features::feature_set features;
     std::set<int> save_iterations;
     std::set<int> test_iterations;
+    std::optional<int> checkpoint_every;  ///< iterations between two checkpoints
+    std::set<int> checkpoint_iterations;
+    state_archive* resume_from = nullptr;  ///< state of a checkpoint to continue from, or null
+
+    /// Returns whether training passes a checkpoint to `train_events::checkpoint`: after these
+    /// iterations, and at the end if there are any.
+    bool has_checkpoint_after(int iteration) const;
 };
 
 /// The progress of a training run.
@@ -46,6 +55,7 @@ struct progress {
 };
 
 struct train_result {
+    int iterations = 0;          ///< last iteration; less than planned if training was interrupted
     double seconds = 0;          ///< time of the loop, without the `test` and `save` callbacks
     double densify_seconds = 0;  ///< part of it in the phases `restructure` and `size_lists`
     std::uint64_t skipped_steps = 0;
@@ -66,6 +76,11 @@ struct train_events {
     std::function<double()> seconds = [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
     };
+    /// Called with the state for `train_options::resume_from`. The callback may add values.
+    std::function<void(int iteration, state_archive&)> checkpoint = [](int, state_archive&) {};
+    /// Called in each iteration. If it returns true, training makes a checkpoint after the iteration
+    /// and ends.
+    std::function<bool()> is_interrupted = [] { return false; };
 };
 
 /// The mean loss over the steps of several reports of the engine.
@@ -77,6 +92,11 @@ class mean_loss {
         sum_.loss += weight * report.loss;
         sum_.square_error += weight * report.square_error;
         weight_ += weight;
+    }
+    void exchange(state_archive& archive) {
+        archive.exchange("loss", sum_.loss);
+        archive.exchange("square_error", sum_.square_error);
+        archive.exchange("loss_weight", weight_);
     }
     /// Returns the mean over the steps that were added since the last call. It is NaN if
     /// there were no steps.
@@ -119,7 +139,14 @@ class training {
 
     /// Adds an action to the end of its phase.
     void add(action action);
-    /// Runs all iterations. Steps leave out gradients that are not finite; a warning names the
+    /// Adds state that later iterations depend on. Checkpoints contain what `exchange` passes to the
+    /// archive.
+    void add_state(std::function<void(state_archive&)> exchange) { states_.push_back(std::move(exchange)); }
+    /// Continues from a checkpoint: `run` begins after its iteration. Call it after all actions and
+    /// states have been added. Throws `error` if the checkpoint belongs to other photos, or to a
+    /// later iteration than the last one.
+    void restore(state_archive& checkpoint);
+    /// Runs all iterations that are left. Steps leave out gradients that are not finite; a warning names the
     /// first one. If the loss is not finite, or a parameter would not be finite, throws an `error`
     /// that names the iteration, the view and the parameter. Earlier saves remain valid.
     ///
@@ -138,13 +165,24 @@ class training {
     void add_step();
     void add_memory();
     void add_reports(const train_events& events);
+    void add_checkpoints(const train_events& events);
+    bool makes_checkpoint(int iteration) const {
+        return interrupted_ || options_.has_checkpoint_after(iteration);
+    }
+    void exchange(state_archive& archive);
     void run_phase(train::phase phase, int iteration);
+    void call_untimed(const std::function<void()>& callback);
+    double seconds() const { return before_ + clock_() - start_ - outside_; }
 
     train::engine& engine_;
     const gs::scene& scene_;
     const train_options& options_;
     train::schedule schedule_;
     std::vector<action> actions_;
+    std::vector<std::function<void(state_archive&)>> states_;
+    int finished_ = 0;  ///< last finished iteration
+    std::function<bool()> is_interrupted_;
+    bool interrupted_ = false;  ///< whether training ends after this iteration
     train_result result_;
     int level_ = 0;              ///< size level: photos are halved this many times
     bool restructured_ = false;  ///< whether the phase `restructure` has acted in this iteration
@@ -152,7 +190,8 @@ class training {
     int checked_ = 0;  ///< last iteration that was checked for faults
     mean_loss losses_;
     std::function<double()> clock_;
-    double start_ = 0, outside_ = 0;  ///< time of the start, and seconds spent in callbacks
+    /// Time of the start, seconds spent in callbacks, and seconds before the checkpoint.
+    double start_ = 0, outside_ = 0, before_ = 0;
 };
 
 /// Trains the model of `engine` with the features of `options`. See `training`.

@@ -6,10 +6,22 @@
 #include <cstdint>
 #include <numeric>
 #include <random>
+#include <sstream>
 #include <utility>
 #include <vector>
 
+#include "../checkpoint/state_archive.hpp"
+
 namespace gs::train {
+
+/// Saves or loads the state of a random number generator.
+inline void exchange_random(state_archive& archive, std::string_view name, std::mt19937_64& random) {
+    std::stringstream text;
+    text << random;
+    std::string state = text.str();
+    archive.exchange(name, state);
+    std::istringstream(state) >> random;
+}
 
 /// Returns each view once in random order, then each view again in another random order, and so on.
 class view_order {
@@ -24,6 +36,11 @@ class view_order {
             next_ = 0;
         }
         return order_[next_++];
+    }
+    void exchange(state_archive& archive) {
+        archive.exchange("views", order_);
+        archive.exchange("next_view", next_);
+        exchange_random(archive, "random_views", random_);
     }
 
   private:

@@ -35,6 +35,10 @@ class exposure_on_device final : public device_feature<Renderer> {
     void set_held_out_values(const std::vector<float>& values) override { of_held_out_.set(values); }
     void normalize() override { of_training_.normalize(); }
 
+    void exchange(state_archive& archive) override {
+        if (learns_) of_training_.exchange(archive);
+    }
+
     std::size_t memory_key(const step&) const override { return learns_ ? 1 : 0; }
     const float* show(const step& s, const float* render) override {
         return learns_ ? of_training_.show(s.plan.view, render, s.pixels()) : render;

@@ -25,6 +25,8 @@ class exposures {
     void set(const std::vector<float>& values) { numbers_.set(values); }
     std::vector<float> get() const { return numbers_.get(); }
 
+    void exchange(state_archive& archive) { numbers_.exchange(archive); }
+
     std::size_t count() const { return numbers_.rows(); }
 
     /// Returns the render with the exposure of a view: three planes on the device, valid until the

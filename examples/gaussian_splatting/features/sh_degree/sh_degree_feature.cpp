@@ -35,6 +35,20 @@ int revise(train::training& training, int sh_degree) {
     return review.sh_degree;
 }
 
+/// Saves or loads the present SH degree. If the run began with another degree than the checkpoint,
+/// its options have changed, and the model gets the new degree.
+void exchange_degree(state_archive& archive, int first_degree, train::training& training) {
+    const state_archive::scope scope(archive, "direction");
+    int saved_first = first_degree, degree = training.schedule().sh_degree;
+    archive.exchange("first_degree", saved_first);
+    archive.exchange("degree", degree);
+    if (saved_first != first_degree) {
+        degree = first_degree;
+        state_of(training.engine()).set_degree(degree);
+    }
+    training.schedule().sh_degree = degree;
+}
+
 }  // namespace
 
 finding sh_degree_feature::analyze(const scene_statistics& statistics) const {
@@ -65,6 +79,8 @@ void sh_degree_feature::prepare(const selected_feature& selected, scene&, gaussi
 void sh_degree_feature::schedule(const selected_feature& selected, train::training& training) const {
     const int degree = first_sh_degree(selected.values);
     training.schedule().sh_degree = degree;
+    training.add_state(
+        [=, &training](state_archive& archive) { exchange_degree(archive, degree, training); });
     training.result().feature_reports["direction"]["sh_degree"] = degree;
     if (selected.values.size() < 2 || selected.values[1] == 0) return;
     schedule_revision(
@@ -99,6 +115,10 @@ void schedule_revision(train::training& training, std::function<int(int sh_degre
                           *prune_after = std::max(*prune_after, iteration + schedule.sh_degree_interval);
                   }});
     if (!prune_change) return;
+    training.add_state([=](state_archive& archive) {
+        if (archive.loads() && !archive.has("direction.prune_after")) return;
+        archive.exchange("direction.prune_after", *prune_after);
+    });
     training.add({train::phase::restructure, "prune SH bands",
                   [=, &schedule](int iteration) {
                       return iteration == *prune_after && iteration < schedule.iterations;

@@ -23,6 +23,7 @@ class sky {
     /// Sets the `sky_width` coefficients. An empty list removes the learned background.
     void set(const std::vector<float>& coefficients) { numbers_.set(coefficients); }
     std::vector<float> get() const { return numbers_.get(); }
+    void exchange(state_archive& archive) { numbers_.exchange(archive); }
     bool exists() const { return numbers_.rows() > 0; }
 
     /// Draws the background of a camera. Returns three planes on the device, or null without a

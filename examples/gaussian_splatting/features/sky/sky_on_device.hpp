@@ -20,6 +20,8 @@ class sky_on_device final : public device_feature<Renderer> {
     void set_model(const gaussians& model) override { sky_.set(model.sky); }
     void get_model(gaussians& model) override { model.sky = sky_.get(); }
 
+    void exchange(state_archive& archive) override { sky_.exchange(archive); }
+
     std::size_t memory_key(const step&) const override { return sky_.exists() ? 1 : 0; }
     const float* background(const camera& camera) override { return sky_.draw(camera); }
     void learn(const step& s, const float* render_gradient) override {

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "../../support/temporary_folder.hpp"
+#include "engines.hpp"
+#include "features/depth/depth_feature.hpp"
+#include "features/exposure/exposure_feature.hpp"
+#include "features/sh_degree/sh_degree_feature.hpp"
+#include "training/initialize.hpp"
+#include "training/training.hpp"
+
+namespace {
+
+/// The options of a short deterministic run in which all that can change changes: the number of
+/// Gaussians, opacities, image size, SH degree, exposures, learned background, background color.
+gs::train::train_options options_for(const gs::scene& scene, const std::string& strategy) {
+    gs::train::train_options o;
+    o.schedule.iterations = 80;
+    o.schedule.sh_degree_interval = 10;
+    o.densification.name = strategy;
+    auto& adaptive = o.densification.of<gs::train::adaptive_config>();
+    adaptive.densify_from_iter = 10;
+    adaptive.densification_interval = 15;
+    adaptive.densify_until_iter = 70;
+    adaptive.opacity_reset_interval = 30;
+    adaptive.densify_grad_threshold = 1e-5;
+    o.max_cap = 2000;
+    o.gradient = gs::accumulator::fixed;
+    o.background.random = true;
+    o.features = gs::features::feature_set(
+        {{"direction", true, "", {1, 1}},  // revises the SH degree
+         {"exposure", true, "", gs::features::exposure_feature().neutral_values(scene)},
+         {"depth", true, "", gs::features::depth_feature().neutral_values(scene)}});
+    return o;
+}
+
+/// Trains a new engine, and stores a checkpoint of each iteration in `checkpoints`.
+gs::gaussians trained(make_engine make, const gs::scene& scene, gs::train::train_options o,
+                      std::map<int, gs::state_archive>& checkpoints) {
+    const auto engine = make();
+    engine->set_views(scene.train, {}, o.schedule.num_downscales);
+    gs::gaussians model = gs::from_points(scene.points, 1, 300, 1);
+    model.sky.assign(gs::sky_width, 0.0f);
+    engine->set_model(model);
+    gs::train::train_events events{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
+    events.checkpoint = [&](int iteration, gs::state_archive& archive) {
+        checkpoints.insert_or_assign(iteration, gs::state_archive(archive.values(), archive.arrays()));
+    };
+    gs::train::train(*engine, scene, o, events);
+    return engine->get_model();
+}
+
+void check_equal(const gs::gaussians& a, const gs::gaussians& b) {
+    CHECK(a.count() == b.count());
+    CHECK(a.mean == b.mean);
+    CHECK(a.log_scale == b.log_scale);
+    CHECK(a.quaternion == b.quaternion);
+    CHECK(a.opacity == b.opacity);
+    CHECK(a.sh_constant == b.sh_constant);
+    CHECK(a.sh_rest == b.sh_rest);
+    CHECK(a.sky == b.sky);
+}
+
+}  // namespace
+
+TEST_CASE("resume: a run that continues from any checkpoint gives the same model bit for bit") {
+    const gs::scene scene = small_scene("synthetic:spheres,depths=0.02", 24);
+    using iterations = std::vector<int>;
+    for (const auto make : engines())
+        for (const auto& [strategy, last, resumed] : {std::tuple("adaptive", 80, iterations{14, 31, 45, 79}),
+                                                      std::tuple("mcmc", 130, iterations{99, 100})}) {
+            CAPTURE(std::string(strategy));
+            gs::train::train_options o = options_for(scene, strategy);
+            o.schedule.iterations = last;
+            o.checkpoint_every = 1;
+            std::map<int, gs::state_archive> checkpoints, ignored;
+            const gs::gaussians uninterrupted = trained(make, scene, o, checkpoints);
+            CHECK(uninterrupted.count() > 350);
+            REQUIRE(checkpoints.size() == static_cast<std::size_t>(last));
+            for (const int iteration : resumed) {
+                CAPTURE(iteration);
+                gs::train::train_options rest = o;
+                rest.checkpoint_every.reset();
+                rest.resume_from = &checkpoints.at(iteration);
+                check_equal(trained(make, scene, rest, ignored), uninterrupted);
+            }
+        }
+}
+
+TEST_CASE("resume: a checkpoint of a resumed run equals that of the uninterrupted run") {
+    const gs::scene scene = small_scene("synthetic:spheres", 24);
+    gs::train::train_options o = options_for(scene, "adaptive");
+    o.checkpoint_every = 25;
+    std::map<int, gs::state_archive> first, second;
+    trained(gs::train::make_cpu_engine, scene, o, first);
+    o.resume_from = &first.at(25);
+    trained(gs::train::make_cpu_engine, scene, o, second);
+    const gs::state_archive &a = first.at(80), &b = second.at(80);
+    REQUIRE(a.arrays().size() == b.arrays().size());
+    for (const auto& [name, array] : a.arrays()) {
+        CAPTURE(name);
+        CHECK(b.arrays().at(name).bytes == array.bytes);
+    }
+    for (const auto& [name, value] : a.values()) {
+        CAPTURE(name);
+        if (name.ends_with("seconds")) continue;
+        CHECK(b.values().at(name) == value);
+    }
+}
+
+TEST_CASE("resume: an interruption makes a checkpoint after the iteration and ends the run") {
+    const gs::scene scene = small_scene("synthetic:spheres", 24);
+    const gs::train::train_options o = options_for(scene, "adaptive");
+    const auto engine = gs::train::make_cpu_engine();
+    engine->set_views(scene.train, {}, o.schedule.num_downscales);
+    engine->set_model(gs::from_points(scene.points, 1, 300, 1));
+    gs::train::train_events events{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
+    int calls = 0, checkpoint_of = 0;
+    events.is_interrupted = [&] { return ++calls == 33; };
+    events.checkpoint = [&](int iteration, gs::state_archive&) { checkpoint_of = iteration; };
+    CHECK(gs::train::train(*engine, scene, o, events).iterations == 33);
+    CHECK(checkpoint_of == 33);
+}
+
+TEST_CASE("resume: other iterations, image sizes, features and SH degrees are allowed") {
+    const gs::scene scene = small_scene("synthetic:spheres", 24);
+    gs::train::train_options o = options_for(scene, "adaptive");
+    o.checkpoint_iterations = {50};
+    std::map<int, gs::state_archive> checkpoints, ignored;
+    trained(gs::train::make_cpu_engine, scene, o, checkpoints);
+    o.resume_from = &checkpoints.at(50);
+    o.schedule.iterations = 90;
+    SUBCASE("more iterations") {}
+    SUBCASE("without exposures and depths") {
+        o.features = gs::features::feature_set({{"direction", true, "", {1, 1}}});
+    }
+    SUBCASE("another strategy") { o.densification.name = "mcmc"; }
+    SUBCASE("a lower SH degree") {
+        o.features = gs::features::feature_set({gs::features::explicit_sh_degree(0)});
+        CHECK(trained(gs::train::make_cpu_engine, scene, o, ignored).sh_degree == 0);
+    }
+    SUBCASE("a higher SH degree") {
+        o.features = gs::features::feature_set({gs::features::explicit_sh_degree(3)});
+        CHECK(trained(gs::train::make_cpu_engine, scene, o, ignored).sh_degree == 3);
+    }
+    const gs::gaussians model = trained(gs::train::make_cpu_engine, scene, o, ignored);
+    CHECK(model.count() >= 300);
+    gs::scene larger = small_scene("synthetic:spheres", 28);
+    CHECK(trained(gs::train::make_cpu_engine, larger, o, ignored).count() >= 300);
+}
+
+TEST_CASE("resume: a checkpoint of other photos or of a later iteration is refused") {
+    gs::scene scene = small_scene("synthetic:spheres", 24);
+    gs::train::train_options o = options_for(scene, "adaptive");
+    o.checkpoint_iterations = {50};
+    std::map<int, gs::state_archive> checkpoints;
+    trained(gs::train::make_cpu_engine, scene, o, checkpoints);
+    o.resume_from = &checkpoints.at(50);
+    const auto problem = [&] {
+        return gs_test::error_of([&] { trained(gs::train::make_cpu_engine, scene, o, checkpoints); });
+    };
+    SUBCASE("a later iteration") {
+        o.schedule.iterations = 40;
+        CHECK(problem() ==
+              "the checkpoint is from iteration 50, after the last iteration 40: raise --iterations");
+    }
+    SUBCASE("a photo is missing") {
+        const std::string name = scene.train[2].name, next = scene.train[3].name;
+        scene.train.erase(scene.train.begin() + 2);
+        CHECK(gs_test::says(problem(), {"photo 3 was \"" + name + "\" and is \"" + next + "\""}));
+    }
+    SUBCASE("arrays that do not fit each other") {
+        auto values = checkpoints.at(50).values();
+        values["engine.gaussians"] = "5";
+        gs::state_archive wrong(values, checkpoints.at(50).arrays());
+        o.resume_from = &wrong;
+        CHECK(gs_test::says(problem(), {"arrays that do not fit its number of Gaussians"}));
+    }
+}
