@@ -7,6 +7,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
+#include "cli/stop_signals.hpp"
 #include "core/error.hpp"
 
 int main(int argc, char** argv) {
@@ -32,6 +33,9 @@ int main(int argc, char** argv) {
                 break;
         }
         return 0;
+    } catch (const gs::cli::interruption& e) {
+        std::fprintf(stderr, "%s\n", e.what());
+        return 128 + e.signal;
     } catch (const gs::error& e) {
         std::fprintf(stderr, "error: %s\n", e.what());
         return 2;

@@ -50,6 +50,7 @@ void set_dependent_values(settings& s) {
 void check_settings(const settings& s) {
     check_iterations(s.save_iterations, s.schedule.iterations, "--save-iterations");
     check_iterations(s.test_iterations, s.schedule.iterations, "--test-iterations");
+    check_iterations(s.checkpoint_iterations, s.schedule.iterations, "--checkpoint-iterations");
     check_downscales(s.schedule);
     s.densification.check(
         {.iterations = s.schedule.iterations, .max_gaussians = s.max_cap.value_or(0), .seed = s.seed});

@@ -129,10 +129,18 @@ std::string help_text(command c, const std::vector<option>& rows) {
     std::string text = purpose_of(c) + ".\n\nUsage: " + usage_of(c, rows) + "\n";
     for (const std::string& group : groups_of(rows)) {
         text += "\n" + group + ":\n";
-        for (const option& row : rows)
-            if (row.group == group) text += help_line(row, row.is_required_by(c));
+        std::string rare;
+        for (const option& row : rows) {
+            if (row.group != group) continue;
+            if (row.is_rare) {
+                rare += " " + row.name();
+            } else {
+                text += help_line(row, row.is_required_by(c));
+            }
+        }
+        if (!rare.empty()) text += wrapped("Rarely needed:" + rare, "  ");
     }
-    return text + "\nDetails, and other names of options: man gaussian_splatting, or docs/reference/cli.md\n";
+    return text + "\nDetails of all options: man gaussian_splatting, or docs/reference/cli.md\n";
 }
 
 std::string reference_page() {
@@ -192,7 +200,9 @@ std::string man_page() {
                         escaped(description_of(row, row.required == row.commands)) +
                         "\n.br\nCommands: " + commands_of(row) + ".\n";
     }
-    return text + ".SH EXIT STATUS\n0 on success, 2 after an error, which is printed as one sentence.\n";
+    return text +
+           ".SH EXIT STATUS\n0 on success, 2 after an error, which is printed as one sentence, 3 without "
+           "memory, 130 or 143 after Ctrl\\-C or SIGTERM during training.\n";
 }
 
 }  // namespace gs::cli

@@ -110,6 +110,12 @@ rows output_options(settings& s) {
                                .value = iterations(s.save_iterations),
                                .help = "Iterations after which the model is saved, besides the last one",
                                .default_text = "none"},
+                              {.names = "--overwrite",
+                               .commands = {train},
+                               .value = flag(s.overwrite),
+                               .help = "Replaces the earlier run in the output folder",
+                               .excludes = {"--resume"},
+                               .is_recorded = false},
                               {.names = "--orbit-views",
                                .commands = {render},
                                .value = whole(s.orbit_views, 1, 10000),
@@ -162,7 +168,37 @@ rows length_options(settings& s) {
           .value = whole(s.schedule.resolution_schedule, 1, most_iterations),
           .help = "Iterations until the photos are halved once less",
           .unit = "iterations",
-          .default_text = "a fifth of the iterations; for --num-downscales N above 1, one part in N + 4"}});
+          .default_text = "a fifth of the iterations; for --num-downscales N above 1, one part in N + 4",
+          .is_rare = true}});
+}
+
+rows checkpoint_options(settings& s) {
+    return grouped(
+        "Checkpoints",
+        {{.names = "--resume",
+          .commands = {train},
+          .value = flag(s.resume),
+          .help = "Continues the run in the output folder from its newest checkpoint that is not damaged, or "
+                  "begins if there is none; options may change",
+          .is_recorded = false},
+         {.names = "--checkpoint-every",
+          .commands = {train},
+          .value = whole(s.checkpoint_every, 1, most_iterations),
+          .help = "Iterations between two checkpoints; Ctrl-C and SIGTERM make one, too",
+          .unit = "iterations",
+          .default_text = "none"},
+         {.names = "--checkpoint-iterations",
+          .commands = {train},
+          .value = iterations(s.checkpoint_iterations),
+          .help = "Iterations after which a checkpoint is made",
+          .default_text = "none",
+          .is_rare = true},
+         {.names = "--keep-checkpoints",
+          .commands = {train},
+          .value = whole(s.keep_checkpoints, 1, 1000000),
+          .help = "Number of checkpoints to keep; older ones are removed",
+          .unit = "checkpoints",
+          .is_rare = true}});
 }
 
 rows effect_options(settings& s) {
@@ -188,12 +224,14 @@ rows effect_options(settings& s) {
              .commands = {train},
              .value = whole(s.schedule.sh_degree_interval, 1, most_iterations),
              .help = "Iterations between two increases of the SH degree",
-             .unit = "iterations"},
+             .unit = "iterations",
+             .is_rare = true},
             {.names = "--sh-update-interval",
              .commands = {train},
              .value = whole(s.schedule.sh_update_interval, 1, most_iterations),
              .help = "Iterations between two updates of the SH coefficients of degree 1 and higher",
-             .unit = "iterations"},
+             .unit = "iterations",
+             .is_rare = true},
         });
 }
 
@@ -204,7 +242,8 @@ rows learning_rate_options(settings& s) {
                       .commands = {train},
                       .value = positive(member),
                       .help = help,
-                      .default_text = default_text};
+                      .default_text = default_text,
+                      .is_rare = true};
     };
     return grouped("Loss and learning rates of Adam",
                    {{.names = "--loss",
@@ -252,6 +291,7 @@ rows strategy_options(settings& s) {
         for (option& row : config.options()) {
             row.commands = {train};
             row.strategy = config.name;
+            row.is_rare = true;
             row.group = "Densification strategy " + row.strategy;
             all.push_back(std::move(row));
         }
@@ -284,9 +324,9 @@ rows evaluation_options(settings& s) {
 
 std::vector<option> option_table(settings& s) {
     rows table;
-    for (auto& group :
-         {scene_options(s), output_options(s), length_options(s), effect_options(s), learning_rate_options(s),
-          densification_options(s), strategy_options(s), evaluation_options(s), run_options(s)})
+    for (auto& group : {scene_options(s), output_options(s), checkpoint_options(s), length_options(s),
+                        effect_options(s), learning_rate_options(s), densification_options(s),
+                        strategy_options(s), evaluation_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }

@@ -58,6 +58,11 @@ struct settings {
     std::optional<std::size_t> max_cap;  ///< if unset, the size of the photos decides
     bool fit_exposure = false;
     std::set<int> save_iterations;
+    std::optional<int> checkpoint_every;  ///< iterations between two checkpoints
+    std::set<int> checkpoint_iterations;
+    std::size_t keep_checkpoints = 2;
+    bool resume = false;
+    bool overwrite = false;
     std::set<int> test_iterations;
 
     int orbit_views = 8;

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "../core/error.hpp"
 #include "../training/initialize.hpp"
 #include "../writers/writer.hpp"
 #include "command_context.hpp"
 #include "commands.hpp"
+#include "earlier_run.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
+#include "stop_signals.hpp"
 #include "training_effects.hpp"
 #include "training_report.hpp"
 
@@ -34,6 +37,8 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     o.save_iterations = s.save_iterations;
     o.save_iterations.insert(s.schedule.iterations);
     o.test_iterations = s.test_iterations;
+    o.checkpoint_every = s.checkpoint_every;
+    o.checkpoint_iterations = s.checkpoint_iterations;
     o.features = std::move(features);
     return o;
 }
@@ -67,18 +72,28 @@ class training_run {
 
   private:
     train::train_events events();
+    void warn(const std::string& line);
     void save(int iteration);
+    /// Removes the earlier run that --overwrite replaces. Call it before the first result is written, so
+    /// that a training that fails removes nothing.
+    void replace_earlier_run();
     void test(int iteration);
+    void save_checkpoint(int iteration, state_archive& archive);
+    void resume();
+    nlohmann::ordered_json resolved_settings() const;
     fs::path model_file(int iteration) const;
     fs::path renders_folder() const;
 
     const settings& s_;
     command_context context_;
+    std::optional<checkpoint_folder::found_checkpoint> checkpoint_;  ///< to continue from
+    std::optional<stop_signals> signals_;                            ///< while training runs
     std::unique_ptr<train::engine> engine_;
     stopwatch loading_;
     scene scene_;
     train::train_options options_;
     output_folder output_;
+    bool replaces_ = s_.overwrite;  ///< whether an earlier run is still to be removed
     progress_bar bar_;
     training_measures measures_;
 };
@@ -86,6 +101,8 @@ class training_run {
 training_run::training_run(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient)
     : s_(s),
       context_(s),
+      checkpoint_(
+          checkpoint_to_resume(s, [this](const std::string& line) { context_.say("warning: " + line); })),
       engine_(std::move(engine)),
       scene_(context_.load()),
       options_(options_of(s, scene_, context_, resolve_effects(s, scene_, context_))),
@@ -100,24 +117,74 @@ training_run::training_run(const settings& s, std::unique_ptr<train::engine> eng
     measures_.device = engine_->profile().device_name();
     context_.say("training on " + measures_.device + ": " + std::to_string(scene_.train.size()) + " views, " +
                  std::to_string(model.count()) + " Gaussians, at most " + std::to_string(options_.max_cap));
+    resume();
+}
+
+void training_run::resume() {
+    if (!s_.resume) return;
+    if (!checkpoint_) {
+        context_.say("no checkpoint in " + s_.output + ": training begins");
+        return;
+    }
+    state_archive& archive = checkpoint_->archive;
+    std::string settings_text, tests;
+    archive.exchange("settings", settings_text);
+    archive.exchange("tests", tests);
+    archive.exchange("training_psnr", measures_.last.psnr);
+    measures_.tests = nlohmann::ordered_json::parse(tests);
+    options_.resume_from = &archive;
+    context_.say("continuing after iteration " + std::to_string(checkpoint_->iteration) + ", from " +
+                 checkpoint_->file.string());
+    const std::string changes =
+        changed_options(nlohmann::ordered_json::parse(settings_text), resolved_settings());
+    if (!changes.empty()) context_.say("changed options: " + changes);
+}
+
+nlohmann::ordered_json training_run::resolved_settings() const {
+    return settings_json(resolved(s_, options_, effects_in_use(options_.features)));
 }
 
 train::train_events training_run::events() {
-    return {.report =
-                [this](const train::progress& p) {
-                    measures_.last = p;
-                    bar_.show(p);
-                },
-            .save = [this](int iteration) { save(iteration); },
-            .test = [this](int iteration) { test(iteration); },
-            .warn =
-                [this](const std::string& line) {
-                    bar_.clear();
-                    context_.say("warning: " + line);
-                }};
+    return {
+        .report =
+            [this](const train::progress& p) {
+                measures_.last = p;
+                bar_.show(p);
+            },
+        .save = [this](int iteration) { save(iteration); },
+        .test = [this](int iteration) { test(iteration); },
+        .warn = [this](const std::string& line) { warn(line); },
+        .checkpoint = [this](int iteration, state_archive& archive) { save_checkpoint(iteration, archive); },
+        .is_interrupted = [this] { return signals_->received() != 0; }};
+}
+
+void training_run::warn(const std::string& line) {
+    bar_.clear();
+    context_.say("warning: " + line);
+}
+
+/// A checkpoint that cannot be written is no reason to end training, except after an interruption.
+void training_run::save_checkpoint(int iteration, state_archive& archive) {
+    std::string settings_text = resolved_settings().dump(), tests = measures_.tests.dump();
+    archive.exchange("settings", settings_text);
+    archive.exchange("tests", tests);
+    archive.exchange("training_psnr", measures_.last.psnr);
+    replace_earlier_run();
+    try {
+        checkpoints_in(s_.output).write(iteration, archive, s_.keep_checkpoints);
+    } catch (const error& failed) {
+        if (signals_->received() != 0) throw;
+        warn(failed.what() + std::string("; training continues"));
+    }
+}
+
+void training_run::replace_earlier_run() {
+    if (replaces_) remove_earlier_run(s_.output);
+    replaces_ = false;
 }
 
 void training_run::save(int iteration) {
+    replace_earlier_run();
     const fs::path file = model_file(iteration);
     fs::create_directories(file.parent_path());
     write_model(file, to_world(scene_.normalization, engine_->get_model()));
@@ -136,7 +203,16 @@ void training_run::test(int iteration) {
 }
 
 void training_run::train() {
+    signals_.emplace();
     measures_.result = train::train(*engine_, scene_, options_, events());
+    const int last = measures_.result.iterations;
+    if (last < options_.schedule.iterations)
+        throw interruption(signals_->received(),
+                           "training was interrupted after iteration " + std::to_string(last) +
+                               "; to continue it, add --resume to the same options; to finish it here, add "
+                               "--resume --iterations " +
+                               std::to_string(last));
+    signals_.reset();
     measures_.stages = engine_->profile().times();
     measures_.pairs_per_iteration =
         static_cast<double>(engine_->profile().pairs()) / options_.schedule.iterations;
@@ -159,8 +235,7 @@ void training_run::measure() {
 void training_run::write_reports() {
     nlohmann::ordered_json metrics = metrics_json(s_, measures_);
     metrics["effects"] = effects_json(s_, scene_, options_, measures_.result);
-    write_json(output_.path() / "settings.json",
-               settings_json(resolved(s_, options_, effects_in_use(options_.features))));
+    write_json(output_.path() / "settings.json", resolved_settings());
     options_.features.write_results(*engine_, scene_, output_.path());
     write_json(output_.path() / "metrics.json", metrics);
 }
@@ -205,6 +280,7 @@ void train(const settings& s) {
 }
 
 void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient) {
+    require_no_earlier_run(s);
     training_run run(s, std::move(engine), gradient);
     run.train();
     run.measure();

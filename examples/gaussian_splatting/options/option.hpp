@@ -23,6 +23,7 @@ struct option {
     std::vector<std::string> needs{};  ///< names of options that must be given with it
     std::vector<std::string> excludes{};
     std::string strategy{};   ///< the densification strategy that has the option, or empty
+    bool is_rare = false;     ///< help texts list only its name; the reference describes it
     bool is_recorded = true;  ///< in settings.json; false if another option has the same member
 
     bool belongs_to(command c) const;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <utility>
 
@@ -22,6 +23,7 @@ namespace {
         if (opened < 0 || dup2(opened, descriptor) < 0) _exit(126);
     }
     if (threads) setenv("OMP_NUM_THREADS", threads, 1);
+    std::signal(SIGINT, SIG_DFL);             // programs in the background ignore it
     setenv("OMP_WAIT_POLICY", "passive", 1);  // waiting threads leave a busy machine to others
     std::string name = WARPAGG_PROGRAM;
     words copies = arguments;
@@ -46,11 +48,18 @@ words operator+(words some, const words& more) {
 }
 
 outcome run(const words& arguments, const char* threads) {
+    return run_and_then(
+        arguments, [](pid_t, const fs::path&) {}, threads);
+}
+
+outcome run_and_then(const words& arguments, const std::function<void(pid_t, const fs::path&)>& act,
+                     const char* threads) {
     const temporary_folder streams;
     const fs::path out = streams / "out", err = streams / "err";
     const pid_t child = fork();
     REQUIRE(child >= 0);
     if (child == 0) become_program(arguments, out, err, threads);
+    act(child, out);
     int status = 0;
     REQUIRE(waitpid(child, &status, 0) == child);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
@@ -86,7 +95,9 @@ void check_refusal_without_trace(const words& arguments, const words& culprits) 
     write_file(earlier / "metrics.json", "{}\n");
     write_file(earlier / "point_cloud/iteration_10/point_cloud.ply", "ply\n");
     const auto before = contents(earlier);
-    check_refusal(arguments + words{"-o", earlier.string()}, culprits);
+    const bool trains = arguments.front() == "train";
+    check_refusal(arguments + words{"-o", earlier.string()} + (trains ? words{"--overwrite"} : words{}),
+                  culprits);
     CHECK(contents(earlier) == before);
 }
 

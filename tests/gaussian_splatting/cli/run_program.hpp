@@ -3,8 +3,10 @@
 #pragma once
 
 #include <doctest/doctest.h>
+#include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -28,6 +30,10 @@ struct outcome {
 
 /// Runs gaussian_splatting. `threads`: the value of OMP_NUM_THREADS, or null.
 outcome run(const words& arguments, const char* threads = nullptr);
+
+/// Runs gaussian_splatting, and calls `act` with its process and the file that receives its output.
+outcome run_and_then(const words& arguments, const std::function<void(pid_t, const fs::path&)>& act,
+                     const char* threads = nullptr);
 
 /// A run that ends with status 0 and no error output.
 void check_success(const words& arguments, const char* threads = nullptr);

@@ -124,15 +124,6 @@ TEST_CASE("train writes a model, measures and renders, and evaluate and render r
     }
 }
 
-TEST_CASE("a second training replaces the results of the first") {
-    const temporary_folder folder;
-    write_file(folder / "metrics.json", "{}\n");
-    write_file(folder / "notes.txt", "mine");
-    check_success(small_training(folder.path()) + words{"--quiet"});
-    CHECK(read_json(folder / "metrics.json").at("iterations") == 60);
-    CHECK(read_file(folder / "notes.txt") == "mine");
-}
-
 TEST_CASE("train reads a COLMAP scene") {
     const temporary_folder folder;
     small_scene{}.write(folder / "scene");

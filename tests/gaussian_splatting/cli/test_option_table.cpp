@@ -53,6 +53,15 @@ const std::map<std::string, option_case> cases{
       [](const settings& s) {
           return s.save_iterations == std::set{10, 30};
       }}},
+    {"--overwrite", {{}, [](const settings& s) { return s.overwrite; }}},
+    {"--resume", {{}, [](const settings& s) { return s.resume; }}},
+    {"--checkpoint-every", {{"5"}, [](const settings& s) { return s.checkpoint_every == 5; }}},
+    {"--checkpoint-iterations",
+     {{"30", "10"},
+      [](const settings& s) {
+          return s.checkpoint_iterations == std::set{10, 30};
+      }}},
+    {"--keep-checkpoints", {{"3"}, [](const settings& s) { return s.keep_checkpoints == 3; }}},
     {"--orbit-views", {{"3"}, [](const settings& s) { return s.orbit_views == 3; }}},
     {"--quiet", {{}, [](const settings& s) { return s.quiet; }}},
     {"--iterations", {{"20"}, [](const settings& s) { return s.schedule.iterations == 20; }}},
@@ -242,16 +251,16 @@ TEST_CASE("the reference of the command line is up to date") {
     CHECK(gs_test::read_file(file) == reference_page());
 }
 
-TEST_CASE("help: each option of a command appears under its group, with its description") {
+TEST_CASE("help: each option of a command appears under its group, and common ones have their description") {
     for_each_option([](command c, const option& row) {
         settings defaults;
         std::vector<option> rows;
         for (const option& other : option_table(defaults))
             if (other.belongs_to(c)) rows.push_back(other);
         const std::string text = help_text(c, rows);
-        const std::string first_words = row.help.substr(0, row.help.find(' ', 20));
-        CHECK(says(text, {row.group + ":\n", row.name() + (row.value.is_flag() ? "" : " " + row.value.type),
-                          first_words}));
+        const std::string first_words = row.is_rare ? "" : row.help.substr(0, row.help.find(' ', 20));
+        const std::string type = row.value.is_flag() || row.is_rare ? "" : " " + row.value.type;
+        CHECK(says(text, {row.group + ":\n", row.name() + type, first_words}));
     });
 }
 
