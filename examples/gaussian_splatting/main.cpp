@@ -4,11 +4,23 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <string>
 
 #include "cli/commands.hpp"
+#include "cli/highlighted.hpp"
 #include "cli/parse.hpp"
 #include "cli/stop_signals.hpp"
 #include "core/error.hpp"
+
+namespace {
+
+void print_error(const std::string& sentence) {
+    std::fprintf(stderr, "%s %s\n",
+                 gs::cli::highlighted("error:", gs::cli::message_color::red, stderr).c_str(),
+                 sentence.c_str());
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     try {
@@ -37,16 +49,16 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "%s\n", e.what());
         return 128 + e.signal;
     } catch (const gs::error& e) {
-        std::fprintf(stderr, "error: %s\n", e.what());
+        print_error(e.what());
         return 2;
     } catch (const std::filesystem::filesystem_error& e) {
-        std::fprintf(stderr, "error: cannot use %s: %s\n", e.path1().c_str(), e.code().message().c_str());
+        print_error("cannot use " + e.path1().string() + ": " + e.code().message());
         return 2;
     } catch (const std::bad_alloc&) {
-        std::fprintf(stderr, "error: out of memory: lower --resolution or --max-cap\n");
+        print_error("out of memory: lower --resolution or --max-cap");
         return 3;
     } catch (const std::exception& e) {
-        std::fprintf(stderr, "error: %s\n", e.what());
+        print_error(e.what());
         return 3;
     }
 }

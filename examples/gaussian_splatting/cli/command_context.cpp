@@ -8,13 +8,20 @@
 #include <vector>
 
 #include "../core/error.hpp"
+#include "highlighted.hpp"
 
 namespace gs::cli {
 
 namespace fs = std::filesystem;
 
 void command_context::say(const std::string& line) const {
-    if (!settings_.quiet) std::printf("%s\n", line.c_str());
+    if (settings_.log_level >= log_level::info) std::printf("%s\n", line.c_str());
+    std::fflush(stdout);
+}
+
+void command_context::warn(const std::string& line) const {
+    if (settings_.log_level >= log_level::warning)
+        std::printf("%s %s\n", highlighted("warning:", message_color::yellow, stdout).c_str(), line.c_str());
     std::fflush(stdout);
 }
 

@@ -17,8 +17,11 @@ class command_context {
   public:
     explicit command_context(const settings& settings) : settings_(settings) {}
 
-    /// Prints a line unless --quiet is given.
+    /// Prints a line, or a warning, if --log-level allows it.
+    /// @{
     void say(const std::string& line) const;
+    void warn(const std::string& line) const;
+    /// @}
     /// Reads the scene and transforms it to internal coordinates: see `normalize`.
     scene load() const;
     /// Returns an engine for the device of --device. Throws `error` for --device cuda if no GPU can

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "../core/error.hpp"
+#include "config_file.hpp"
 
 namespace gs::cli {
 namespace {
@@ -50,7 +51,7 @@ std::optional<checkpoint_folder::found_checkpoint> checkpoint_to_resume(const se
 }
 
 std::string changed_options(const nlohmann::ordered_json& before, const nlohmann::ordered_json& now) {
-    constexpr std::array ignored{"output", "save_iterations", "checkpoint_iterations"};
+    constexpr std::array ignored{given_options_key, "output", "save_iterations", "checkpoint_iterations"};
     std::string changes;
     for (const auto& [name, value] : now.items()) {
         const auto old = before.find(name);

@@ -153,7 +153,8 @@ std::string reference_page() {
         "`gaussian_splatting COMMAND --help` prints the options of one command, `--version` the version.\n"
         "`train` writes the values of all its options to `settings.json`, under their first long names\n"
         "with `_` for `-`. Defaults that depend on other options or on the scene appear there as the\n"
-        "numbers that they came to.\n\n"
+        "numbers that they came to. The member `given` has the options of the command line only, and\n"
+        "`--config` reads these.\n\n"
         "| command | purpose | usage |\n| --- | --- | --- |\n";
     for (const command c : all_values<command>)
         text +=

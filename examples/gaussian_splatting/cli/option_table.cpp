@@ -122,10 +122,23 @@ rows output_options(settings& s) {
                                .help = "Number of renders on an orbit around the model",
                                .unit = "images",
                                .excludes = {"--data"}},
+                              {.names = "--log-level",
+                               .commands = {train, evaluate, render},
+                               .value = choice(s.log_level),
+                               .help = "Least important messages to print"},
                               {.names = "-q,--quiet",
                                .commands = {train, evaluate, render},
-                               .value = flag(s.quiet),
-                               .help = "Prints errors only"}});
+                               .value = shorthand(s.log_level, log_level::error),
+                               .help = "Short for --log-level error",
+                               .excludes = {"--log-level"},
+                               .is_recorded = false},
+                              {.names = config_option,
+                               .commands = {train},
+                               .value = text(s.config, "FILE"),
+                               .help = "JSON file with further options, such as the settings.json of a run; "
+                                       "options of the command line override it",
+                               .default_text = "none",
+                               .is_recorded = false}});
 }
 
 rows run_options(settings& s) {

@@ -10,6 +10,9 @@
 
 namespace gs::cli {
 
+/// The option that names a file with further options.
+inline constexpr const char* config_option = "--config";
+
 using options::option;
 using options::option_value;
 

@@ -12,6 +12,7 @@
 #include "../core/error.hpp"
 #include "apply_quality_preset.hpp"
 #include "check_settings.hpp"
+#include "config_file.hpp"
 #include "help.hpp"
 #include "nearest_word.hpp"
 #include "option_table.hpp"
@@ -65,11 +66,28 @@ class command_options {
 
     const std::vector<option>& rows() const { return rows_; }
     bool is_explicit(const std::string& name) const { return parsed_.contains(name); }
+    /// Returns the values of the given options by `option::key`, as `read_config` reads them. Leaves
+    /// out options that are about one run only, such as --resume.
+    nlohmann::ordered_json given() const {
+        auto all = nlohmann::ordered_json::object();
+        for (const option& row : rows_) {
+            if (!is_explicit(row.name())) continue;
+            const nlohmann::ordered_json value = row.value.json();
+            const bool is_shorthand = row.value.is_flag() && !value.is_boolean();
+            if (is_shorthand) {
+                all[row.key()] = true;
+            } else if (row.is_recorded) {
+                all[row.key()] = value;
+            }
+        }
+        return all;
+    }
 
     /// Sets the values. Throws `error` for words that do not belong to an option of the command.
     void read(const words& given) {
         check_names(given);
         split(given);
+        add_config();
         for (const option& row : rows_)
             if (is_explicit(row.name())) read_row(row);
         for (const option& row : rows_) check_constraints(row);
@@ -128,6 +146,26 @@ class command_options {
                         name_of(command_) + " (see --help)");
     }
 
+    /// Adds the options of the file of --config that the command line neither gives nor excludes.
+    void add_config() {
+        const auto file = parsed_.find(config_option);
+        if (file == parsed_.end()) return;
+        const auto in_file = read_config(file->second.front(), rows_);
+        const auto on_command_line = parsed_;
+        for (const option& row : rows_) {
+            const auto given = in_file.find(row.name());
+            if (given == in_file.end() || is_excluded_by(on_command_line, row)) continue;
+            parsed_.emplace(row.name(), given->second);
+        }
+    }
+
+    bool is_excluded_by(const std::map<std::string, words>& given, const option& row) const {
+        return std::ranges::any_of(rows_, [&](const option& other) {
+            return given.contains(other.name()) &&
+                   (contains(other.excludes, row.name()) || contains(row.excludes, other.name()));
+        });
+    }
+
     void read_row(const option& row) const {
         const words& given = parsed_.at(row.name());
         if (given.size() > 1 && !row.value.is_list && !row.value.is_flag())
@@ -170,6 +208,7 @@ settings parse(words given) {
     if (contains(given, "--help") || contains(given, "-h"))
         print_and_exit(help_text(s.command, options.rows()));
     options.read(given);
+    s.given = options.given();
     for (const option& row : options.rows())
         if (options.is_explicit(row.name())) check_belongs_to_strategy(row, s.densification.name);
     apply_quality_preset(s.quality, options.rows(),

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -27,6 +28,7 @@ using options::name_of;
 enum class device_kind { automatic, cpu, cuda };
 enum class background_kind { automatic, white, black, random };
 enum class quality_preset { fast, balanced, best };
+enum class log_level { error, warning, info };
 
 /// Returns the words of the command line for an enumeration, in the order of its values.
 /// @{
@@ -35,6 +37,7 @@ constexpr std::array<std::string_view, 4> names_of(background_kind) {
     return {"auto", "white", "black", "random"};
 }
 constexpr std::array<std::string_view, 3> names_of(quality_preset) { return {"fast", "balanced", "best"}; }
+constexpr std::array<std::string_view, 3> names_of(log_level) { return {"error", "warning", "info"}; }
 /// @}
 
 /// The values of all options. The table in option_table.cpp sets them from the command line.
@@ -47,7 +50,9 @@ struct settings {
     background_kind background = background_kind::automatic;
     std::uint64_t seed = 0;
     bool deterministic = false;
-    bool quiet = false;
+    std::string config;              ///< file with further options
+    nlohmann::ordered_json given{};  ///< values of the options that the user gave, by `option::key`
+    cli::log_level log_level = log_level::info;
 
     quality_preset quality = quality_preset::balanced;
     train::schedule schedule;

@@ -101,13 +101,12 @@ class training_run {
 training_run::training_run(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient)
     : s_(s),
       context_(s),
-      checkpoint_(
-          checkpoint_to_resume(s, [this](const std::string& line) { context_.say("warning: " + line); })),
+      checkpoint_(checkpoint_to_resume(s, [this](const std::string& line) { context_.warn(line); })),
       engine_(std::move(engine)),
       scene_(context_.load()),
       options_(options_of(s, scene_, context_, resolve_effects(s, scene_, context_))),
       output_(s.output),
-      bar_(s.quiet) {
+      bar_(s.log_level < log_level::info) {
     options_.gradient = gradient;
     gaussians model = first_model(scene_, options_);
     options_.features.prepare(scene_, model);
@@ -160,7 +159,7 @@ train::train_events training_run::events() {
 
 void training_run::warn(const std::string& line) {
     bar_.clear();
-    context_.say("warning: " + line);
+    context_.warn(line);
 }
 
 /// A checkpoint that cannot be written is no reason to end training, except after an interruption.

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "../features/sh_degree/sh_degree_feature.hpp"
+#include "config_file.hpp"
 #include "option_table.hpp"
 #include "report.hpp"
 
@@ -58,6 +59,7 @@ ordered_json settings_json(settings s) {
         if (row.belongs_to(command::train) && row.is_recorded &&
             (row.strategy.empty() || row.strategy == s.densification.name))
             all[row.key()] = row.value.json();
+    all[given_options_key] = s.given;
     return all;
 }
 

@@ -36,6 +36,12 @@ const gs::train::adaptive_config& adaptive(const settings& s) {
 }
 const gs::train::mcmc_config& mcmc(const settings& s) { return s.densification.of<gs::train::mcmc_config>(); }
 
+std::string config_with_seed_7() {
+    static const gs_test::temporary_folder folder;
+    gs_test::write_file(folder / "config.json", R"({"seed": 7})");
+    return folder / "config.json";
+}
+
 /// Indexed by name, without second names of the same option.
 const std::map<std::string, option_case> cases{
     {"ply", {{"a.ply"}, [](const settings& s) { return s.ply == "a.ply"; }}},
@@ -63,7 +69,9 @@ const std::map<std::string, option_case> cases{
       }}},
     {"--keep-checkpoints", {{"3"}, [](const settings& s) { return s.keep_checkpoints == 3; }}},
     {"--orbit-views", {{"3"}, [](const settings& s) { return s.orbit_views == 3; }}},
-    {"--quiet", {{}, [](const settings& s) { return s.quiet; }}},
+    {"--quiet", {{}, [](const settings& s) { return s.log_level == log_level::error; }}},
+    {"--log-level", {{"warning"}, [](const settings& s) { return s.log_level == log_level::warning; }}},
+    {"--config", {{config_with_seed_7()}, [](const settings& s) { return s.seed == 7; }}},
     {"--iterations", {{"20"}, [](const settings& s) { return s.schedule.iterations == 20; }}},
     {"--quality", {{"best"}, [](const settings& s) { return s.quality == quality_preset::best; }}},
     {"--num-downscales", {{"2"}, [](const settings& s) { return s.schedule.num_downscales == 2; }}},
@@ -228,7 +236,8 @@ TEST_CASE("settings.json has every option of train and of its strategy exactly o
             if (std::ranges::find(line, "--strategy") == line.end()) append(line, {"--strategy", strategy});
             CHECK(settings_json(parse(line)).at(row.key()) != recorded.at(row.key()));
         });
-        CHECK(recorded.size() == expected.size());
+        CHECK(recorded.size() == expected.size() + 1);
+        CHECK(recorded.contains("given"));
     }
 }
 
