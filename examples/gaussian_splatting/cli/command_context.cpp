@@ -66,7 +66,7 @@ output_folder::~output_folder() {
     std::error_code ignored;
     std::vector<fs::path> folders{made_};
     for (const auto& entry : fs::recursive_directory_iterator(made_, ignored))
-        if (entry.is_directory(ignored)) folders.push_back(entry.path());
+        if (entry.is_directory(ignored) && !entry.is_symlink(ignored)) folders.push_back(entry.path());
     // Removes the innermost folders first. Folders that are not empty stay, because their removal
     // fails.
     for (const fs::path& folder : folders | std::views::reverse) fs::remove(folder, ignored);
