@@ -18,9 +18,9 @@ void command_context::say(const std::string& line) const {
     std::fflush(stdout);
 }
 
-scene command_context::load() const {
+scene command_context::load(const load_options& source) const {
     const auto log = [this](const std::string& line) { say(line); };
-    scene loaded = load_scene(settings_.scene, log);
+    scene loaded = load_scene(source, log);
     normalize(loaded, log);
     return loaded;
 }
