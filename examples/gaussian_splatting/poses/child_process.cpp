@@ -78,7 +78,7 @@ class pipe_ends {
     int ends_[2] = {-1, -1};
 };
 
-/// Returns the variables of this process. With the last one, Qt, which COLMAP uses, needs no display.
+/// Returns the variables of this process. With the last one, COLMAP needs no display.
 std::vector<std::string> child_environment() {
     std::vector<std::string> variables;
     for (char** variable = environ; *variable; ++variable)
