@@ -29,6 +29,11 @@ void check_background(const settings& s) {
         throw error("--background random is for train: give " + name_of(s.command) + " white or black");
 }
 
+void check_video_frames(const settings& s) {
+    if (s.video_frames && s.poses == pose_source::given)
+        throw error("--video-frames needs --poses auto: add it or leave out --video-frames");
+}
+
 }  // namespace
 
 void check_belongs_to_strategy(const options::option& row, const std::string& strategy) {
@@ -55,6 +60,7 @@ void check_settings(const settings& s) {
     s.densification.check(
         {.iterations = s.schedule.iterations, .max_gaussians = s.max_cap.value_or(0), .seed = s.seed});
     check_background(s);
+    check_video_frames(s);
 }
 
 }  // namespace gs::cli

@@ -25,9 +25,9 @@ void command_context::warn(const std::string& line) const {
     std::fflush(stdout);
 }
 
-scene command_context::load() const {
+scene command_context::load(const load_options& source) const {
     const auto log = [this](const std::string& line) { say(line); };
-    scene loaded = load_scene(settings_.scene, log);
+    scene loaded = load_scene(source, log);
     normalize(loaded, log);
     return loaded;
 }
@@ -73,7 +73,7 @@ output_folder::~output_folder() {
     std::error_code ignored;
     std::vector<fs::path> folders{made_};
     for (const auto& entry : fs::recursive_directory_iterator(made_, ignored))
-        if (entry.is_directory(ignored)) folders.push_back(entry.path());
+        if (entry.is_directory(ignored) && !entry.is_symlink(ignored)) folders.push_back(entry.path());
     // Removes the innermost folders first. Folders that are not empty stay, because their removal
     // fails.
     for (const fs::path& folder : folders | std::views::reverse) fs::remove(folder, ignored);

@@ -23,7 +23,8 @@ class command_context {
     void warn(const std::string& line) const;
     /// @}
     /// Reads the scene and transforms it to internal coordinates: see `normalize`.
-    scene load() const;
+    scene load() const { return load(settings_.scene); }
+    scene load(const load_options& source) const;
     /// Returns an engine for the device of --device. Throws `error` for --device cuda if no GPU can
     /// be used.
     std::unique_ptr<train::engine> make_engine() const;

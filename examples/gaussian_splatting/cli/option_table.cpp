@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "../losses/loss_names.hpp"
+#include "../poses/video_frames.hpp"
 #include "../writers/writer.hpp"
 
 // The table of all options, group by group. An option is one row here and one member of `settings`.
@@ -42,7 +43,7 @@ rows scene_options(settings& s) {
          {.names = "-d,--data,-s,--source-path",
           .commands = {train, evaluate, render, inspect},
           .value = text(s.scene.data, "SCENE"),
-          .help = "Scene to read: " + accepted_scenes(),
+          .help = "Scene to read: " + accepted_scenes() + "; train also takes photos, see --poses",
           .default_text = "none; render then draws an orbit around the model",
           .required = {train, evaluate, inspect}},
          {.names = "--images",
@@ -82,6 +83,25 @@ rows scene_options(settings& s) {
           .help = "Short for --background white",
           .excludes = {"--background"},
           .is_recorded = false}});
+}
+
+rows pose_options(settings& s) {
+    return grouped(
+        "Camera poses of photos",
+        {{.names = "--poses",
+          .commands = {train},
+          .value = choice(s.poses),
+          .help =
+              "Source of the camera poses: given reads them with the scene; auto takes a folder of photos "
+              "or a video as SCENE, computes them with COLMAP, and keeps them in the folder colmap of "
+              "--output for the next run"},
+         {.names = "--video-frames",
+          .commands = {train},
+          .value = whole(s.video_frames, poses::least_video_frames, poses::most_video_frames),
+          .help = "Number of frames that --poses auto takes from a video: the sharpest of each part of it",
+          .unit = "frames",
+          .default_text = std::to_string(poses::default_video_frames),
+          .needs = {"--poses"}}});
 }
 
 rows output_options(settings& s) {
@@ -337,9 +357,9 @@ rows evaluation_options(settings& s) {
 
 std::vector<option> option_table(settings& s) {
     rows table;
-    for (auto& group : {scene_options(s), output_options(s), checkpoint_options(s), length_options(s),
-                        effect_options(s), learning_rate_options(s), densification_options(s),
-                        strategy_options(s), evaluation_options(s), run_options(s)})
+    for (auto& group : {scene_options(s), pose_options(s), output_options(s), checkpoint_options(s),
+                        length_options(s), effect_options(s), learning_rate_options(s),
+                        densification_options(s), strategy_options(s), evaluation_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }

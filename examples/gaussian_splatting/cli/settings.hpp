@@ -27,6 +27,7 @@ using options::name_of;
 
 enum class device_kind { automatic, cpu, cuda };
 enum class background_kind { automatic, white, black, random };
+enum class pose_source { given, automatic };
 enum class quality_preset { fast, balanced, best };
 enum class log_level { error, warning, info };
 
@@ -36,6 +37,7 @@ constexpr std::array<std::string_view, 3> names_of(device_kind) { return {"auto"
 constexpr std::array<std::string_view, 4> names_of(background_kind) {
     return {"auto", "white", "black", "random"};
 }
+constexpr std::array<std::string_view, 2> names_of(pose_source) { return {"given", "auto"}; }
 constexpr std::array<std::string_view, 3> names_of(quality_preset) { return {"fast", "balanced", "best"}; }
 constexpr std::array<std::string_view, 3> names_of(log_level) { return {"error", "warning", "info"}; }
 /// @}
@@ -44,6 +46,8 @@ constexpr std::array<std::string_view, 3> names_of(log_level) { return {"error",
 struct settings {
     cli::command command = command::train;
     load_options scene;
+    pose_source poses = pose_source::given;
+    std::optional<int> video_frames;
     std::string output;
     std::string ply;
     device_kind device = device_kind::automatic;

@@ -20,7 +20,8 @@ class stop_signals {
     int received() const;
 };
 
-/// Ends the program after a signal and a checkpoint. The exit code is 128 plus the signal's number.
+/// Ends the program after a signal, with what is worth keeping saved. The exit code is 128 plus the signal's
+/// number.
 struct interruption : std::runtime_error {
     interruption(int number, const std::string& message) : std::runtime_error(message), signal(number) {}
     int signal;

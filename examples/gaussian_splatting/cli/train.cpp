@@ -10,6 +10,7 @@
 #include "earlier_run.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
+#include "scene_with_poses.hpp"
 #include "stop_signals.hpp"
 #include "training_effects.hpp"
 #include "training_report.hpp"
@@ -58,9 +59,10 @@ gaussians first_model(const scene& scene, const train::train_options& o) {
 /// A training run. Call its public functions once each, in the order of their declaration.
 class training_run {
   public:
-    /// Loads the scene, decides which effects to simulate, and passes the first model to the
-    /// engine.
-    training_run(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient);
+    /// Loads the scene from `source`, decides which effects to simulate, and passes the first model
+    /// to the engine.
+    training_run(const settings& s, const load_options& source, std::unique_ptr<train::engine> engine,
+                 accumulator gradient);
     training_run(const training_run&) = delete;
     training_run& operator=(const training_run&) = delete;
 
@@ -98,12 +100,13 @@ class training_run {
     training_measures measures_;
 };
 
-training_run::training_run(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient)
+training_run::training_run(const settings& s, const load_options& source,
+                           std::unique_ptr<train::engine> engine, accumulator gradient)
     : s_(s),
       context_(s),
       checkpoint_(checkpoint_to_resume(s, [this](const std::string& line) { context_.warn(line); })),
       engine_(std::move(engine)),
-      scene_(context_.load()),
+      scene_(context_.load(source)),
       options_(options_of(s, scene_, context_, resolve_effects(s, scene_, context_))),
       output_(s.output),
       bar_(s.log_level < log_level::info) {
@@ -280,7 +283,7 @@ void train(const settings& s) {
 
 void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient) {
     require_no_earlier_run(s);
-    training_run run(s, std::move(engine), gradient);
+    training_run run(s, scene_with_poses(s), std::move(engine), gradient);
     run.train();
     run.measure();
     run.write_reports();

@@ -8,6 +8,7 @@
 
 #include "../core/error.hpp"
 #include "load_views.hpp"
+#include "photo_files.hpp"
 
 namespace gs {
 namespace {
@@ -17,6 +18,7 @@ using reader_table = std::span<const reader* const>;
 const reader& reader_of(const std::string& data, reader_table readers) {
     for (const reader* one : readers)
         if (one->probe(data)) return *one;
+    if (const std::string message = missing_poses_message(data); !message.empty()) throw error(message);
     throw error(data + (std::filesystem::exists(data) ? " is not a scene" : " does not exist") +
                 "; a scene is " + accepted_scenes(readers));
 }

@@ -47,6 +47,8 @@ const std::map<std::string, option_case> cases{
     {"ply", {{"a.ply"}, [](const settings& s) { return s.ply == "a.ply"; }}},
     {"--data", {{"a scene"}, [](const settings& s) { return s.scene.data == "a scene"; }}},
     {"--images", {{"photos"}, [](const settings& s) { return s.scene.images == "photos"; }}},
+    {"--poses", {{"auto"}, [](const settings& s) { return s.poses == pose_source::automatic; }}},
+    {"--video-frames", {{"80"}, [](const settings& s) { return s.video_frames == 80; }}},
     {"--resolution", {{"640"}, [](const settings& s) { return s.scene.resolution == 640; }}},
     {"--eval", {{}, [](const settings& s) { return s.scene.eval; }}},
     {"--test-every", {{"5"}, [](const settings& s) { return s.scene.test_every == 5; }}},

@@ -90,7 +90,8 @@ scene_description describe(const load_options& options, const log_function& log)
     result.images = image_records(model, photos, options.masks ? data / "masks" : std::filesystem::path(),
                                   options.depths ? data / "depths" : std::filesystem::path());
     if (!std::filesystem::is_directory(photos))
-        throw error("the folder of photos " + photos.string() + " does not exist");
+        throw error("the folder of photos " + photos.string() +
+                    " does not exist: name another with --images");
     hold_out_views(result.images, options);
     result.points = std::move(model.points);
     if (result.points.empty()) log("the COLMAP model has no points");
