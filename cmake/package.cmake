@@ -3,6 +3,10 @@
 #
 # Debian packages, which `cpack` writes: the component `headers` is libwarpagg-dev, and `trainer` is
 # warpagg-gaussian-splatting.
+find_program(WARPAGG_GZIP gzip)
+if(NOT WARPAGG_GZIP)
+    return()  # no Debian
+endif()
 set(headers_package libwarpagg-dev)
 set(trainer_package warpagg-gaussian-splatting)
 
@@ -38,7 +42,6 @@ endif()
 # The files that Debian's policy requires. Only packages contain them.
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(packaging/debian/changelog.in changelog @ONLY)
-find_program(WARPAGG_GZIP gzip REQUIRED)
 execute_process(COMMAND ${WARPAGG_GZIP} -9nkf ${PROJECT_BINARY_DIR}/changelog COMMAND_ERROR_IS_FATAL ANY)
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
     set(folder ${CMAKE_INSTALL_DATADIR}/doc/${${component}_package})
