@@ -37,6 +37,7 @@ std::unique_ptr<train::engine> command_context::make_engine() const {
     const bool usable = settings_.device != device_kind::cpu && train::cuda_is_available(reason);
     if (settings_.device == device_kind::cuda && !usable)
         throw error("--device cuda: no GPU can be used: " + reason);
+    if (settings_.device == device_kind::automatic && !usable) say("using the CPU: " + reason);
     return usable ? train::make_cuda_engine() : train::make_cpu_engine();
 }
 

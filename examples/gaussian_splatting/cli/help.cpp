@@ -104,25 +104,27 @@ std::string commands_of(const option& row) {
     return text;
 }
 
-std::vector<option> rows_of(command c, const std::vector<option>& table) {
-    std::vector<option> rows;
-    std::ranges::copy_if(table, std::back_inserter(rows), [=](const option& o) { return o.belongs_to(c); });
-    return rows;
-}
-
 }  // namespace
+
+const std::vector<program_option>& program_options() {
+    static const std::vector<program_option> all{
+        {"--help", "Prints this text; after a command, prints the options of the command"},
+        {"--version", "Prints the version"},
+        {"--print-reference", "Prints the options of all commands as Markdown"},
+        {"--print-man-page", "Prints the manual page"},
+        {"--print-completion", "Prints the completion script for a shell, bash or zsh", "SHELL"}};
+    return all;
+}
 
 std::string overview() {
     std::string text =
         "Trains 3D Gaussian splatting models from photos, on a CPU or a GPU.\n\n"
         "Usage: gaussian_splatting COMMAND [OPTIONS]\n\nCommands:\n";
     for (const command c : all_values<command>) text += "  " + name_of(c) + "\n      " + purpose_of(c) + "\n";
-    return text +
-           "\nOptions instead of a command:\n"
-           "  --help\n      Prints this text; after a command, prints the options of the command\n"
-           "  --version\n      Prints the version\n"
-           "  --print-reference\n      Prints the options of all commands as Markdown\n"
-           "  --print-man-page\n      Prints the manual page\n";
+    text += "\nOptions instead of a command:\n";
+    for (const program_option& o : program_options())
+        text += "  " + o.name + (o.type.empty() ? "" : " " + o.type) + "\n      " + o.help + "\n";
+    return text;
 }
 
 std::string help_text(command c, const std::vector<option>& rows) {

@@ -9,6 +9,13 @@
 
 namespace gs::cli {
 
+/// An option that the program takes instead of a command.
+struct program_option {
+    std::string name, help;
+    std::string type = "";  ///< placeholder of its value, such as "SHELL"; empty if it has none
+};
+const std::vector<program_option>& program_options();
+
 /// Returns the text of --help without a command.
 std::string overview();
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "option_table.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "../losses/loss_names.hpp"
@@ -20,11 +22,22 @@ using rows = std::vector<option>;
 using namespace options;
 using enum command;
 
+/// Returns the names of the effects that users can select.
+std::vector<std::string> effect_names() {
+    std::vector<std::string> names;
+    for (const auto& f : features::all_features())
+        if (f->is_selectable()) names.emplace_back(f->name());
+    return names;
+}
+
 option_value effect_list(features::selection& member) {
+    std::vector<std::string> suggestions = effect_names();
+    suggestions.insert(suggestions.begin(), {"auto", "all", "none"});
     return {.type = "LIST",
             .range = "",
             .read = [&member](const std::string& word) { member = features::parse_selection(word); },
-            .json = [&member] { return nlohmann::ordered_json(member.text); }};
+            .json = [&member] { return nlohmann::ordered_json(member.text); },
+            .suggestions = suggestions};
 }
 
 rows grouped(const std::string& heading, rows all) {
@@ -236,8 +249,7 @@ rows checkpoint_options(settings& s) {
 
 rows effect_options(settings& s) {
     std::string names;
-    for (const auto& f : features::all_features())
-        if (f->is_selectable()) names += (names.empty() ? "" : ", ") + std::string(f->name());
+    for (const std::string& name : effect_names()) names += (names.empty() ? "" : ", ") + name;
     return grouped(
         "Effects and colors",
         {
@@ -362,6 +374,13 @@ std::vector<option> option_table(settings& s) {
                         densification_options(s), strategy_options(s), evaluation_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
+}
+
+std::vector<option> rows_of(command c, const std::vector<option>& table) {
+    rows of_command;
+    std::ranges::copy_if(table, std::back_inserter(of_command),
+                         [=](const option& o) { return o.belongs_to(c); });
+    return of_command;
 }
 
 std::string purpose_of(command c) {

@@ -20,6 +20,9 @@ using options::option_value;
 /// table.
 std::vector<option> option_table(settings& s);
 
+/// Returns the options of a command in the order of the table.
+std::vector<option> rows_of(command c, const std::vector<option>& table);
+
 /// Returns the purpose of a command, as a phrase that begins with a verb.
 std::string purpose_of(command c);
 

@@ -12,6 +12,7 @@
 #include "../core/error.hpp"
 #include "apply_quality_preset.hpp"
 #include "check_settings.hpp"
+#include "completion.hpp"
 #include "config_file.hpp"
 #include "help.hpp"
 #include "nearest_word.hpp"
@@ -50,6 +51,7 @@ command command_named(const words& given) {
     if (first == "--version") print_and_exit(WARPAGG_VERSION "\n");
     if (first == "--print-reference") print_and_exit(reference_page());
     if (first == "--print-man-page") print_and_exit(man_page());
+    if (first == "--print-completion") print_and_exit(completion_script(given.size() > 1 ? given[1] : ""));
     const auto found = std::ranges::find(names, first);
     if (found == names.end())
         throw error("the command comes first, and '" + first + "' is none: give " + known + " (see --help)");
@@ -59,10 +61,7 @@ command command_named(const words& given) {
 /// The options of one command, and the words that the user gives for each of them.
 class command_options {
   public:
-    command_options(command c, const std::vector<option>& table) : command_(c) {
-        for (const option& row : table)
-            if (row.belongs_to(c)) rows_.push_back(row);
-    }
+    command_options(command c, const std::vector<option>& table) : command_(c), rows_(rows_of(c, table)) {}
 
     const std::vector<option>& rows() const { return rows_; }
     bool is_explicit(const std::string& name) const { return parsed_.contains(name); }

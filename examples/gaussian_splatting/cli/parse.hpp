@@ -10,7 +10,7 @@
 namespace gs::cli {
 
 /// Reads and checks the words that follow the program's name. Prints a text and exits for --help,
-/// --version, --print-reference and --print-man-page. Throws `error` with one sentence that names
+/// --version, and the options that begin with --print. Throws `error` with one sentence that names
 /// the option, its value and the remedy.
 settings parse(std::vector<std::string> words);
 

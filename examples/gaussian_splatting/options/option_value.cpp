@@ -91,7 +91,8 @@ option_value word(std::string& member, std::vector<std::string> names) {
     return {.type = "WORD",
             .range = alternatives(names),
             .read = [names, &member](const std::string& word) { member = names[read_choice(word, names)]; },
-            .json = [&member] { return json_of(member); }};
+            .json = [&member] { return json_of(member); },
+            .suggestions = names};
 }
 
 }  // namespace gs::options

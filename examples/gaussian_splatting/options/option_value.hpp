@@ -31,6 +31,7 @@ struct option_value {
     std::function<void(const std::string& word)> read;
     std::function<nlohmann::ordered_json()> json;  ///< the member's value; null if unset
     bool is_list = false;                          ///< takes several words; `read` adds one
+    std::vector<std::string> suggestions{};        ///< words that shells offer for completion
 
     bool is_flag() const { return type.empty(); }
 };
@@ -137,7 +138,8 @@ option_value choice(Enum& member) {
             .range = alternatives(names),
             .read = [=, &member](
                         const std::string& word) { member = static_cast<Enum>(read_choice(word, names)); },
-            .json = [&member] { return nlohmann::ordered_json(name_of(member)); }};
+            .json = [&member] { return nlohmann::ordered_json(name_of(member)); },
+            .suggestions = names};
 }
 /// @}
 

@@ -129,9 +129,10 @@ TEST_CASE("--device cuda is refused where there is no GPU") {
     check_refusal_without_trace(train_spheres + words{"--device", "cuda"}, {"--device cuda", "GPU"});
 }
 
-TEST_CASE("--help, --version, --print-reference and --print-man-page succeed") {
+TEST_CASE("--help, --version and the options that begin with --print succeed") {
     for (const words& asked : {words{"--help"}, words{"-h"}, words{"train", "--help"}, words{"render", "-h"},
-                               words{"--version"}, words{"--print-reference"}, words{"--print-man-page"}}) {
+                               words{"--version"}, words{"--print-reference"}, words{"--print-man-page"},
+                               words{"--print-completion", "bash"}, words{"--print-completion", "zsh"}}) {
         const outcome o = run(asked);
         CHECK(o.code == 0);
         CHECK(!o.out.empty());

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "engine/engine.hpp"
 #include "run_program.hpp"
 #include "small_training.hpp"
 
@@ -209,4 +210,16 @@ TEST_CASE("one thread and the same seed write the same model twice") {
     CHECK(!one.empty());
     CHECK(one == read_file(model_of(folder / "two", 60)));
     CHECK(one != read_file(model_of(folder / "other", 60)));
+}
+
+TEST_CASE("--device auto computes on the CPU where there is no GPU, and says why") {
+    std::string reason;
+    if (gs::train::cuda_is_available(reason)) {
+        MESSAGE("there is a GPU: not tested");
+        return;
+    }
+    const temporary_folder folder;
+    const outcome o = run(train_spheres + words{"-r", "32", "-i", "2", "-o", (folder / "output").string()});
+    CHECK(o.code == 0);
+    CHECK(says(o.out, {"using the CPU: " + reason + "\n"}));
 }
