@@ -34,6 +34,7 @@ if(TARGET gaussian_splatting)
     set(CPACK_DEBIAN_TRAINER_PACKAGE_NAME ${trainer_package})
     set(CPACK_DEBIAN_TRAINER_PACKAGE_SECTION graphics)
     set(CPACK_DEBIAN_TRAINER_PACKAGE_SHLIBDEPS ON)
+    set(CPACK_DEBIAN_TRAINER_PACKAGE_RECOMMENDS "colmap, ffmpeg")
     set(CPACK_COMPONENT_TRAINER_DESCRIPTION "Trainer of 3D Gaussian splatting models from photos
 Fits 3D Gaussians to photos, and writes .ply and .splat files. Without a GPU
 that it can use, it computes on the CPU.")

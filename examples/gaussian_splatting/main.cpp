@@ -43,6 +43,9 @@ int main(int argc, char** argv) {
             case gs::cli::command::inspect:
                 gs::cli::inspect(settings);
                 break;
+            case gs::cli::command::doctor:
+                gs::cli::doctor();
+                break;
         }
         return 0;
     } catch (const gs::cli::interruption& e) {

@@ -65,7 +65,7 @@ std::string usage_of(command c, const std::vector<option>& rows) {
     for (const option& row : rows)
         if (row.is_required_by(c))
             text += row.is_positional() ? " " + row.value.type : " " + row.name() + " " + row.value.type;
-    return text + " [OPTIONS]";
+    return text + (rows.empty() ? "" : " [OPTIONS]");
 }
 
 std::string names_with_type(const option& row) {

@@ -393,6 +393,8 @@ std::string purpose_of(command c) {
             return "Draws a saved model from the cameras of a scene or from an orbit";
         case inspect:
             return "Reports which effects the photos of a scene need";
+        case doctor:
+            return "Reports what this machine has, and how to get what is missing";
     }
     return "";
 }

@@ -110,6 +110,7 @@ class command_options {
     }
 
     [[noreturn]] void refuse_unknown(const std::string& name) const {
+        if (rows_.empty()) throw error(name_of(command_) + " takes no options: leave out " + name);
         words known;
         for (const option& row : rows_) std::ranges::copy(row.all_names(), std::back_inserter(known));
         throw error("unknown option " + name + " of " + name_of(command_) + "; the nearest known one is " +

@@ -185,3 +185,19 @@ TEST_CASE("inspect prints and writes the effects that a scene needs") {
     check_refusal({"inspect", "-d", "synthetic:spheres", "-o", (folder / "none/effects.json").string()},
                   {"none"});
 }
+
+TEST_CASE("doctor reports the devices, and which programs are installed or how to get them") {
+    const temporary_folder folder;
+    write_file(folder / "colmap", "#!/bin/sh\n");
+    fs::permissions(folder / "colmap", fs::perms::owner_all);
+    const std::string path = std::getenv("PATH");
+    setenv("PATH", folder.path().c_str(), 1);
+    const outcome o = run({"doctor"});
+    setenv("PATH", path.c_str(), 1);
+    REQUIRE(o.code == 0);
+    CHECK(o.err == "");
+    CHECK(
+        says(o.out, {"version  ", "CPU      cpu, ", "memory   ", " GiB\n", "GPU      ", "colmap   installed",
+                     "ffmpeg   missing (to get it: apt-get install ffmpeg)", "ffprobe  missing"}));
+    check_refusal({"doctor", "--quiet"}, {"doctor takes no options: leave out --quiet"});
+}

@@ -33,7 +33,7 @@ TEST_CASE("train --poses auto trains on a folder of photos, and other commands r
     check_success({"render", model, "-d", scene.string(), "-o", (folder / "renders").string()});
     check_success({"inspect", "-d", scene.string()});
     fakes.calls();
-    const outcome again = run(training_with_poses(photos, output));
+    const outcome again = run(training_with_poses(photos, output) + words{"--overwrite"});
     CHECK(again.code == 0);
     CHECK(says(again.out, {"using the camera poses in", "again"}));
     CHECK_FALSE(fs::exists(scene / "models"));
