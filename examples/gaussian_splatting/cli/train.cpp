@@ -75,6 +75,7 @@ class training_run {
     const settings& s_;
     command_context context_;
     std::unique_ptr<train::engine> engine_;
+    std::unique_ptr<evaluate::lpips_network> lpips_;
     stopwatch loading_;
     scene scene_;
     train::train_options options_;
@@ -87,6 +88,7 @@ training_run::training_run(const settings& s, std::unique_ptr<train::engine> eng
     : s_(s),
       context_(s),
       engine_(std::move(engine)),
+      lpips_(context_.load_lpips()),
       scene_(context_.load()),
       options_(options_of(s, scene_, context_, resolve_effects(s, scene_, context_))),
       output_(s.output),
@@ -125,7 +127,7 @@ void training_run::save(int iteration) {
 
 void training_run::test(int iteration) {
     options_.features.before_evaluation(*engine_, scene_);
-    const auto report = evaluate::measure_held_out_views(*engine_, scene_, options_.background.color, {});
+    const auto report = evaluate::measure_held_out_views(*engine_, scene_, options_.background.color);
     measures_.tests.push_back({{"iteration", iteration},
                                {"seconds", measures_.last.seconds},
                                {"psnr", report.psnr()},
@@ -149,9 +151,11 @@ void training_run::measure() {
     engine_->set_model(
         to_internal(scene_.normalization, to_world(scene_.normalization, engine_->get_model())));
     options_.features.before_evaluation(*engine_, scene_);
-    measures_.held_out =
-        evaluate::measure_held_out_views(*engine_, scene_, options_.background.color, renders_folder(),
-                                         s_.fit_exposure || options_.features.is_on("exposure"));
+    measures_.held_out = evaluate::measure_held_out_views(
+        *engine_, scene_, options_.background.color,
+        {.folder = renders_folder(),
+         .fits_exposure = s_.fit_exposure || options_.features.is_on("exposure"),
+         .network = lpips_.get()});
     measures_.evaluate_seconds = evaluating.seconds();
     measures_.peak_device_bytes = engine_->profile().peak_device_bytes();
 }
@@ -162,7 +166,7 @@ void training_run::write_reports() {
     write_json(output_.path() / "settings.json",
                settings_json(resolved(s_, options_, effects_in_use(options_.features))));
     options_.features.write_results(*engine_, scene_, output_.path());
-    write_json(output_.path() / "metrics.json", metrics);
+    write_metrics(output_.path(), metrics, measures_.held_out);
 }
 
 void training_run::print_summary() const {
@@ -181,8 +185,8 @@ void training_run::print_summary() const {
     } else {
         const fs::path first = evaluate::render_names(scene_.test).front();
         context_.say("held-out PSNR " + number("%.2f dB", report.psnr()) + ", SSIM " +
-                     number("%.4f", report.ssim()) + fitted_part(report) + " over " + std::to_string(views) +
-                     " views");
+                     number("%.4f", report.ssim()) + optional_measures(report) + " over " +
+                     std::to_string(views) + " views");
         context_.say("renders   " + (renders_folder() / "renders" / first).string() +
                      (views > 1 ? " and " + std::to_string(views - 1) + " more" : ""));
     }
