@@ -35,7 +35,9 @@ std::unique_ptr<train::engine> command_context::make_engine() const {
 
 std::unique_ptr<evaluate::lpips_network> command_context::load_lpips() const {
     if (settings_.lpips.empty()) return nullptr;
-    return std::make_unique<evaluate::lpips_network>(settings_.lpips);
+    auto network = std::make_unique<evaluate::lpips_network>(settings_.lpips);
+    say("computes LPIPS on the CPU, with inputs from " + std::to_string(network->black()) + " to 1");
+    return network;
 }
 
 train::background_choice command_context::background(bool alpha) const {

@@ -93,7 +93,7 @@ rows output_options(settings& s) {
                               {.names = "-o,--output",
                                .commands = {evaluate},
                                .value = text(s.output, "FOLDER"),
-                               .help = "Folder for metrics.json and the renders",
+                               .help = "Folder for the metrics and the renders",
                                .default_text = "none; nothing is written"},
                               {.names = "-o,--output",
                                .commands = {render},
