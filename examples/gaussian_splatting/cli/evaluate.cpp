@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include <cstdio>
 #include <optional>
+#include <string>
 
 #include "../core/error.hpp"
 #include "../writers/writer.hpp"
@@ -40,10 +40,8 @@ void evaluate(const settings& s) {
     metrics["seconds"] = {{"load", load_seconds}, {"evaluate", evaluating.seconds()}};
     metrics["device"] = engine->profile().device_name();
     if (output) write_metrics(output->path(), metrics, report);
-    char text[100];
-    std::snprintf(text, sizeof text, "PSNR %.2f dB, SSIM %.4f over %zu views", report.psnr(), report.ssim(),
-                  report.views.size());
-    context.say(text + optional_measures(report));
+    context.say("PSNR " + number("%.2f dB", report.psnr()) + ", SSIM " + number("%.4f", report.ssim()) +
+                optional_measures(report) + " over " + std::to_string(report.views.size()) + " views");
 }
 
 }  // namespace gs::cli
