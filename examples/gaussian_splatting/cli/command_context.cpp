@@ -41,6 +41,13 @@ std::unique_ptr<train::engine> command_context::make_engine() const {
     return usable ? train::make_cuda_engine() : train::make_cpu_engine();
 }
 
+std::unique_ptr<evaluate::lpips_network> command_context::load_lpips() const {
+    if (settings_.lpips.empty()) return nullptr;
+    auto network = std::make_unique<evaluate::lpips_network>(settings_.lpips);
+    say("computes LPIPS on the CPU, with inputs from " + std::to_string(network->black()) + " to 1");
+    return network;
+}
+
 train::background_choice command_context::background(bool alpha) const {
     const background_kind kind = settings_.background;
     const bool white = kind == background_kind::white || (kind != background_kind::black && alpha);

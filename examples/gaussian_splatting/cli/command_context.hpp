@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "../evaluation/lpips/lpips.hpp"
 #include "../training/training.hpp"
 #include "settings.hpp"
 
@@ -28,6 +29,8 @@ class command_context {
     /// Returns an engine for the device of --device. Throws `error` for --device cuda if no GPU can
     /// be used.
     std::unique_ptr<train::engine> make_engine() const;
+    /// Returns the network with the weights of --lpips, or null without this option.
+    std::unique_ptr<evaluate::lpips_network> load_lpips() const;
     /// Returns the background of --background. `alpha`: whether the photos have transparent parts.
     train::background_choice background(bool alpha) const;
     /// Throws `error` if --background is given although the model's learned background replaces it.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include <cstdio>
 #include <optional>
+#include <string>
 
 #include "../core/error.hpp"
 #include "../writers/writer.hpp"
@@ -14,6 +14,7 @@ namespace gs::cli {
 void evaluate(const settings& s) {
     const command_context context(s);
     const auto engine = context.make_engine();
+    const auto network = context.load_lpips();
     const stopwatch loading;
     gaussians model = read_model(s.ply);
     context.require_no_background_before(model);
@@ -30,17 +31,17 @@ void evaluate(const settings& s) {
 
     const stopwatch evaluating;
     const auto report = evaluate::measure_held_out_views(
-        *engine, scene, background.color, output ? output->path() / "test" : std::filesystem::path(),
-        s.fit_exposure);
+        *engine, scene, background.color,
+        {.folder = output ? output->path() / "test" : std::filesystem::path(),
+         .fits_exposure = s.fit_exposure,
+         .network = network.get()});
     nlohmann::ordered_json metrics = to_json(report);
     metrics["gaussians"] = model.count();
     metrics["seconds"] = {{"load", load_seconds}, {"evaluate", evaluating.seconds()}};
     metrics["device"] = engine->profile().device_name();
-    if (output) write_json(output->path() / "metrics.json", metrics);
-    char text[100];
-    std::snprintf(text, sizeof text, "PSNR %.2f dB, SSIM %.4f over %zu views", report.psnr(), report.ssim(),
-                  report.views.size());
-    context.say(text + fitted_part(report));
+    if (output) write_metrics(output->path(), metrics, report);
+    context.say("PSNR " + number("%.2f dB", report.psnr()) + ", SSIM " + number("%.4f", report.ssim()) +
+                optional_measures(report) + " over " + std::to_string(report.views.size()) + " views");
 }
 
 }  // namespace gs::cli

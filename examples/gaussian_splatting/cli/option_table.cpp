@@ -126,7 +126,7 @@ rows output_options(settings& s) {
                               {.names = "-o,--output",
                                .commands = {evaluate},
                                .value = text(s.output, "FOLDER"),
-                               .help = "Folder for metrics.json and the renders",
+                               .help = "Folder for the metrics and the renders",
                                .default_text = "none; nothing is written"},
                               {.names = "-o,--output",
                                .commands = {render},
@@ -345,24 +345,31 @@ rows strategy_options(settings& s) {
 }
 
 rows evaluation_options(settings& s) {
-    const auto fit_exposure = [&](command c, std::vector<std::string> needs) {
-        return option{.names = "--fit-exposure",
-                      .commands = {c},
-                      .value = flag(s.fit_exposure),
-                      .help =
-                          "Measures the right halves of held-out views, too, after fitting the exposure "
-                          "on the left halves",
-                      .needs = std::move(needs)};
+    rows table{{.names = "--test-iterations",
+                .commands = {train},
+                .value = iterations(s.test_iterations),
+                .help = "Iterations after which the held-out views are measured, besides the last one",
+                .default_text = "none",
+                .needs = {"--eval"}}};
+    // Training measures held-out views only; `evaluate` without --eval measures all views.
+    const auto of_views = [&](option row) {
+        row.commands = {train};
+        row.needs = {"--eval"};
+        table.push_back(row);
+        row.commands = {evaluate};
+        row.needs = {};
+        table.push_back(row);
     };
-    return grouped("Evaluation",
-                   {{.names = "--test-iterations",
-                     .commands = {train},
-                     .value = iterations(s.test_iterations),
-                     .help = "Iterations after which the held-out views are measured, besides the last one",
-                     .default_text = "none",
-                     .needs = {"--eval"}},
-                    fit_exposure(train, {"--eval"}),
-                    fit_exposure(evaluate, {})});
+    of_views({.names = "--fit-exposure",
+              .value = flag(s.fit_exposure),
+              .help = "Measures the right halves of held-out views, too, after fitting the exposure on the "
+                      "left halves"});
+    of_views({.names = "--lpips",
+              .value = text(s.lpips, "FILE"),
+              .help = "Computes LPIPS with the weights in this file, which "
+                      "scripts/convert_lpips_weights.py creates",
+              .default_text = "none; LPIPS is not computed"});
+    return grouped("Evaluation", table);
 }
 
 }  // namespace

@@ -66,6 +66,7 @@ struct settings {
     std::optional<int> sh_degree;        ///< if unset, `effects` decides
     std::optional<std::size_t> max_cap;  ///< if unset, the size of the photos decides
     bool fit_exposure = false;
+    std::string lpips;  ///< file of weights; if empty, LPIPS is not computed
     std::set<int> save_iterations;
     std::optional<int> checkpoint_every;  ///< iterations between two checkpoints
     std::set<int> checkpoint_iterations;

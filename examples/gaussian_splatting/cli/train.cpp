@@ -91,6 +91,7 @@ class training_run {
     std::optional<checkpoint_folder::found_checkpoint> checkpoint_;  ///< to continue from
     std::optional<stop_signals> signals_;                            ///< while training runs
     std::unique_ptr<train::engine> engine_;
+    std::unique_ptr<evaluate::lpips_network> lpips_;
     stopwatch loading_;
     scene scene_;
     train::train_options options_;
@@ -106,6 +107,7 @@ training_run::training_run(const settings& s, const load_options& source,
       context_(s),
       checkpoint_(checkpoint_to_resume(s, [this](const std::string& line) { context_.warn(line); })),
       engine_(std::move(engine)),
+      lpips_(context_.load_lpips()),
       scene_(context_.load(source)),
       options_(options_of(s, scene_, context_, resolve_effects(s, scene_, context_))),
       output_(s.output),
@@ -194,7 +196,7 @@ void training_run::save(int iteration) {
 
 void training_run::test(int iteration) {
     options_.features.before_evaluation(*engine_, scene_);
-    const auto report = evaluate::measure_held_out_views(*engine_, scene_, options_.background.color, {});
+    const auto report = evaluate::measure_held_out_views(*engine_, scene_, options_.background.color);
     measures_.tests.push_back({{"iteration", iteration},
                                {"seconds", measures_.last.seconds},
                                {"psnr", report.psnr()},
@@ -227,9 +229,11 @@ void training_run::measure() {
     engine_->set_model(
         to_internal(scene_.normalization, to_world(scene_.normalization, engine_->get_model())));
     options_.features.before_evaluation(*engine_, scene_);
-    measures_.held_out =
-        evaluate::measure_held_out_views(*engine_, scene_, options_.background.color, renders_folder(),
-                                         s_.fit_exposure || options_.features.is_on("exposure"));
+    measures_.held_out = evaluate::measure_held_out_views(
+        *engine_, scene_, options_.background.color,
+        {.folder = renders_folder(),
+         .fits_exposure = s_.fit_exposure || options_.features.is_on("exposure"),
+         .network = lpips_.get()});
     measures_.evaluate_seconds = evaluating.seconds();
     measures_.peak_device_bytes = engine_->profile().peak_device_bytes();
 }
@@ -239,7 +243,7 @@ void training_run::write_reports() {
     metrics["effects"] = effects_json(s_, scene_, options_, measures_.result);
     write_json(output_.path() / "settings.json", resolved_settings());
     options_.features.write_results(*engine_, scene_, output_.path());
-    write_json(output_.path() / "metrics.json", metrics);
+    write_metrics(output_.path(), metrics, measures_.held_out);
 }
 
 void training_run::print_summary() const {
@@ -258,8 +262,8 @@ void training_run::print_summary() const {
     } else {
         const fs::path first = evaluate::render_names(scene_.test).front();
         context_.say("held-out PSNR " + number("%.2f dB", report.psnr()) + ", SSIM " +
-                     number("%.4f", report.ssim()) + fitted_part(report) + " over " + std::to_string(views) +
-                     " views");
+                     number("%.4f", report.ssim()) + optional_measures(report) + " over " +
+                     std::to_string(views) + " views");
         context_.say("renders   " + (renders_folder() / "renders" / first).string() +
                      (views > 1 ? " and " + std::to_string(views - 1) + " more" : ""));
     }

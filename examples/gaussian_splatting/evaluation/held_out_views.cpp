@@ -5,21 +5,92 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "../core/parallel.hpp"
 #include "fit_exposure.hpp"
+#include "interior_ssim.hpp"
+#include "png_psnr.hpp"
 
 namespace gs::evaluate {
 
 namespace {
 
-template <class Measure>
-double mean(const std::vector<view_quality>& views, Measure measure) {
-    double sum = 0;
-    for (const view_quality& v : views) sum += measure(v);
-    return sum / static_cast<double>(views.size());
+/// A render and its photo, as three planes of values in [0, 1]. Masked pixels show the background
+/// in both.
+struct image_pair {
+    std::vector<float> render, target;
+};
+
+image_pair comparable(const std::vector<float>& render, const image& photo,
+                      const std::array<float, 3>& background) {
+    image_pair pair{render, over_background(photo, background.data())};
+    const std::size_t pixels = render.size() / 3;
+    for (std::size_t i = 0; i < render.size(); ++i)
+        pair.render[i] = photo.is_masked(i % pixels) ? pair.target[i] : std::clamp(render[i], 0.0F, 1.0F);
+    return pair;
 }
+
+/// Measures and writes the views of a scene, as many at a time as there are threads.
+class batch {
+  public:
+    batch(train::engine& engine, const scene& scene, const std::array<float, 3>& background,
+          const held_out_options& options)
+        : engine_(engine),
+          scene_(scene),
+          background_(background),
+          options_(options),
+          names_(render_names(scene.test)),
+          renders_(static_cast<std::size_t>(omp_get_max_threads())),
+          pairs_(renders_.size()) {}
+
+    std::size_t size() const { return renders_.size(); }
+
+    /// Appends the measurements of `count` views, which begin with `first`.
+    void measure(std::size_t first, std::size_t count, std::vector<view_quality>& to) {
+        for (std::size_t i = 0; i < count; ++i)
+            to.push_back(
+                {scene_.test[first + i].name, engine_.measure(first + i, background_, &renders_[i])});
+        for_each_in_parallel(count, [&](std::size_t i) { measure_on_host(first, i, to[first + i]); });
+        // Each image uses all threads, because the features of one image need much memory.
+        if (options_.network)
+            for (std::size_t i = 0; i < count; ++i) {
+                const camera& c = scene_.test[first + i].camera;
+                to[first + i].lpips =
+                    options_.network->distance(pairs_[i].render, pairs_[i].target, c.width, c.height);
+            }
+    }
+
+    /// Writes the images of the last call of `measure`. Each thread compresses one PNG at a time,
+    /// because compression takes longer than rendering.
+    void write(std::size_t first, std::size_t count) const {
+        for_each_in_parallel(2 * count, [&](std::size_t job) {
+            const std::size_t i = job / 2;
+            const bool is_render = job % 2 == 0;
+            const camera& c = scene_.test[first + i].camera;
+            write_png(options_.folder / (is_render ? "renders" : "gt") / names_[first + i], c.width, c.height,
+                      is_render ? renders_[i] : pairs_[i].target);
+        });
+    }
+
+  private:
+    void measure_on_host(std::size_t first, std::size_t i, view_quality& to) {
+        const image& photo = scene_.test[first + i].pixels;
+        const image_pair& pair = pairs_[i] = comparable(renders_[i], photo, background_);
+        to.ssim_interior = interior_ssim(pair.render, pair.target, photo);
+        to.psnr_8bit = png_psnr(pair.render, pair.target, photo);
+        if (options_.fits_exposure) to.fitted_psnr = psnr_after_fit(renders_[i], photo, background_);
+    }
+
+    train::engine& engine_;
+    const scene& scene_;
+    const std::array<float, 3>& background_;
+    const held_out_options& options_;
+    std::vector<std::string> names_;
+    std::vector<std::vector<float>> renders_;  ///< not clamped
+    std::vector<image_pair> pairs_;
+};
 
 }  // namespace
 
@@ -37,51 +108,28 @@ std::vector<std::string> render_names(const std::vector<view>& views) {
     return names;
 }
 
-double held_out_report::psnr() const {
-    return mean(views, [](const view_quality& v) { return v.quality.psnr(); });
-}
-double held_out_report::ssim() const {
-    return mean(views, [](const view_quality& v) { return v.quality.ssim; });
-}
-std::optional<double> held_out_report::fitted_psnr() const {
-    std::vector<view_quality> fitted = views;
-    std::erase_if(fitted, [](const view_quality& v) { return !v.fitted_psnr; });
-    if (fitted.empty()) return {};
-    return mean(fitted, [](const view_quality& v) { return *v.fitted_psnr; });
+double held_out_report::psnr() const { return mean_of("psnr").value_or(std::nan("")); }
+double held_out_report::ssim() const { return mean_of("ssim").value_or(std::nan("")); }
+std::optional<double> held_out_report::mean_of(std::string_view key) const {
+    const auto found = std::ranges::find(view_measures, key, &view_measure::key);
+    return mean(views, *found);
 }
 
 held_out_report measure_held_out_views(train::engine& engine, const scene& scene,
                                        const std::array<float, 3>& background,
-                                       const std::filesystem::path& folder, bool fits) {
+                                       const held_out_options& options) {
     held_out_report report;
-    const bool keeps = !folder.empty();
-    if (keeps) {
-        std::filesystem::create_directories(folder / "renders");
-        std::filesystem::create_directories(folder / "gt");
+    if (options.network) report.lpips_black = options.network->black();
+    const bool writes = !options.folder.empty();
+    if (writes) {
+        std::filesystem::create_directories(options.folder / "renders");
+        std::filesystem::create_directories(options.folder / "gt");
     }
-    const auto names = render_names(scene.test);
-    // Each thread compresses one PNG at a time, because compression takes longer than rendering.
-    std::vector<std::vector<float>> renders(static_cast<std::size_t>(omp_get_max_threads()));
-    for (std::size_t first = 0; first < scene.test.size(); first += renders.size()) {
-        const std::size_t count = std::min(renders.size(), scene.test.size() - first);
-        for (std::size_t i = 0; i < count; ++i)
-            report.views.push_back(
-                {scene.test[first + i].name,
-                 engine.measure(first + i, background, keeps || fits ? &renders[i] : nullptr),
-                 {}});
-        if (fits)
-            for_each_in_parallel(count, [&](std::size_t i) {
-                const view& v = scene.test[first + i];
-                report.views[first + i].fitted_psnr = psnr_after_fit(renders[i], v.pixels, background);
-            });
-        if (!keeps) continue;
-        for_each_in_parallel(2 * count, [&](std::size_t job) {
-            const std::size_t i = job / 2;
-            const bool drawn = job % 2 == 0;
-            const view& v = scene.test[first + i];
-            write_png(folder / (drawn ? "renders" : "gt") / names[first + i], v.camera.width, v.camera.height,
-                      drawn ? renders[i] : over_background(v.pixels, background.data()));
-        });
+    batch views(engine, scene, background, options);
+    for (std::size_t first = 0; first < scene.test.size(); first += views.size()) {
+        const std::size_t count = std::min(views.size(), scene.test.size() - first);
+        views.measure(first, count, report.views);
+        if (writes) views.write(first, count);
     }
     return report;
 }

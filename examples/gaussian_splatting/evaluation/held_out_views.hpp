@@ -2,20 +2,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "../engine/engine.hpp"
+#include "lpips/lpips.hpp"
+#include "view_measures.hpp"
 
 namespace gs::evaluate {
-
-struct view_quality {
-    std::string name;
-    train::image_quality quality;
-    std::optional<double> fitted_psnr;  ///< see fit_exposure.hpp
-};
 
 /// Returns the file names, without a folder, for renders of views: "a/b.jpg" becomes "a_b.png". No
 /// two names are equal.
@@ -24,16 +22,30 @@ std::vector<std::string> render_names(const std::vector<view>& views);
 /// The measurements of a scene's held-out views.
 struct held_out_report {
     std::vector<view_quality> views;
-    double psnr() const;  ///< mean of the views' values, in dB
+    std::optional<int> lpips_black;  ///< see `lpips_network::black`; unset if LPIPS is not computed
+
+    /// Means of the views' values, PSNR in dB; NaN without views.
+    /// @{
+    double psnr() const;
     double ssim() const;
-    std::optional<double> fitted_psnr() const;
+    /// @}
+    std::optional<double> mean_of(std::string_view key) const;  ///< mean of a `view_measure`
 };
 
-/// Measures every held-out view of `scene`, which `engine` must hold. Unless `folder` is empty,
-/// writes each render to `folder/renders` and its photo to `folder/gt`: see `render_names`. If
-/// `fits` is set, also reports the PSNR after fitting exposures.
+/// What `measure_held_out_views` does besides measuring PSNR and SSIM.
+struct held_out_options {
+    std::filesystem::path folder{};          ///< for renders and photos; writes none if empty
+    bool fits_exposure = false;              ///< computes `fitted_psnr`
+    const lpips_network* network = nullptr;  ///< computes LPIPS if set
+};
+
+/// Measures every held-out view of `scene`, which `engine` must hold. If `options.folder` is set,
+/// writes each render to `renders` in that folder and its photo to `gt`: see `render_names`.
+///
+/// Masked pixels do not count. LPIPS, which compares neighborhoods, shows the background there in
+/// both images.
 held_out_report measure_held_out_views(train::engine& engine, const scene& scene,
                                        const std::array<float, 3>& background,
-                                       const std::filesystem::path& folder, bool fits = false);
+                                       const held_out_options& options = {});
 
 }  // namespace gs::evaluate

@@ -230,11 +230,6 @@ class png_writer {
     png_infop info_;
 };
 
-std::uint8_t to_byte(float value) {
-    if (!(value > 0)) return 0;  // includes NaN
-    return static_cast<std::uint8_t>(std::lround(255.0F * std::min(value, 1.0F)));
-}
-
 // JPEG
 
 struct jpeg_errors {
@@ -462,6 +457,11 @@ bool image::has_transparent_pixel() const {
     for (std::size_t i = 0; i < rgba.size() / 4; ++i)
         if (rgba[4 * i + 3] != 255 && !is_masked(i)) return true;
     return false;
+}
+
+std::uint8_t to_byte(float value) {
+    if (!(value > 0)) return 0;  // includes NaN
+    return static_cast<std::uint8_t>(std::lround(255.0F * std::min(value, 1.0F)));
 }
 
 std::vector<float> over_background(const image& source, const float background[3]) {

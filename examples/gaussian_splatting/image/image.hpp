@@ -39,8 +39,11 @@ std::vector<std::uint16_t> read_gray_png(const std::filesystem::path& file, int&
 /// Reads width and height from the header, without decoding. Throws `error` like `read_image`.
 void read_image_size(const std::filesystem::path& file, int& width, int& height);
 
-/// Writes an opaque 8-bit RGB PNG. `planes` holds three planes of width * height values, which are
-/// clamped to [0, 1] and rounded to nearest. Throws `error` like `atomic_file_write`.
+/// Returns 255 times a value, clamped to [0, 255] and rounded to nearest. Returns 0 for NaN.
+std::uint8_t to_byte(float value);
+
+/// Writes an opaque 8-bit RGB PNG. `planes` holds three planes of width * height values, which
+/// `to_byte` converts. Throws `error` like `atomic_file_write`.
 void write_png(const std::filesystem::path& file, int width, int height, const std::vector<float>& planes);
 
 /// Averages over areas. Each output pixel is the mean of the input pixels that it covers, including

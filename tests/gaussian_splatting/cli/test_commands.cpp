@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "../evaluation/patterns.hpp"
 #include "image/image.hpp"
 #include "run_program.hpp"
 #include "small_scene.hpp"
@@ -200,4 +201,35 @@ TEST_CASE("doctor reports the devices, and which programs are installed or how t
         says(o.out, {"version  ", "CPU      cpu, ", "memory   ", " GiB\n", "GPU      ", "colmap   installed",
                      "ffmpeg   missing (to get it: apt-get install ffmpeg)", "ffprobe  missing"}));
     check_refusal({"doctor", "--quiet"}, {"doctor takes no options: leave out --quiet"});
+}
+
+TEST_CASE("train and evaluate write the metrics of each view as JSON, CSV and Markdown") {
+    const temporary_folder folder;
+    const fs::path output = folder / "trained", again = folder / "again", weights = folder / "weights";
+    gs_test::write_lpips_weights(weights, "0,1");
+    check_success(small_training(output) + words{"--lpips", weights.string()});
+    check_success(
+        words{"evaluate", model_of(output, 60).string(), "-o", again.string(), "--lpips", weights.string()} +
+        small_spheres);
+    for (const fs::path& results : {output, again}) {
+        const json metrics = read_json(results / "metrics.json");
+        CHECK(metrics.at("renders_rounded_to_8_bits") == false);
+        CHECK(metrics.at("lpips_input_range") == std::vector<int>{0, 1});
+        for (const char* measure : {"ssim_interior", "psnr_8bit", "lpips"}) {
+            CHECK(metrics.at(measure).get<double>() > 0);
+            for (const json& view : metrics.at("views")) CHECK(view.at(measure).get<double>() > 0);
+        }
+        const std::string csv = read_file(results / "metrics.csv"), text = read_file(results / "metrics.md");
+        CHECK(csv.starts_with("name,psnr,ssim,ssim_interior,psnr_8bit,lpips\n"));
+        CHECK(std::ranges::count(csv, '\n') == 10);
+        CHECK(std::ranges::count(text, '\n') == 11);
+        for (const json& view : metrics.at("views")) {
+            const std::string name = view.at("name").get<std::string>();
+            CHECK(says(csv, {"\n" + name + ","}));
+            CHECK(says(text, {"\n| " + name + " |"}));
+        }
+    }
+    CHECK(read_json(output / "settings.json").at("lpips") == weights.string());
+    // LPIPS sums in a fixed order, and the model file holds every bit of the parameters.
+    CHECK(read_json(again / "metrics.json").at("lpips") == read_json(output / "metrics.json").at("lpips"));
 }

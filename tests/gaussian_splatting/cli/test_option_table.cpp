@@ -115,6 +115,7 @@ const std::map<std::string, option_case> cases{
     {"--prune-share", {{"0.5"}, [](const settings& s) { return adaptive(s).prune_share == 0.5; }}},
     {"--test-iterations", {{"15"}, [](const settings& s) { return s.test_iterations == std::set{15}; }}},
     {"--fit-exposure", {{}, [](const settings& s) { return s.fit_exposure; }}},
+    {"--lpips", {{"a file"}, [](const settings& s) { return s.lpips == "a file"; }}},
     {"--device", {{"cpu"}, [](const settings& s) { return s.device == device_kind::cpu; }}},
     {"--seed",
      {{"18446744073709551615"}, [](const settings& s) { return s.seed == 18446744073709551615ULL; }}},

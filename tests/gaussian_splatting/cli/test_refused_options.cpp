@@ -18,6 +18,7 @@ TEST_CASE("contradictory options are refused") {
     check_refusal_without_trace(train_spheres + words{"--test-every", "4"}, {"--test-every", "--eval"});
     check_refusal_without_trace(train_spheres + words{"-i", "20", "--test-iterations", "5"},
                                 {"--test-iterations", "--eval"});
+    check_refusal_without_trace(train_spheres + words{"--lpips", "weights"}, {"--lpips", "--eval"});
     check_refusal_without_trace(train_spheres + words{"-i", "20", "--save-iterations", "10", "21"},
                                 {"--save-iterations", "21", "20"});
     check_refusal_without_trace(train_spheres + words{"--save-iterations", "0"}, {"--save-iterations", "0"});
@@ -37,6 +38,11 @@ TEST_CASE("contradictory options are refused") {
     check_refusal_without_trace({"render", "model.ply", "--images", "photos"}, {"--images", "--data"});
     check_refusal_without_trace({"render", "model.ply", "--background", "random"},
                                 {"--background", "random"});
+}
+
+TEST_CASE("a missing file of LPIPS weights is refused before training") {
+    check_refusal_without_trace(train_spheres + words{"--eval", "--device", "cpu", "--lpips", "no/weights"},
+                                {"no/weights"});
 }
 
 TEST_CASE("options that a synthetic scene has no use for are refused") {

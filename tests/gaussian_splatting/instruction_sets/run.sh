@@ -26,13 +26,20 @@ expect() {
 avx='^ *[0-9a-f]+:\tv'
 avx512='%zmm|%k[0-7]|%[xy]mm(1[6-9]|2[0-9]|3[01])'
 
+# expect_entry OBJECT NAME: whether the function is the only global name of the object.
+expect_entry() {
+    local seen
+    seen=$("$nm" --defined-only --extern-only --format=posix "$1" | cut -d' ' -f1)
+    [[ $seen == "$2" ]] || fail "$1 has the global names: $seen"
+}
 for level in x86_64_v3 x86_64_v4; do
-    engine=$engines/cpu_engine_$level.o
-    seen=$("$nm" --defined-only --extern-only --format=posix "$engine" | cut -d' ' -f1)
-    [[ $seen == "make_cpu_engine_$level" ]] || fail "$engine lets be seen: $seen"
+    expect_entry "$engines/cpu_engine_$level.o" "make_cpu_engine_$level"
 done
+expect_entry "$engines/lpips_x86_64_v3.o" convolve_x86_64_v3
 expect some "$avx512" "$engines/cpu_engine_x86_64_v4.o"
 expect none "$avx512" "$engines/cpu_engine_x86_64_v3.o"
+expect none "$avx512" "$engines/lpips_x86_64_v3.o"
 expect some "$avx" "$engines/cpu_engine_x86_64_v3.o"
+expect some "$avx" "$engines/lpips_x86_64_v3.o"
 (($# > 20)) || fail "these are not all objects of the program: $*"
 expect none "$avx" "$@"
