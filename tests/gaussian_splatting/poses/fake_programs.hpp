@@ -81,7 +81,7 @@ case $command in
         cat "$list" >> "$database"
         while read -r name; do echo "Processed file [1/1]"; done < "$list" ;;
     exhaustive_matcher) echo "I1125 09:00:00 7 pairing.cc:1] Matching block [1/1, 1/1] in 0.1s" ;;
-    sequential_matcher) echo "Matching image [1/8] in 0.1s" ;;
+    matches_importer) echo "Matching block [1/1] in 0.1s" ;;
     mapper)
         index=0
         for count in $models; do
