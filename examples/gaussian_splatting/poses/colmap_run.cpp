@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 // the number of pairs with the square of the photos.
 constexpr const char* most_features = "4096";
 constexpr std::size_t most_exhaustive = 150;
-constexpr std::size_t block_size = 20;  ///< photos per block of exhaustive matching
-constexpr std::size_t pairs_per_block = 100;
+constexpr std::size_t block_size = 20;         ///< photos per block of exhaustive matching
+constexpr std::size_t pairs_per_block = 1225;  ///< of COLMAP, for the progress
 
 /// Returns the part of a line that begins with `words`, because newer versions of COLMAP begin
 /// lines with the time and the source.
@@ -110,8 +110,7 @@ stage pairs_stage(const std::vector<std::string>& names, const fs::path& list) {
     });
     return {.name = "matching",
             .program = "colmap",
-            .arguments = {"matches_importer", "--match_type", "pairs", "--match_list_path", list,
-                          "--ImagePairsMatching.block_size", std::to_string(pairs_per_block)},
+            .arguments = {"matches_importer", "--match_type", "pairs", "--match_list_path", list},
             .total = static_cast<int>((pairs.size() + pairs_per_block - 1) / pairs_per_block),
             .parts_done = blocks_done};
 }

@@ -68,6 +68,10 @@ while [ $# -gt 0 ]; do
         --output_path) output=$2 ;;
         --image_list_path) list=$2 ;;
         --database_path) database=$2 ;;
+        --image_path | --SiftExtraction.use_gpu | --SiftExtraction.max_num_features) ;;
+        --ImageReader.single_camera | --ImageReader.camera_model | --SiftMatching.use_gpu) ;;
+        --ExhaustiveMatching.block_size | --match_type | --match_list_path) ;;
+        *) echo "ERROR: Failed to parse options - unrecognised option '$1'."; exit 1 ;;
     esac
     shift 2
 done
