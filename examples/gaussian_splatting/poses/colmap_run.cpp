@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 // the number of pairs with the square of the photos.
 constexpr const char* most_features = "4096";
 constexpr std::size_t most_exhaustive = 150;
-constexpr std::size_t block_size = 20;  ///< photos per block of exhaustive matching
-constexpr int overlap = 20;             ///< neighbors of each photo in sequential matching
+constexpr std::size_t block_size = 20;         ///< photos per block of exhaustive matching
+constexpr std::size_t pairs_per_block = 1225;  ///< of COLMAP, for the progress
 
 /// Returns the part of a line that begins with `words`, because newer versions of COLMAP begin
 /// lines with the time and the source.
@@ -35,17 +35,13 @@ const char* part_from(const std::string& line, const char* words) {
     return part ? part : "";
 }
 
-/// A line like "Matching block [2/5, 1/5]" ends when the block is matched.
+/// A line like "Matching block [2/5, 1/5]" or "Matching block [2/5]" ends when the block is
+/// matched.
 int blocks_done(const std::string& line) {
     int i = 0, n = 0, j = 0, m = 0;
     const char* part = part_from(line, "Matching block [");
-    return std::sscanf(part, "Matching block [%9d/%9d, %9d/%9d]", &i, &n, &j, &m) == 4 ? (i - 1) * m + j : -1;
-}
-
-int images_done(const std::string& line) {
-    int i = 0;
-    const char* part = part_from(line, "Matching image [");
-    return std::sscanf(part, "Matching image [%9d/", &i) == 1 ? i : -1;
+    const int found = std::sscanf(part, "Matching block [%9d/%9d, %9d/%9d]", &i, &n, &j, &m);
+    return found == 4 ? (i - 1) * m + j : found == 2 ? i : -1;
 }
 
 /// A line like "Registering image #17 (3)" has the number of photos with a pose.
@@ -87,31 +83,49 @@ void extract_features(const photo_set& photos, const fs::path& result, stage_run
              (groups.size() == 1 ? " camera: " : " cameras (one for each size of photos): ") + watch.text());
 }
 
-stage matching_stage(const photo_set& photos, const fs::path& database) {
-    stage one{.name = "matching", .program = "colmap", .arguments = {}, .parts_done = {}};
-    const std::size_t count = photos.names.size();
-    if (matching_for(photos) == matching::exhaustive) {
-        const auto blocks = static_cast<int>((count + block_size - 1) / block_size);
-        one.arguments = {"exhaustive_matcher", "--ExhaustiveMatching.block_size", std::to_string(block_size)};
-        one.total = blocks * blocks;
-        one.parts_done = blocks_done;
-    } else {
-        one.arguments = {"sequential_matcher", "--SequentialMatching.overlap", std::to_string(overlap),
-                         "--SequentialMatching.loop_detection", "0"};
-        one.total = static_cast<int>(count);
-        one.parts_done = images_done;
-    }
-    for (const std::string& argument : {std::string("--database_path"), database.string(),
-                                        std::string("--SiftMatching.use_gpu"), std::string("0")})
-        one.arguments.push_back(argument);
-    return one;
+stage exhaustive_stage(std::size_t photos) {
+    const auto blocks = static_cast<int>((photos + block_size - 1) / block_size);
+    return {
+        .name = "matching",
+        .program = "colmap",
+        .arguments = {"exhaustive_matcher", "--ExhaustiveMatching.block_size", std::to_string(block_size)},
+        .total = blocks * blocks,
+        .parts_done = blocks_done};
+}
+
+/// Throws `error` for names that a list of pairs cannot have. COLMAP separates names by spaces.
+void check_names(const photo_set& photos) {
+    if (matches_exhaustively(photos)) return;
+    for (const std::string& name : photos.names)
+        if (name.find(' ') != std::string::npos)
+            throw error("COLMAP cannot match more than " + std::to_string(most_exhaustive) +
+                        " photos with spaces in their names: rename " + sanitize_for_message(name));
+}
+
+/// Writes the pairs to match to `list`.
+stage pairs_stage(const std::vector<std::string>& names, const fs::path& list) {
+    const auto pairs = pairs_to_match(names.size());
+    atomic_file_write(list, [&](std::ostream& out) {
+        for (const auto& [one, other] : pairs) out << names[one] << ' ' << names[other] << '\n';
+    });
+    return {.name = "matching",
+            .program = "colmap",
+            .arguments = {"matches_importer", "--match_type", "pairs", "--match_list_path", list},
+            .total = static_cast<int>((pairs.size() + pairs_per_block - 1) / pairs_per_block),
+            .parts_done = blocks_done};
 }
 
 void match(const photo_set& photos, const fs::path& result, stage_runner& runner, const listener& user) {
     const stopwatch watch;
-    runner.require(matching_stage(photos, result / "database.db"));
-    user.say((matching_for(photos) == matching::exhaustive
-                  ? "matching of each photo with all others: "
+    const bool all = matches_exhaustively(photos);
+    const fs::path list = result / "pairs.txt";
+    stage one = all ? exhaustive_stage(photos.names.size()) : pairs_stage(photos.names, list);
+    for (const std::string& argument : {std::string("--database_path"), (result / "database.db").string(),
+                                        std::string("--SiftMatching.use_gpu"), std::string("0")})
+        one.arguments.push_back(argument);
+    runner.require(one);
+    fs::remove(list);
+    user.say((all ? "matching of each photo with all others: "
                   : "matching of each photo with its neighbors in the order of names: ") +
              watch.text());
 }
@@ -143,7 +157,7 @@ void check_registered(const photo_set& photos, const std::set<std::string>& regi
                       const listener& user) {
     const std::size_t count = photos.names.size();
     const std::string counts = std::to_string(registered.size()) + " of " + std::to_string(count) + " photos";
-    if (registered.size() < fewest_photos) throw error("COLMAP found the poses of only " + counts + advice);
+    if (registered.size() < fewest_photos) throw error("too few photos have poses (" + counts + ")" + advice);
     if (10 * registered.size() >= 9 * count) return;
     std::vector<std::string> missing;
     std::ranges::set_difference(photos.names, registered, std::back_inserter(missing));
@@ -188,9 +202,20 @@ void map_photos(const photo_set& photos, const fs::path& result, stage_runner& r
 
 }  // namespace
 
-matching matching_for(const photo_set& photos) {
-    return photos.are_frames || photos.names.size() > most_exhaustive ? matching::sequential
-                                                                      : matching::exhaustive;
+bool matches_exhaustively(const photo_set& photos) {
+    return !photos.are_frames && photos.names.size() <= most_exhaustive;
+}
+
+std::set<std::pair<std::size_t, std::size_t>> pairs_to_match(std::size_t photos) {
+    constexpr std::size_t neighbors = 10, spaced_photos = 60;
+    const std::size_t stride = (photos + spaced_photos - 1) / spaced_photos;
+    std::set<std::pair<std::size_t, std::size_t>> pairs;
+    for (std::size_t i = 0; i < photos; ++i) {
+        for (std::size_t j = i + 1; j < std::min(i + 1 + neighbors, photos); ++j) pairs.emplace(i, j);
+        if (i % stride == 0)
+            for (std::size_t j = i + stride; j < photos; j += stride) pairs.emplace(i, j);
+    }
+    return pairs;
 }
 
 std::vector<std::vector<std::string>> groups_of_equal_size(const photo_set& photos) {
@@ -206,6 +231,7 @@ std::vector<std::vector<std::string>> groups_of_equal_size(const photo_set& phot
 }
 
 void run_colmap(const photo_set& photos, const fs::path& result, stage_runner& runner, const listener& user) {
+    check_names(photos);
     extract_features(photos, result, runner, user);
     match(photos, result, runner, user);
     map_photos(photos, result, runner, user);

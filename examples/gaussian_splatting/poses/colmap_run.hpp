@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "stage.hpp"
@@ -20,12 +23,13 @@ struct photo_set {
 /// Fewer photos or poses than this make no scene.
 inline constexpr std::size_t fewest_photos = 5;
 
-/// How to find the pairs of photos that show the same things.
-enum class matching { exhaustive, sequential };
+/// Returns whether each photo is matched with all others. Videos and large sets take too long.
+bool matches_exhaustively(const photo_set& photos);
 
-/// Returns `sequential` for videos and for sets that are too large to match each photo with all
-/// others.
-matching matching_for(const photo_set& photos);
+/// Returns the pairs of photos to match, as indices, if not all are: each photo with its
+/// neighbors in the order of names, and about 60 evenly spaced photos with each other, which
+/// connects the end of a walk to its beginning.
+std::set<std::pair<std::size_t, std::size_t>> pairs_to_match(std::size_t photos);
 
 /// Groups photos by their size, because photos of one camera share one set of intrinsics. Opens
 /// each file for its size.

@@ -68,6 +68,10 @@ while [ $# -gt 0 ]; do
         --output_path) output=$2 ;;
         --image_list_path) list=$2 ;;
         --database_path) database=$2 ;;
+        --image_path | --SiftExtraction.use_gpu | --SiftExtraction.max_num_features) ;;
+        --ImageReader.single_camera | --ImageReader.camera_model | --SiftMatching.use_gpu) ;;
+        --ExhaustiveMatching.block_size | --match_type | --match_list_path) ;;
+        *) echo "ERROR: Failed to parse options - unrecognised option '$1'."; exit 1 ;;
     esac
     shift 2
 done
@@ -81,7 +85,7 @@ case $command in
         cat "$list" >> "$database"
         while read -r name; do echo "Processed file [1/1]"; done < "$list" ;;
     exhaustive_matcher) echo "I1125 09:00:00 7 pairing.cc:1] Matching block [1/1, 1/1] in 0.1s" ;;
-    sequential_matcher) echo "Matching image [1/8] in 0.1s" ;;
+    matches_importer) echo "Matching block [1/1] in 0.1s" ;;
     mapper)
         index=0
         for count in $models; do

@@ -73,6 +73,7 @@ TEST_CASE("a program that does not exist is reported") {
 TEST_CASE("a signal ends the child and its own children") {
     for (const int signal : {SIGINT, SIGTERM}) {
         CAPTURE(signal);
+        std::signal(signal, SIG_DFL);  // a shell may have started the test with ignored signals
         std::string grandchild;
         const auto start = std::chrono::steady_clock::now();
         CHECK_THROWS_AS(run_child("sh", {"-c", "sleep 60 & echo $!; wait"},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -176,9 +177,40 @@ TEST_CASE("photos of different sizes get one camera for each size") {
 
 TEST_CASE("only small sets of photos are matched exhaustively") {
     const auto names = [](std::size_t count) { return std::vector<std::string>(count, "a.png"); };
-    CHECK(matching_for({"", names(100)}) == matching::exhaustive);
-    CHECK(matching_for({"", names(1000)}) == matching::sequential);
-    CHECK(matching_for({"", names(20), true}) == matching::sequential);
+    CHECK(matches_exhaustively({"", names(100)}));
+    CHECK_FALSE(matches_exhaustively({"", names(1000)}));
+    CHECK_FALSE(matches_exhaustively({"", names(20), true}));
+}
+
+TEST_CASE("other sets are matched with neighbors, and from end to beginning") {
+    CHECK(pairs_to_match(30).size() == 30 * 29 / 2);
+    const auto pairs = pairs_to_match(600);
+    CHECK(pairs.size() < 600 * 10 + 60 * 59 / 2);
+    for (std::size_t i = 0; i + 1 < 600; ++i) CHECK(pairs.contains({i, i + 1}));
+    CHECK(pairs.contains({0, 590}));
+    CHECK(std::ranges::all_of(
+        pairs, [](const auto& pair) { return pair.first < pair.second && pair.second < 600; }));
+}
+
+TEST_CASE("a large set of photos is matched with neighbors") {
+    fixture f(0);
+    fake_programs fakes;
+    fakes.models = "151";
+    fakes.install();
+    SUBCASE("names without spaces") {
+        write_photos(f.data, 1);
+        const fs::path photo = fs::directory_iterator(f.data)->path();
+        for (int i = 0; i < 151; ++i) fs::copy_file(photo, f.data / ("photo_" + std::to_string(i) + ".png"));
+        fs::remove(photo);
+        f.compute();
+        CHECK(says(fakes.calls(), {"matches_importer --match_type pairs"}));
+        CHECK(says(f.said, {"with its neighbors", "poses of 151 of 151"}));
+    }
+    SUBCASE("names with spaces") {
+        write_photos(f.data, 151);
+        CHECK(says(f.refusal(), {"spaces in their names", "rename a 'photo'"}));
+        CHECK_FALSE(says(fakes.calls(), {"colmap"}));
+    }
 }
 
 TEST_CASE("the largest of several models is used") {
@@ -234,6 +266,7 @@ TEST_CASE("an interruption ends COLMAP and leaves nothing behind") {
     fake_programs fakes;
     fakes.hanging_stage = "exhaustive_matcher";
     fakes.install();
+    std::signal(SIGINT, SIG_DFL);  // a shell may have started the test with this signal ignored
     CHECK_THROWS_AS(f.compute({},
                               [](const std::string& stage) {
                                   if (stage == "matching") std::raise(SIGINT);
@@ -295,7 +328,7 @@ TEST_CASE("the sharpest frames of a video are matched in order") {
         const gs::load_options computed = f.compute(8);
         CHECK(load(computed).train.size() == 6);
         const std::string calls = fakes.calls();
-        CHECK(says(calls, {"file:" + f.data.string(), "sequential_matcher", "not(mod(n\\,1))",
+        CHECK(says(calls, {"file:" + f.data.string(), "matches_importer", "not(mod(n\\,1))",
                            "select=eq(n\\,3)+eq(n\\,7)+eq(n\\,11)"}));
         CHECK(says(f.said, {"sharpest 8 of 40 video frames", "poses of 6 of 8"}));
         fs::rename(f.output, f.folder / "moved");
