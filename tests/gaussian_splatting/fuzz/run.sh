@@ -18,7 +18,7 @@ out=$(realpath -m "${OUT:-build/fuzz}")
 mkdir -p "$out"
 
 trainer=examples/gaussian_splatting
-sources=("$trainer"/readers/colmap/colmap_{binary,records,text}.cpp "$trainer"/image/*.cpp
+sources=("$trainer"/readers/colmap/colmap_{binary,records,text}.cpp "$trainer"/image/{,codecs/}*.cpp
     "$trainer"/readers/transforms/{json_text,transforms,transforms_pose}.cpp "$trainer"/readers/{camera_models,validation}.cpp
     "$trainer"/scene/camera.cpp "$trainer"/writers/{,*/}*.cpp tests/gaussian_splatting/fuzz/{budget,colmap,harness,harnesses,image,transforms}.cpp)
 flags=(-std=c++20 -O1 -g -fno-omit-frame-pointer -I"$trainer" -Itests/gaussian_splatting/fuzz

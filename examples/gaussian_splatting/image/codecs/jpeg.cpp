@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <array>
+#include <csetjmp>
+#include <cstdio>
+#include <string>
+
+#include "image_file.hpp"
+
+// jpeglib.h requires FILE and size_t to be declared.
+#include <jpeglib.h>
+// jerror.h depends on jpeglib.h.
+#include <jerror.h>
+
+namespace gs {
+namespace {
+
+// Each scan of a progressive JPEG visits all pixels, so a small file could take a long time. This
+// is the largest number of scans that cjpeg writes.
+constexpr int most_scans = 100;
+
+// libjpeg reports errors by longjmp. So each function that calls it has no objects with
+// destructors in its frame; its callers own all resources.
+
+struct jpeg_errors {
+    jpeg_error_mgr manager{};  ///< first, so that a pointer to it is a pointer to the struct
+    std::jmp_buf escape{};
+    std::array<char, JMSG_LENGTH_MAX> message{};
+    bool no_pixels = false;
+};
+
+jpeg_errors& errors_of(j_common_ptr jpeg) { return *reinterpret_cast<jpeg_errors*>(jpeg->err); }
+
+[[noreturn]] void leave_jpeg(j_common_ptr jpeg) {
+    jpeg_errors& errors = errors_of(jpeg);
+    jpeg->err->format_message(jpeg, errors.message.data());
+    errors.no_pixels = jpeg->err->msg_code == JERR_EMPTY_IMAGE;
+    std::longjmp(errors.escape, 1);
+}
+
+bool means_lost_pixels(int message_code) {
+    switch (message_code) {
+        case JWRN_JPEG_EOF:
+        case JWRN_HIT_MARKER:
+        case JWRN_HUFF_BAD_CODE:
+        case JWRN_ARITH_BAD_CODE:
+        case JWRN_MUST_RESYNC:
+            return true;
+        default:
+            return false;  // stray bytes or odd marker values: the pixels are complete
+    }
+}
+
+// Treats lost data as an error. By default, libjpeg continues and paints the rest gray.
+void heed_jpeg_warning(j_common_ptr jpeg, int level) {
+    if (level < 0 && means_lost_pixels(jpeg->err->msg_code)) leave_jpeg(jpeg);
+}
+
+void count_jpeg_scans(j_common_ptr jpeg) {
+    if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= most_scans) return;
+    std::snprintf(errors_of(jpeg).message.data(), JMSG_LENGTH_MAX, "more than %d scans", most_scans);
+    std::longjmp(errors_of(jpeg).escape, 1);
+}
+
+void print_no_jpeg_message(j_common_ptr) {}
+
+class jpeg_reader {
+  public:
+    jpeg_reader() {
+        jpeg_.err = jpeg_std_error(&errors_.manager);
+        errors_.manager.error_exit = leave_jpeg;
+        errors_.manager.emit_message = heed_jpeg_warning;
+        errors_.manager.output_message = print_no_jpeg_message;
+        progress_.progress_monitor = count_jpeg_scans;
+    }
+    ~jpeg_reader() { jpeg_destroy_decompress(&jpeg_); }
+    jpeg_reader(const jpeg_reader&) = delete;
+    jpeg_reader& operator=(const jpeg_reader&) = delete;
+
+    bool read_header(std::FILE* file) {
+        if (setjmp(errors_.escape)) return false;
+        jpeg_create_decompress(&jpeg_);
+        jpeg_.progress = &progress_;
+        jpeg_stdio_src(&jpeg_, file);
+        jpeg_read_header(&jpeg_, TRUE);
+        return true;
+    }
+
+    std::uint64_t width() const { return jpeg_.image_width; }
+    std::uint64_t height() const { return jpeg_.image_height; }
+    bool is_cmyk() const { return jpeg_.jpeg_color_space == JCS_CMYK || jpeg_.jpeg_color_space == JCS_YCCK; }
+
+    /// Precondition: `pixels` has space for width * height * 4 bytes.
+    bool read_rgba(std::uint8_t* pixels) {
+        if (setjmp(errors_.escape)) return false;
+        jpeg_.out_color_space = JCS_EXT_RGBA;
+        jpeg_start_decompress(&jpeg_);
+        while (jpeg_.output_scanline < jpeg_.output_height) {
+            JSAMPROW row = pixels + std::size_t{4} * jpeg_.output_width * jpeg_.output_scanline;
+            jpeg_read_scanlines(&jpeg_, &row, 1);
+        }
+        jpeg_finish_decompress(&jpeg_);
+        return true;
+    }
+
+    std::string failure() const { return errors_.message.data(); }
+    bool found_no_pixels() const { return errors_.no_pixels; }
+
+  private:
+    jpeg_decompress_struct jpeg_{};
+    jpeg_errors errors_;
+    jpeg_progress_mgr progress_{};
+};
+
+[[noreturn]] void refuse_jpeg(const std::filesystem::path& file, const jpeg_reader& reader) {
+    if (reader.found_no_pixels()) refuse(file, "it has no pixels");
+    refuse(file, "it is damaged or truncated (" + reader.failure() + ")");
+}
+
+void read_jpeg_header(const std::filesystem::path& file, std::FILE* opened, jpeg_reader& reader) {
+    if (!reader.read_header(opened)) refuse_jpeg(file, reader);
+    check_size(file, reader.width(), reader.height());
+}
+
+}  // namespace
+
+image read_jpeg(const std::filesystem::path& file, std::FILE* opened) {
+    jpeg_reader reader;
+    read_jpeg_header(file, opened, reader);
+    if (reader.is_cmyk()) refuse(file, "CMYK JPEGs are not supported");
+    check_density(file, reader.width(), reader.height());
+    image pixels = blank_image(static_cast<int>(reader.width()), static_cast<int>(reader.height()));
+    if (!reader.read_rgba(pixels.rgba.data())) refuse_jpeg(file, reader);
+    return pixels;
+}
+
+void read_jpeg_size(const std::filesystem::path& file, std::FILE* opened, int& width, int& height) {
+    jpeg_reader reader;
+    read_jpeg_header(file, opened, reader);
+    width = static_cast<int>(reader.width());
+    height = static_cast<int>(reader.height());
+}
+
+}  // namespace gs
