@@ -4,28 +4,38 @@
 
 #include <algorithm>
 
-#include "codecs/image_file.hpp"
+#include "codecs/codec.hpp"
 
 namespace gs {
 
-image read_image(const std::filesystem::path& file) {
-    const open_file opened = open_to_read(file);
-    const first_bytes found = look_at(file, opened.get());
-    if (!found.is_png) return read_jpeg(file, opened.get());
-    check_density(file, found.png_width, found.png_height);
-    return read_png(file, opened.get(), static_cast<int>(found.png_width),
-                    static_cast<int>(found.png_height));
+namespace {
+
+image_size checked_size(const image_file& file, const image_codec& codec) {
+    const image_size size = codec.read_size(file);
+    file.check_size(size);
+    return size;
 }
 
-void read_image_size(const std::filesystem::path& file, int& width, int& height) {
-    const open_file opened = open_to_read(file);
-    const first_bytes found = look_at(file, opened.get());
-    if (found.is_png) {
-        width = static_cast<int>(found.png_width);
-        height = static_cast<int>(found.png_height);
-        return;
-    }
-    read_jpeg_size(file, opened.get(), width, height);
+}  // namespace
+
+image read_image(const std::filesystem::path& path) {
+    const image_file file(path);
+    const image_codec& codec = codec_of(file);
+    const image_size size = checked_size(file, codec);
+    file.check_density(size);
+    image pixels;
+    pixels.width = static_cast<int>(size.width);
+    pixels.height = static_cast<int>(size.height);
+    pixels.rgba.resize(4 * size.width * size.height);
+    codec.read(file, pixels);
+    return pixels;
+}
+
+void read_image_size(const std::filesystem::path& path, int& width, int& height) {
+    const image_file file(path);
+    const image_size size = checked_size(file, codec_of(file));
+    width = static_cast<int>(size.width);
+    height = static_cast<int>(size.height);
 }
 
 void image::mask_pixel(std::size_t pixel) {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace gs {
@@ -27,7 +29,13 @@ struct image {
     bool has_transparent_pixel() const;  ///< masked pixels do not count
 };
 
-/// Reads a PNG or JPEG of any color type except CMYK. The first bytes determine the format. Throws
+/// Returns the formats that `read_image` reads, for messages: "PNG or JPEG".
+std::string image_formats();
+
+/// Returns the usual endings of files of these formats, in lower case, such as ".png".
+std::vector<std::string_view> image_endings();
+
+/// Reads an image of any color type except CMYK. The first bytes determine the format. Throws
 /// `error` with the file if it is missing, truncated, malformed or empty, or if it has more than
 /// 65536 pixels per side, 2 GiB of pixels, or 100 scans. Allocates at most 10 bytes per pixel.
 image read_image(const std::filesystem::path& file);

@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "image_file.hpp"
 
-#include <png.h>
-
-#include <array>
 #include <cerrno>
 #include <cstring>
-#include <span>
+#include <utility>
 
 #include "../../core/error.hpp"
 
@@ -16,49 +13,55 @@ namespace {
 
 constexpr std::uint64_t largest_decoded_bytes = std::uint64_t{1} << 31;
 
-// The densest format that is read is a 1-bit PNG with the best ratio of deflate, 1032 to 1.
+// The best ratio of a 1-bit PNG, whose deflate reaches 1032 to 1. WebP, HEIC and AVIF can store an
+// image of one color in fewer bytes, but no photo.
 constexpr std::uint64_t most_pixels_per_byte = 8 * 1032;
 
-std::uint64_t big_endian(std::span<const std::uint8_t, 4> bytes) {
-    std::uint64_t value = 0;
-    for (const std::uint8_t byte : bytes) value = value << 8 | byte;
-    return value;
+std::string text_of(const image_size& size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
 }  // namespace
 
-void refuse(const std::filesystem::path& file, const std::string& why) {
-    throw error("cannot read the image " + file.string() + ": " + why);
-}
-
-open_file open_to_read(const std::filesystem::path& file) {
+image_file::image_file(std::filesystem::path path) : path_(std::move(path)) {
     std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) refuse(file, "there is no such file");
-    if (!std::filesystem::is_regular_file(file, ignored)) refuse(file, "it is not a file");
-    open_file opened(std::fopen(file.c_str(), "rb"));
-    if (!opened) refuse(file, std::strerror(errno));
-    return opened;
+    if (!std::filesystem::exists(path_, ignored)) refuse("there is no such file");
+    if (!std::filesystem::is_regular_file(path_, ignored)) refuse("it is not a file");
+    stream_.reset(std::fopen(path_.c_str(), "rb"));
+    if (!stream_) refuse(std::strerror(errno));
 }
 
-void check_size(const std::filesystem::path& file, std::uint64_t width, std::uint64_t height) {
-    const std::string size = std::to_string(width) + "x" + std::to_string(height);
-    if (width == 0 || height == 0) refuse(file, "it has no pixels (" + size + ")");
+std::FILE* image_file::rewound() const {
+    std::rewind(stream_.get());
+    return stream_.get();
+}
+
+void image_file::refuse(const std::string& why) const {
+    throw error("cannot read the image " + path_.string() + ": " + why);
+}
+
+void image_file::check_size(const image_size& size) const {
+    const auto [width, height] = size;
+    if (width == 0 || height == 0) refuse("it has no pixels (" + text_of(size) + ")");
     if (width > largest_side || height > largest_side || 4 * width * height > largest_decoded_bytes)
-        refuse(file, "its size, " + size + ", is too large");
+        refuse("its size, " + text_of(size) + ", is too large");
 }
 
-void check_density(const std::filesystem::path& file, std::uint64_t width, std::uint64_t height) {
+void image_file::check_density(const image_size& size) const {
     std::error_code ignored;
-    if (width * height / most_pixels_per_byte > std::filesystem::file_size(file, ignored))
-        refuse(file, "it is truncated");
+    const auto bytes = std::filesystem::file_size(path_, ignored);
+    if (size.width * size.height / most_pixels_per_byte > bytes)
+        refuse("it is truncated: " + std::to_string(bytes) + " bytes are too few for " + text_of(size) +
+               " pixels");
 }
 
-image blank_image(int width, int height) {
-    image blank;
-    blank.width = width;
-    blank.height = height;
-    blank.rgba.resize(std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    return blank;
+void image_file::check_decoded_size(const image_size& found, const image_size& promised) const {
+    if (found != promised)
+        refuse("its header promises " + text_of(promised) + " pixels, but it has " + text_of(found));
+}
+
+image_size size_of(const image& pixels) {
+    return {static_cast<std::uint64_t>(pixels.width), static_cast<std::uint64_t>(pixels.height)};
 }
 
 void premultiply(image& pixels) {
@@ -69,26 +72,6 @@ void premultiply(image& pixels) {
         for (std::size_t channel = i; channel < i + 3; ++channel)
             pixels.rgba[channel] = static_cast<std::uint8_t>((pixels.rgba[channel] * alpha + 127) / 255);
     }
-}
-
-first_bytes look_at(const std::filesystem::path& file, std::FILE* opened) {
-    constexpr std::size_t png_signature = 8;
-    std::array<std::uint8_t, 24> start{};
-    const std::size_t count = std::fread(start.data(), 1, start.size(), opened);
-    std::rewind(opened);
-    if (count == 0) refuse(file, "it is empty");
-    first_bytes found;
-    found.is_png = count >= png_signature && png_sig_cmp(start.data(), 0, png_signature) == 0;
-    if (found.is_png) {
-        if (count < start.size()) refuse(file, "it is truncated");
-        const std::span<const std::uint8_t, 24> all(start);
-        found.png_width = big_endian(all.subspan<16, 4>());
-        found.png_height = big_endian(all.subspan<20, 4>());
-        check_size(file, found.png_width, found.png_height);
-    } else if (start[0] != 0xFF || start[1] != 0xD8) {
-        refuse(file, "it is neither a PNG nor a JPEG");
-    }
-    return found;
 }
 
 }  // namespace gs

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <csetjmp>
+#include <cstdint>
 #include <cstdio>
+#include <span>
 #include <string>
+#include <string_view>
 
-#include "image_file.hpp"
+#include "codec.hpp"
 
 // jpeglib.h requires FILE and size_t to be declared.
 #include <jpeglib.h>
@@ -86,8 +89,7 @@ class jpeg_reader {
         return true;
     }
 
-    std::uint64_t width() const { return jpeg_.image_width; }
-    std::uint64_t height() const { return jpeg_.image_height; }
+    image_size size() const { return {jpeg_.image_width, jpeg_.image_height}; }
     bool is_cmyk() const { return jpeg_.jpeg_color_space == JCS_CMYK || jpeg_.jpeg_color_space == JCS_YCCK; }
 
     /// Precondition: `pixels` has space for width * height * 4 bytes.
@@ -112,33 +114,33 @@ class jpeg_reader {
     jpeg_progress_mgr progress_{};
 };
 
-[[noreturn]] void refuse_jpeg(const std::filesystem::path& file, const jpeg_reader& reader) {
-    if (reader.found_no_pixels()) refuse(file, "it has no pixels");
-    refuse(file, "it is damaged or truncated (" + reader.failure() + ")");
+[[noreturn]] void refuse_jpeg(const image_file& file, const jpeg_reader& reader) {
+    if (reader.found_no_pixels()) file.refuse("it has no pixels");
+    file.refuse("it is damaged or truncated (" + reader.failure() + ")");
 }
 
-void read_jpeg_header(const std::filesystem::path& file, std::FILE* opened, jpeg_reader& reader) {
-    if (!reader.read_header(opened)) refuse_jpeg(file, reader);
-    check_size(file, reader.width(), reader.height());
+bool is_jpeg(std::span<const std::uint8_t> start) {
+    return start.size() >= 2 && start[0] == 0xFF && start[1] == 0xD8;
 }
+
+image_size read_jpeg_size(const image_file& file) {
+    jpeg_reader reader;
+    if (!reader.read_header(file.rewound())) refuse_jpeg(file, reader);
+    return reader.size();
+}
+
+void read_jpeg(const image_file& file, image& pixels) {
+    jpeg_reader reader;
+    if (!reader.read_header(file.rewound())) refuse_jpeg(file, reader);
+    if (reader.is_cmyk()) file.refuse("CMYK JPEGs are not supported");
+    file.check_decoded_size(reader.size(), size_of(pixels));
+    if (!reader.read_rgba(pixels.rgba.data())) refuse_jpeg(file, reader);
+}
+
+constexpr std::string_view jpeg_endings[] = {".jpg", ".jpeg"};
 
 }  // namespace
 
-image read_jpeg(const std::filesystem::path& file, std::FILE* opened) {
-    jpeg_reader reader;
-    read_jpeg_header(file, opened, reader);
-    if (reader.is_cmyk()) refuse(file, "CMYK JPEGs are not supported");
-    check_density(file, reader.width(), reader.height());
-    image pixels = blank_image(static_cast<int>(reader.width()), static_cast<int>(reader.height()));
-    if (!reader.read_rgba(pixels.rgba.data())) refuse_jpeg(file, reader);
-    return pixels;
-}
-
-void read_jpeg_size(const std::filesystem::path& file, std::FILE* opened, int& width, int& height) {
-    jpeg_reader reader;
-    read_jpeg_header(file, opened, reader);
-    width = static_cast<int>(reader.width());
-    height = static_cast<int>(reader.height());
-}
+extern constinit const image_codec jpeg_codec{"JPEG", jpeg_endings, is_jpeg, read_jpeg_size, read_jpeg};
 
 }  // namespace gs

@@ -8,20 +8,24 @@
 #include <bit>
 #include <cmath>
 #include <csetjmp>
+#include <cstdint>
 #include <cstdio>
+#include <new>
 #include <ostream>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "../../core/atomic_file_write.hpp"
 #include "../../core/error.hpp"
-#include "image_file.hpp"
+#include "codec.hpp"
 
 namespace gs {
 namespace {
 
-// libpng and libjpeg report errors by longjmp. So each function that calls them has no objects with
-// destructors in its frame; its callers own all resources.
+// libpng reports errors by longjmp. So each function that calls it has no objects with destructors in
+// its frame; its callers own all resources.
 
 struct png_failure {
     std::array<char, 256> message{};
@@ -69,6 +73,7 @@ class png_reader {
     }
 
     std::size_t row_bytes() const { return png_get_rowbytes(png_, info_); }
+    image_size size() const { return {png_get_image_width(png_, info_), png_get_image_height(png_, info_)}; }
 
     bool read_rows(png_bytepp rows) {
         if (setjmp(png_jmpbuf(png_))) return false;
@@ -148,38 +153,65 @@ std::uint8_t to_byte(float value) {
     return static_cast<std::uint8_t>(std::lround(255.0F * std::min(value, 1.0F)));
 }
 
-}  // namespace
+constexpr std::size_t signature_bytes = 8;
 
-image read_png(const std::filesystem::path& file, std::FILE* opened, int width, int height) {
-    png_reader reader;
-    if (!reader.ready()) throw std::bad_alloc();
-    const auto give_up = [&] { refuse(file, "it is damaged or truncated (" + reader.failure() + ")"); };
-    if (!reader.read_header(opened)) give_up();
-    image pixels = blank_image(width, height);
-    const std::size_t row_bytes = std::size_t{4} * static_cast<std::size_t>(width);
-    if (reader.row_bytes() != row_bytes) refuse(file, "its kind of PNG is not supported");
-    auto rows = row_pointers(pixels.rgba.data(), row_bytes, static_cast<std::size_t>(height));
-    if (!reader.read_rows(rows.data())) give_up();
-    premultiply(pixels);
-    return pixels;
+bool is_png(std::span<const std::uint8_t> start) {
+    return start.size() >= signature_bytes && png_sig_cmp(start.data(), 0, signature_bytes) == 0;
 }
 
-std::vector<std::uint16_t> read_gray_png(const std::filesystem::path& file, int& width, int& height) {
-    const open_file opened = open_to_read(file);
-    const first_bytes found = look_at(file, opened.get());
-    if (!found.is_png) refuse(file, "it is no PNG");
-    check_density(file, found.png_width, found.png_height);
+std::uint64_t big_endian(std::span<const std::uint8_t, 4> bytes) {
+    std::uint64_t value = 0;
+    for (const std::uint8_t byte : bytes) value = value << 8 | byte;
+    return value;
+}
+
+// The size has a fixed position.
+image_size read_png_size(const image_file& file) {
+    std::array<std::uint8_t, 24> start{};
+    if (std::fread(start.data(), 1, start.size(), file.rewound()) < start.size())
+        file.refuse("it is truncated");
+    const std::span<const std::uint8_t, 24> all(start);
+    return {big_endian(all.subspan<16, 4>()), big_endian(all.subspan<20, 4>())};
+}
+
+[[noreturn]] void refuse_png(const image_file& file, const png_reader& reader) {
+    file.refuse("it is damaged or truncated (" + reader.failure() + ")");
+}
+
+void read_png(const image_file& file, image& pixels) {
     png_reader reader;
     if (!reader.ready()) throw std::bad_alloc();
-    const auto give_up = [&] { refuse(file, "it is damaged or truncated (" + reader.failure() + ")"); };
-    if (!reader.read_deep_header(opened.get())) give_up();
-    if (reader.row_bytes() != 2 * found.png_width) refuse(file, "it has more than one channel");
-    std::vector<std::uint16_t> values(found.png_width * found.png_height);
-    auto rows = row_pointers(reinterpret_cast<std::uint8_t*>(values.data()), reader.row_bytes(),
-                             static_cast<std::size_t>(found.png_height));
-    if (!reader.read_rows(rows.data())) give_up();
-    width = static_cast<int>(found.png_width);
-    height = static_cast<int>(found.png_height);
+    if (!reader.read_header(file.rewound())) refuse_png(file, reader);
+    const image_size size = size_of(pixels);
+    file.check_decoded_size(reader.size(), size);
+    if (reader.row_bytes() != 4 * size.width) file.refuse("its kind of PNG is not supported");
+    auto rows = row_pointers(pixels.rgba.data(), reader.row_bytes(), size.height);
+    if (!reader.read_rows(rows.data())) refuse_png(file, reader);
+    premultiply(pixels);
+}
+
+constexpr std::string_view png_endings[] = {".png"};
+
+}  // namespace
+
+extern constinit const image_codec png_codec{"PNG", png_endings, is_png, read_png_size, read_png};
+
+std::vector<std::uint16_t> read_gray_png(const std::filesystem::path& path, int& width, int& height) {
+    const image_file file(path);
+    if (&codec_of(file) != &png_codec) file.refuse("it is no PNG");
+    const image_size size = read_png_size(file);
+    file.check_size(size);
+    file.check_density(size);
+    png_reader reader;
+    if (!reader.ready()) throw std::bad_alloc();
+    if (!reader.read_deep_header(file.rewound())) refuse_png(file, reader);
+    file.check_decoded_size(reader.size(), size);
+    if (reader.row_bytes() != 2 * size.width) file.refuse("it has more than one channel");
+    std::vector<std::uint16_t> values(size.width * size.height);
+    auto rows = row_pointers(reinterpret_cast<std::uint8_t*>(values.data()), reader.row_bytes(), size.height);
+    if (!reader.read_rows(rows.data())) refuse_png(file, reader);
+    width = static_cast<int>(size.width);
+    height = static_cast<int>(size.height);
     return values;
 }
 
