@@ -16,16 +16,16 @@
 #include "image/image.hpp"
 #include "image/mask.hpp"
 #include "scene/downsample.hpp"
-
-// jpeglib.h leaves it to its user to have declared FILE and size_t.
-#include <jpeglib.h>
+#include "write_jpeg.hpp"
 
 namespace {
 
 using gs::image;
 using gs_test::error_of;
 using gs_test::says;
+using gs_test::smooth_samples;
 using gs_test::temporary_folder;
+using gs_test::write_jpeg;
 using pixel = std::array<std::uint8_t, 4>;
 
 pixel pixel_at(const image& from, int x, int y) {
@@ -190,47 +190,6 @@ void write_gray_png(const std::filesystem::path& file, int width, int height) {
     write_any_png(file, gray, width, height, random_samples(gray, width, height));
 }
 
-// ------------------------------------------------------------------------------------------------- JPEGs
-
-/// At the highest quality and without subsampling, so that only rounding changes the pixels.
-void write_jpeg(const std::filesystem::path& file, int width, int height, J_COLOR_SPACE space,
-                const std::vector<std::uint8_t>& samples, bool progressive = false) {
-    std::FILE* out = std::fopen(file.c_str(), "wb");
-    jpeg_error_mgr errors;
-    jpeg_compress_struct jpeg{};
-    jpeg.err = jpeg_std_error(&errors);
-    jpeg_create_compress(&jpeg);
-    jpeg_stdio_dest(&jpeg, out);
-    jpeg.image_width = static_cast<JDIMENSION>(width);
-    jpeg.image_height = static_cast<JDIMENSION>(height);
-    jpeg.input_components = space == JCS_GRAYSCALE ? 1 : space == JCS_RGB ? 3 : 4;
-    jpeg.in_color_space = space;
-    jpeg_set_defaults(&jpeg);
-    jpeg_set_quality(&jpeg, 100, TRUE);
-    if (progressive) jpeg_simple_progression(&jpeg);
-    jpeg.comp_info[0].h_samp_factor = jpeg.comp_info[0].v_samp_factor = 1;
-    jpeg_start_compress(&jpeg, TRUE);
-    std::vector<std::uint8_t> copy = samples;
-    const std::size_t row_bytes = static_cast<std::size_t>(width * jpeg.input_components);
-    while (jpeg.next_scanline < jpeg.image_height) {
-        JSAMPROW row = copy.data() + row_bytes * jpeg.next_scanline;
-        jpeg_write_scanlines(&jpeg, &row, 1);
-    }
-    jpeg_finish_compress(&jpeg);
-    jpeg_destroy_compress(&jpeg);
-    std::fclose(out);
-}
-
-std::vector<std::uint8_t> smooth_samples(int width, int height, int channels) {
-    std::vector<std::uint8_t> samples;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            for (int channel = 0; channel < channels; ++channel)
-                samples.push_back(static_cast<std::uint8_t>(
-                    std::lround(128 + 90 * std::sin(0.11 * x + 0.07 * y + channel))));
-    return samples;
-}
-
 // ------------------------------------------------------------------------------------------------ damage
 
 std::uint32_t crc_of(const std::string& bytes) {
@@ -315,7 +274,7 @@ TEST_CASE("one channel is read in 16 bit, whatever the file has, and several are
         write_any_png(file, kind, 13, 7, random_samples(kind, 13, 7));
         CHECK(says(error_of([&] { gs::read_depth_map(file, 13, 7); }), {"depths.png", "one channel"}));
     }
-    write_jpeg(file, 13, 7, JCS_GRAYSCALE, smooth_samples(13, 7, 1));
+    write_jpeg(file, 13, 7, {JCS_GRAYSCALE}, smooth_samples(13, 7, 1));
     CHECK(says(error_of([&] { gs::read_depth_map(file, 13, 7); }), {"depths.png", "no PNG"}));
 }
 
@@ -398,7 +357,7 @@ TEST_CASE("JPEGs, gray and RGB, baseline and progressive") {
         for (const bool progressive : {false, true}) {
             const int channels = space == JCS_GRAYSCALE ? 1 : 3;
             const auto samples = smooth_samples(width, height, channels);
-            write_jpeg(folder / "a.jpg", width, height, space, samples, progressive);
+            write_jpeg(folder / "a.jpg", width, height, {space, progressive}, samples);
             const image read = gs::read_image(folder / "a.jpg");
             REQUIRE(read.width == width);
             REQUIRE(read.height == height);
@@ -418,7 +377,7 @@ TEST_CASE("JPEGs, gray and RGB, baseline and progressive") {
 TEST_CASE("the size alone is the size of the decoded image") {
     const temporary_folder folder;
     write_gray_png(folder / "a.png", 19, 7);
-    write_jpeg(folder / "a.jpg", 23, 5, JCS_RGB, smooth_samples(23, 5, 3));
+    write_jpeg(folder / "a.jpg", 23, 5, {JCS_RGB}, smooth_samples(23, 5, 3));
     int width = 0, height = 0;
     gs::read_image_size(folder / "a.png", width, height);
     CHECK(width == 19);
@@ -444,7 +403,7 @@ TEST_CASE("an image that is not there, or not an image") {
 TEST_CASE("images without pixels, with too many, or with too few bytes for them") {
     const temporary_folder folder;
     write_gray_png(folder / "a.png", 5, 4);
-    write_jpeg(folder / "a.jpg", 5, 4, JCS_RGB, smooth_samples(5, 4, 3));
+    write_jpeg(folder / "a.jpg", 5, 4, {JCS_RGB}, smooth_samples(5, 4, 3));
     const std::string png = gs_test::read_file(folder / "a.png"), jpeg = gs_test::read_file(folder / "a.jpg");
     const auto error_of_bytes = [&](const std::string& bytes) {
         gs_test::write_file(folder / "b.img", bytes);
@@ -468,7 +427,7 @@ TEST_CASE("images without pixels, with too many, or with too few bytes for them"
 
 TEST_CASE("a JPEG of more scans than a photo has is refused, however few bytes they take") {
     const temporary_folder folder;
-    write_jpeg(folder / "a.jpg", 64, 64, JCS_GRAYSCALE, smooth_samples(64, 64, 1), true);
+    write_jpeg(folder / "a.jpg", 64, 64, {JCS_GRAYSCALE, true}, smooth_samples(64, 64, 1));
     const std::string jpeg = gs_test::read_file(folder / "a.jpg");
     // The first scan, of the blocks' means, again and again: up to the next one's Huffman table.
     const std::size_t scan = jpeg.find("\xFF\xDA"), end = jpeg.find("\xFF\xC4", scan);
@@ -483,10 +442,31 @@ TEST_CASE("a JPEG of more scans than a photo has is refused, however few bytes t
     CHECK(says(with_scans(100), {"b.jpg", "more than 100 scans"}));
 }
 
-TEST_CASE("CMYK JPEGs are refused by name") {
+TEST_CASE("CMYK and YCCK JPEGs, as ink and as Adobe's inverted values") {
     const temporary_folder folder;
-    write_jpeg(folder / "a.jpg", 8, 8, JCS_CMYK, smooth_samples(8, 8, 4));
-    CHECK(says(error_of_reading(folder / "a.jpg"), {"a.jpg", "CMYK"}));
+    const int width = 16, height = 16;  // whole blocks of one color, so that only rounding changes them
+    const std::array<std::uint8_t, 4> ink{30, 100, 200, 60};
+    const std::array<int, 3> expected{(255 - 30) * (255 - 60) / 255, (255 - 100) * (255 - 60) / 255,
+                                      (255 - 200) * (255 - 60) / 255};
+    for (const bool adobe : {false, true})
+        for (const bool ycck : {false, true}) {
+            if (ycck && !adobe) continue;  // YCCK without Adobe's marker counts as CMYK
+            CAPTURE(adobe);
+            CAPTURE(ycck);
+            std::vector<std::uint8_t> samples;
+            for (int i = 0; i < width * height; ++i)
+                for (const std::uint8_t one : ink)
+                    samples.push_back(adobe ? static_cast<std::uint8_t>(255 - one) : one);
+            write_jpeg(folder / "a.jpg", width, height, {JCS_CMYK, false, adobe, ycck}, samples);
+            const image read = gs::read_image(folder / "a.jpg");
+            CHECK_FALSE(read.has_alpha);
+            for (int i = 0; i < width * height; ++i) {
+                const pixel got = pixel_at(read, i % width, i / width);
+                REQUIRE(got[3] == 255);
+                for (std::size_t channel = 0; channel < 3; ++channel)
+                    REQUIRE(std::abs(got[channel] - expected[channel]) <= 2);
+            }
+        }
 }
 
 TEST_CASE("whatever is cut off or changed in an image, the outcome is an error or an image, and silence") {
@@ -499,7 +479,7 @@ TEST_CASE("whatever is cut off or changed in an image, the outcome is an error o
         originals.push_back(gs_test::read_file(folder / "a.png"));
     }
     for (const bool progressive : {false, true}) {
-        write_jpeg(folder / "a.jpg", 9, 6, JCS_RGB, smooth_samples(9, 6, 3), progressive);
+        write_jpeg(folder / "a.jpg", 9, 6, {JCS_RGB, progressive}, smooth_samples(9, 6, 3));
         originals.push_back(gs_test::read_file(folder / "a.jpg"));
     }
     std::size_t cut_but_read = 0, nameless = 0, refused = 0;

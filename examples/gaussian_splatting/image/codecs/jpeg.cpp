@@ -90,12 +90,15 @@ class jpeg_reader {
     }
 
     image_size size() const { return {jpeg_.image_width, jpeg_.image_height}; }
-    bool is_cmyk() const { return jpeg_.jpeg_color_space == JCS_CMYK || jpeg_.jpeg_color_space == JCS_YCCK; }
+    /// Whether the rows that `read_rows` reads are CMYK instead of RGBA.
+    bool is_cmyk() const { return jpeg_.num_components == 4; }
+    /// Whether CMYK values are amounts of light instead of ink, as Adobe's programs write them.
+    bool has_inverted_cmyk() const { return jpeg_.saw_Adobe_marker; }
 
     /// Precondition: `pixels` has space for width * height * 4 bytes.
-    bool read_rgba(std::uint8_t* pixels) {
+    bool read_rows(std::uint8_t* pixels) {
         if (setjmp(errors_.escape)) return false;
-        jpeg_.out_color_space = JCS_EXT_RGBA;
+        jpeg_.out_color_space = is_cmyk() ? JCS_CMYK : JCS_EXT_RGBA;
         jpeg_start_decompress(&jpeg_);
         while (jpeg_.output_scanline < jpeg_.output_height) {
             JSAMPROW row = pixels + std::size_t{4} * jpeg_.output_width * jpeg_.output_scanline;
@@ -129,12 +132,24 @@ image_size read_jpeg_size(const image_file& file) {
     return reader.size();
 }
 
+/// Each ink removes its share of the light, without the color profile of a printer.
+void cmyk_to_rgba(image& pixels, bool inverted) {
+    for (std::size_t i = 0; i < pixels.rgba.size(); i += 4) {
+        std::uint8_t* const pixel = &pixels.rgba[i];
+        const auto light = [&](std::size_t ink) { return inverted ? pixel[ink] : 255U - pixel[ink]; };
+        const unsigned black = light(3);
+        for (std::size_t ink = 0; ink < 3; ++ink)
+            pixel[ink] = static_cast<std::uint8_t>((light(ink) * black + 127) / 255);
+        pixel[3] = 255;
+    }
+}
+
 void read_jpeg(const image_file& file, image& pixels) {
     jpeg_reader reader;
     if (!reader.read_header(file.rewound())) refuse_jpeg(file, reader);
-    if (reader.is_cmyk()) file.refuse("CMYK JPEGs are not supported");
     file.check_decoded_size(reader.size(), size_of(pixels));
-    if (!reader.read_rgba(pixels.rgba.data())) refuse_jpeg(file, reader);
+    if (!reader.read_rows(pixels.rgba.data())) refuse_jpeg(file, reader);
+    if (reader.is_cmyk()) cmyk_to_rgba(pixels, reader.has_inverted_cmyk());
 }
 
 constexpr std::string_view jpeg_endings[] = {".jpg", ".jpeg"};
