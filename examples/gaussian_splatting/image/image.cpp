@@ -31,11 +31,19 @@ image read_image(const std::filesystem::path& path) {
     return pixels;
 }
 
-void read_image_size(const std::filesystem::path& path, int& width, int& height) {
+image_header read_image_header(const std::filesystem::path& path) {
     const image_file file(path);
-    const image_size size = checked_size(file, codec_of(file));
-    width = static_cast<int>(size.width);
-    height = static_cast<int>(size.height);
+    const image_codec& codec = codec_of(file);
+    const image_size size = checked_size(file, codec);
+    image_header header{static_cast<int>(size.width), static_cast<int>(size.height), {}};
+    if (codec.read_orientation) header.turn = codec.read_orientation(file);
+    return header;
+}
+
+void read_image_size(const std::filesystem::path& file, int& width, int& height) {
+    const image_header header = read_image_header(file);
+    width = header.turn.swaps_sides ? header.height : header.width;
+    height = header.turn.swaps_sides ? header.width : header.height;
 }
 
 void image::mask_pixel(std::size_t pixel) {

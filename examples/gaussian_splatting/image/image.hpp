@@ -35,17 +35,40 @@ std::string image_formats();
 /// Returns the usual endings of files of these formats, in lower case, such as ".png".
 std::vector<std::string_view> image_endings();
 
-/// Reads an image of any color type except CMYK. The first bytes determine the format. Throws
-/// `error` with the file if it is missing, truncated, malformed or empty, or if it has more than
-/// 65536 pixels per side, 2 GiB of pixels, or 100 scans. Allocates at most 10 bytes per pixel.
+/// How stored pixels become an upright image, as EXIF data specifies it. First mirrors the stored
+/// image, then turns its rows into columns.
+struct orientation {
+    bool swaps_sides = false;  ///< rows become columns, so width and height are exchanged
+    bool mirrors_x = false;    ///< exchanges left and right of the stored image
+    bool mirrors_y = false;    ///< exchanges top and bottom of the stored image
+    bool operator==(const orientation&) const = default;
+};
+
+/// The size of an image as its file stores it, and the orientation in its EXIF data.
+struct image_header {
+    int width = 0;
+    int height = 0;
+    orientation turn;
+};
+
+/// Reads an image as its file stores it: turn it upright with `turned_upright`. HEIF files specify
+/// rotations of their own, which are applied. The first bytes determine the format. Throws `error`
+/// with the file if it is missing, truncated, malformed or empty, or if it has more than 65536
+/// pixels per side, 2 GiB of pixels, or 100 scans. Allocates at most 10 bytes per pixel.
 image read_image(const std::filesystem::path& file);
 
 /// Reads a PNG with one channel, row by row from the top. Scales values of fewer than 16 bits to 16
 /// bits. Throws `error` like `read_image`, and if the file has more channels.
 std::vector<std::uint16_t> read_gray_png(const std::filesystem::path& file, int& width, int& height);
 
-/// Reads width and height from the header, without decoding. Throws `error` like `read_image`.
+/// Reads the header, without decoding. Throws `error` like `read_image`.
+image_header read_image_header(const std::filesystem::path& file);
+
+/// Reads the size of the upright image, without decoding. Throws `error` like `read_image`.
 void read_image_size(const std::filesystem::path& file, int& width, int& height);
+
+/// Returns the image in upright orientation. Needs as much memory as the image.
+image turned_upright(const image& stored, const orientation& turn);
 
 /// Writes an opaque 8-bit RGB PNG. `planes` holds three planes of width * height values, which are
 /// clamped to [0, 1] and rounded to nearest. Throws `error` like `atomic_file_write`.

@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "exif.hpp"
 #include "image_file.hpp"
 
 namespace gs {
@@ -21,6 +22,9 @@ struct image_codec {
 
     /// Reads the size from the header. Allocates at most four times the size of the file.
     image_size (*read_size)(const image_file& file);
+
+    /// Reads the orientation from EXIF data; null if `read` turns images upright itself.
+    orientation (*read_orientation)(const image_file& file);
 
     /// Sets all pixels of an opaque image that has the size of the file, which has been checked.
     /// Allocates at most 6 bytes per pixel besides.

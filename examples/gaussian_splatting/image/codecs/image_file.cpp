@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "image_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -36,6 +37,19 @@ std::FILE* image_file::rewound() const {
     return stream_.get();
 }
 
+std::uint64_t image_file::size_in_bytes() const {
+    std::error_code failed;
+    const auto size = std::filesystem::file_size(path_, failed);
+    if (failed) refuse(failed.message());
+    return size;
+}
+
+std::vector<std::uint8_t> image_file::bytes(std::size_t most) const {
+    std::vector<std::uint8_t> content(std::min(size_in_bytes(), most));
+    if (std::fread(content.data(), 1, content.size(), rewound()) < content.size()) refuse("it is truncated");
+    return content;
+}
+
 void image_file::refuse(const std::string& why) const {
     throw error("cannot read the image " + path_.string() + ": " + why);
 }
@@ -48,8 +62,7 @@ void image_file::check_size(const image_size& size) const {
 }
 
 void image_file::check_density(const image_size& size) const {
-    std::error_code ignored;
-    const auto bytes = std::filesystem::file_size(path_, ignored);
+    const std::uint64_t bytes = size_in_bytes();
     if (size.width * size.height / most_pixels_per_byte > bytes)
         refuse("it is truncated: " + std::to_string(bytes) + " bytes are too few for " + text_of(size) +
                " pixels");

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "../image.hpp"
 
@@ -29,6 +31,11 @@ class image_file {
 
     /// Returns the stream, at the beginning of the file.
     std::FILE* rewound() const;
+
+    std::uint64_t size_in_bytes() const;
+
+    /// Returns the content, or its first `most` bytes.
+    std::vector<std::uint8_t> bytes(std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
     /// Throws `error` with the file and the reason why it cannot be read.
     [[noreturn]] void refuse(const std::string& why) const;

@@ -4,6 +4,7 @@
 #include <csetjmp>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,8 @@ namespace {
 // Each scan of a progressive JPEG visits all pixels, so a small file could take a long time. This
 // is the largest number of scans that cjpeg writes.
 constexpr int most_scans = 100;
+
+constexpr int exif_marker = JPEG_APP0 + 1;  // XMP data have the same marker
 
 // libjpeg reports errors by longjmp. So each function that calls it has no objects with
 // destructors in its frame; its callers own all resources.
@@ -85,11 +88,22 @@ class jpeg_reader {
         jpeg_create_decompress(&jpeg_);
         jpeg_.progress = &progress_;
         jpeg_stdio_src(&jpeg_, file);
+        jpeg_save_markers(&jpeg_, exif_marker, 0xFFFF);
         jpeg_read_header(&jpeg_, TRUE);
         return true;
     }
 
     image_size size() const { return {jpeg_.image_width, jpeg_.image_height}; }
+
+    std::span<const std::uint8_t> exif() const {
+        constexpr std::string_view signature("Exif\0\0", 6);
+        for (jpeg_saved_marker_ptr one = jpeg_.marker_list; one; one = one->next)
+            if (one->data_length > signature.size() &&
+                std::memcmp(one->data, signature.data(), signature.size()) == 0)
+                return {one->data, one->data_length};
+        return {};
+    }
+
     /// Whether the rows that `read_rows` reads are CMYK instead of RGBA.
     bool is_cmyk() const { return jpeg_.num_components == 4; }
     /// Whether CMYK values are amounts of light instead of ink, as Adobe's programs write them.
@@ -132,6 +146,12 @@ image_size read_jpeg_size(const image_file& file) {
     return reader.size();
 }
 
+orientation read_jpeg_orientation(const image_file& file) {
+    jpeg_reader reader;
+    if (!reader.read_header(file.rewound())) refuse_jpeg(file, reader);
+    return orientation_in_exif(reader.exif());
+}
+
 /// Each ink removes its share of the light, without the color profile of a printer.
 void cmyk_to_rgba(image& pixels, bool inverted) {
     for (std::size_t i = 0; i < pixels.rgba.size(); i += 4) {
@@ -156,6 +176,7 @@ constexpr std::string_view jpeg_endings[] = {".jpg", ".jpeg"};
 
 }  // namespace
 
-extern constinit const image_codec jpeg_codec{"JPEG", jpeg_endings, is_jpeg, read_jpeg_size, read_jpeg};
+extern constinit const image_codec jpeg_codec{"JPEG",         jpeg_endings,          is_jpeg,
+                                              read_jpeg_size, read_jpeg_orientation, read_jpeg};
 
 }  // namespace gs

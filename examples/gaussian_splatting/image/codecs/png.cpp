@@ -72,6 +72,18 @@ class png_reader {
         return true;
     }
 
+    /// Reads the EXIF data that precedes the pixels; leaves it empty if there is none.
+    bool read_exif(std::FILE* file, std::size_t file_bytes, std::span<const std::uint8_t>& exif) {
+        if (setjmp(png_jmpbuf(png_))) return false;
+        // A chunk cannot be larger than the file, whatever it claims.
+        png_set_chunk_malloc_max(png_, file_bytes);
+        begin(file, PNG_HANDLE_CHUNK_AS_DEFAULT);
+        png_bytep bytes = nullptr;
+        png_uint_32 count = 0;
+        if (png_get_eXIf_1(png_, info_, &count, &bytes)) exif = {bytes, count};
+        return true;
+    }
+
     std::size_t row_bytes() const { return png_get_rowbytes(png_, info_); }
     image_size size() const { return {png_get_image_width(png_, info_), png_get_image_height(png_, info_)}; }
 
@@ -85,11 +97,12 @@ class png_reader {
     std::string failure() const { return failure_.message.data(); }
 
   private:
-    void begin(std::FILE* file) {
+    void begin(std::FILE* file, int keep_exif = PNG_HANDLE_CHUNK_NEVER) {
         png_set_user_limits(png_, largest_side, largest_side);
         // Keeps only the chunks for pixels. Texts and profiles may be compressed and expand to
         // megabytes each.
         png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+        png_set_keep_unknown_chunks(png_, keep_exif, reinterpret_cast<png_const_bytep>("eXIf"), 1);
         png_init_io(png_, file);
         png_read_info(png_, info_);
     }
@@ -178,6 +191,14 @@ image_size read_png_size(const image_file& file) {
     file.refuse("it is damaged or truncated (" + reader.failure() + ")");
 }
 
+orientation read_png_orientation(const image_file& file) {
+    png_reader reader;
+    if (!reader.ready()) throw std::bad_alloc();
+    std::span<const std::uint8_t> exif;
+    if (!reader.read_exif(file.rewound(), file.size_in_bytes(), exif)) refuse_png(file, reader);
+    return orientation_in_exif(exif);
+}
+
 void read_png(const image_file& file, image& pixels) {
     png_reader reader;
     if (!reader.ready()) throw std::bad_alloc();
@@ -194,7 +215,8 @@ constexpr std::string_view png_endings[] = {".png"};
 
 }  // namespace
 
-extern constinit const image_codec png_codec{"PNG", png_endings, is_png, read_png_size, read_png};
+extern constinit const image_codec png_codec{"PNG",         png_endings,          is_png,
+                                             read_png_size, read_png_orientation, read_png};
 
 std::vector<std::uint16_t> read_gray_png(const std::filesystem::path& path, int& width, int& height) {
     const image_file file(path);
