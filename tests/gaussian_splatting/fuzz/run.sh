@@ -21,7 +21,7 @@ trainer=examples/gaussian_splatting
 sources=("$trainer"/readers/colmap/colmap_{binary,records,text}.cpp "$trainer"/image/{,codecs/}*.cpp
     "$trainer"/readers/transforms/{json_text,transforms,transforms_pose}.cpp "$trainer"/readers/{camera_models,validation}.cpp
     "$trainer"/scene/camera.cpp "$trainer"/writers/{,*/}*.cpp tests/gaussian_splatting/fuzz/{budget,colmap,harness,harnesses,image,transforms}.cpp)
-flags=(-std=c++20 -O1 -g -fno-omit-frame-pointer -I"$trainer" -Itests/gaussian_splatting/fuzz
+flags=(-std=c++20 -O1 -g -fno-omit-frame-pointer -I"$trainer" -Iinclude -Itests/gaussian_splatting/fuzz
     $(pkg-config --cflags libheif)
     -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
 
