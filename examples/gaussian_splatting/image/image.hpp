@@ -54,7 +54,8 @@ struct image_header {
 /// Reads an image as its file stores it: turn it upright with `turned_upright`. HEIF files specify
 /// rotations of their own, which are applied. The first bytes determine the format. Throws `error`
 /// with the file if it is missing, truncated, malformed or empty, or if it has more than 65536
-/// pixels per side, 2 GiB of pixels, or 100 scans. Allocates at most 10 bytes per pixel.
+/// pixels per side, 2 GiB of pixels, or 100 scans. Allocates at most 10 bytes per pixel, or about 20
+/// for HEIF, whose decoders trust the size of the coded image before it is compared with the header.
 image read_image(const std::filesystem::path& file);
 
 /// Reads a PNG with one channel, row by row from the top. Scales values of fewer than 16 bits to 16

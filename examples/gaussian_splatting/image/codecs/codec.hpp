@@ -20,14 +20,14 @@ struct image_codec {
     /// Returns whether the first bytes of a file, up to `probed_bytes`, identify this format.
     bool (*probe)(std::span<const std::uint8_t> start);
 
-    /// Reads the size from the header. Allocates at most four times the size of the file.
+    /// Reads the size from the header, without memory for pixels.
     image_size (*read_size)(const image_file& file);
 
-    /// Reads the orientation from EXIF data; null if `read` turns images upright itself.
+    /// Reads the orientation from EXIF data; null if `read` returns upright images.
     orientation (*read_orientation)(const image_file& file);
 
     /// Sets all pixels of an opaque image that has the size of the file, which has been checked.
-    /// Allocates at most 6 bytes per pixel besides.
+    /// See `read_image` for the memory that it may allocate.
     void (*read)(const image_file& file, image& pixels);
 };
 
