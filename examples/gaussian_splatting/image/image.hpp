@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace gs {
@@ -27,17 +29,47 @@ struct image {
     bool has_transparent_pixel() const;  ///< masked pixels do not count
 };
 
-/// Reads a PNG or JPEG of any color type except CMYK. The first bytes determine the format. Throws
-/// `error` with the file if it is missing, truncated, malformed or empty, or if it has more than
-/// 65536 pixels per side, 2 GiB of pixels, or 100 scans. Allocates at most 10 bytes per pixel.
+/// Returns the formats that `read_image` reads, for messages: "PNG or JPEG".
+std::string image_formats();
+
+/// Returns the usual endings of files of these formats, in lower case, such as ".png".
+std::vector<std::string_view> image_endings();
+
+/// How stored pixels become an upright image, as EXIF data specifies it. First mirrors the stored
+/// image, then turns its rows into columns.
+struct orientation {
+    bool swaps_sides = false;  ///< rows become columns, so width and height are exchanged
+    bool mirrors_x = false;    ///< exchanges left and right of the stored image
+    bool mirrors_y = false;    ///< exchanges top and bottom of the stored image
+    bool operator==(const orientation&) const = default;
+};
+
+/// The size of an image as its file stores it, and the orientation in its EXIF data.
+struct image_header {
+    int width = 0;
+    int height = 0;
+    orientation turn;
+};
+
+/// Reads an image as its file stores it: turn it upright with `turned_upright`. HEIF files specify
+/// rotations of their own, which are applied. The first bytes determine the format. Throws `error`
+/// with the file if it is missing, truncated, malformed or empty, or if it has more than 65536
+/// pixels per side, 2 GiB of pixels, or 100 scans. Allocates at most 10 bytes per pixel, or about 20
+/// for HEIF, whose decoders trust the size of the coded image before it is compared with the header.
 image read_image(const std::filesystem::path& file);
 
 /// Reads a PNG with one channel, row by row from the top. Scales values of fewer than 16 bits to 16
 /// bits. Throws `error` like `read_image`, and if the file has more channels.
 std::vector<std::uint16_t> read_gray_png(const std::filesystem::path& file, int& width, int& height);
 
-/// Reads width and height from the header, without decoding. Throws `error` like `read_image`.
+/// Reads the header, without decoding. Throws `error` like `read_image`.
+image_header read_image_header(const std::filesystem::path& file);
+
+/// Reads the size of the upright image, without decoding. Throws `error` like `read_image`.
 void read_image_size(const std::filesystem::path& file, int& width, int& height);
+
+/// Returns the image in upright orientation. Needs as much memory as the image.
+image turned_upright(const image& stored, const orientation& turn);
 
 /// Returns 255 times a value, clamped to [0, 255] and rounded to nearest. Returns 0 for NaN.
 std::uint8_t to_byte(float value);

@@ -221,9 +221,9 @@ std::set<std::pair<std::size_t, std::size_t>> pairs_to_match(std::size_t photos)
 std::vector<std::vector<std::string>> groups_of_equal_size(const photo_set& photos) {
     std::map<std::pair<int, int>, std::vector<std::string>> by_size;
     for (const std::string& name : photos.names) {
-        int width = 0, height = 0;
-        read_image_size(photos.folder / name, width, height);
-        by_size[{width, height}].push_back(name);
+        // COLMAP ignores the orientation in EXIF data.
+        const image_header stored = read_image_header(photos.folder / name);
+        by_size[{stored.width, stored.height}].push_back(name);
     }
     std::vector<std::vector<std::string>> groups;
     for (auto& [size, names] : by_size) groups.push_back(std::move(names));

@@ -14,73 +14,11 @@
 #include "../core/parallel.hpp"
 #include "../image/mask.hpp"
 #include "../scene/downsample.hpp"
+#include "fit_to_files.hpp"
+#include "size_text.hpp"
 
 namespace gs {
 namespace {
-
-std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
-
-std::string count_text(std::size_t count, const std::string& noun) {
-    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
-[[noreturn]] void refuse_size(const image_record& record, int width, int height) {
-    throw error("the image " + record.file.string() + " is of the wrong size: it has " +
-                size_text(width, height) + " pixels, its camera " +
-                size_text(record.camera.width, record.camera.height));
-}
-
-/// Returns the camera scaled to the size of its image file. Scene folders often contain photos in
-/// smaller sizes, such as `images_4`.
-camera fitted_to_file(const image_record& record) {
-    int width = 0, height = 0;
-    read_image_size(record.file, width, height);
-    const camera& recorded = record.camera;
-    const double x = static_cast<double>(width) / recorded.width;
-    const double y = static_cast<double>(height) / recorded.height;
-    if (std::abs(x / y - 1) > 0.01) refuse_size(record, width, height);
-    return recorded.resized(width, height);
-}
-
-/// Throws `error` for photos of a wrong size. Smaller copies all have the same scale, so a photo
-/// with another scale than most photos of the same recorded size is a wrong file.
-void require_one_scale(const std::vector<image_record>& records, const std::vector<camera>& fitted) {
-    const auto scale = [&](std::size_t i) {
-        return static_cast<double>(fitted[i].width) / records[i].camera.width;
-    };
-    std::map<std::pair<int, int>, std::vector<double>> scales;
-    const auto size = [&](std::size_t i) {
-        return std::pair(records[i].camera.width, records[i].camera.height);
-    };
-    for (std::size_t i = 0; i < records.size(); ++i) scales[size(i)].push_back(scale(i));
-    for (auto& [of, values] : scales)
-        std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                         values.end());
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        const auto& values = scales[size(i)];
-        if (std::abs(scale(i) / values[values.size() / 2] - 1) > 0.01)
-            refuse_size(records[i], fitted[i].width, fitted[i].height);
-    }
-}
-
-std::vector<camera> fit_to_files(const std::vector<image_record>& records, const log_function& log) {
-    std::vector<camera> fitted;
-    fitted.reserve(records.size());
-    std::size_t resized = 0, first = 0;
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        fitted.push_back(fitted_to_file(records[i]));
-        const camera &before = records[i].camera, &after = fitted.back();
-        if (before.width == after.width && before.height == after.height) continue;
-        if (resized++ == 0) first = i;
-    }
-    require_one_scale(records, fitted);
-    if (resized > 0)
-        log(count_text(resized, "photo") +
-            " differ in size from their cameras, whose intrinsics were scaled (" + records[first].name +
-            ": " + size_text(records[first].camera.width, records[first].camera.height) + " to " +
-            size_text(fitted[first].width, fitted[first].height) + ")");
-    return fitted;
-}
 
 /// Finds pinhole cameras for cameras with lens distortion, and remembers them.
 class undistorted_cameras {
@@ -120,21 +58,21 @@ class undistorted_cameras {
 };
 
 std::vector<camera> undistort_cameras(const std::vector<image_record>& records,
-                                      const std::vector<camera>& fitted, const log_function& log) {
+                                      const std::vector<fitted_photo>& fitted, const log_function& log) {
     undistorted_cameras known;
     std::vector<camera> pinholes;
     pinholes.reserve(fitted.size());
     for (std::size_t i = 0; i < fitted.size(); ++i)
-        pinholes.push_back(known.pinhole_of(fitted[i], records[i]));
+        pinholes.push_back(known.pinhole_of(fitted[i].taken_with, records[i]));
     known.report(log);
     return pinholes;
 }
 
 /// Throws `error` for a fisheye lens whose model ends inside the photo on all sides, because its
 /// parameters are wrong. Corners may lie beyond the end.
-void require_wide_lenses(const std::vector<image_record>& records, const std::vector<camera>& fitted) {
+void require_wide_lenses(const std::vector<image_record>& records, const std::vector<fitted_photo>& fitted) {
     for (std::size_t i = 0; i < fitted.size(); ++i) {
-        const camera& c = fitted[i];
+        const camera& c = fitted[i].taken_with;
         if (!c.fisheye) continue;
         const double to_edge =
             std::min(std::max(c.cx, c.width - c.cx) / c.fx, std::max(c.cy, c.height - c.cy) / c.fy);
@@ -178,17 +116,22 @@ std::vector<camera> scale_to_resolution(const std::vector<camera>& full,
     return scaled;
 }
 
-view load_view(const image_record& record, const camera& fitted, const camera& pinhole,
+image read_photo(const std::filesystem::path& file, const orientation& turn) {
+    image photo = read_image(file);
+    return turn == orientation() ? photo : turned_upright(photo, turn);
+}
+
+view load_view(const image_record& record, const fitted_photo& fitted, const camera& pinhole,
                const camera& scaled) {
     const lens& distortion = record.distortion;
-    image photo = read_image(record.file);
+    image photo = read_photo(record.file, fitted.turn);
     image mask = record.mask.empty() ? image() : read_mask(record.mask, photo);
     depth_map depths =
         record.depth.empty() ? depth_map() : read_depth_map(record.depth, photo.width, photo.height);
     if (!distortion.is_none()) {
-        photo = undistort(photo, fitted, distortion, pinhole);
-        if (!record.mask.empty()) mask = undistort(mask, fitted, distortion, pinhole);
-        if (depths.is_there()) depths = undistort(depths, fitted, distortion, pinhole);
+        photo = undistort(photo, fitted.taken_with, distortion, pinhole);
+        if (!record.mask.empty()) mask = undistort(mask, fitted.taken_with, distortion, pinhole);
+        if (depths.is_there()) depths = undistort(depths, fitted.taken_with, distortion, pinhole);
     }
     apply_mask(mask, photo);  // before downsampling, to keep masked pixels out of averages
     clear_masked_depths(photo, depths);
@@ -210,7 +153,7 @@ void report_count(const std::vector<image_record>& records, std::filesystem::pat
 
 std::vector<view> load_views(const std::vector<image_record>& records, int resolution,
                              const log_function& log) {
-    const std::vector<camera> fitted = fit_to_files(records, log);
+    const std::vector<fitted_photo> fitted = fit_to_files(records, log);
     require_wide_lenses(records, fitted);
     const std::vector<camera> pinholes = undistort_cameras(records, fitted, log);
     const std::vector<camera> scaled = scale_to_resolution(pinholes, records, resolution, log);

@@ -51,7 +51,7 @@ struct image_record {
     gs::camera camera;      ///< calibrated for its own size, which is at least 1×1
     bool held_out = false;  ///< whether it is held out if `load_options::eval` is set
 
-    std::filesystem::path file;   ///< PNG or JPEG; may be a scaled copy
+    std::filesystem::path file;   ///< see `read_image`; may be a scaled or rotated copy
     lens distortion;              ///< distortion of the file, which loading removes
     std::string camera_model;     ///< name of the model of `distortion`, for messages
     std::filesystem::path mask;   ///< PNG, see `read_mask`; empty without a mask

@@ -18,10 +18,11 @@ out=$(realpath -m "${OUT:-build/fuzz}")
 mkdir -p "$out"
 
 trainer=examples/gaussian_splatting
-sources=("$trainer"/readers/colmap/colmap_{binary,records,text}.cpp "$trainer"/image/*.cpp
+sources=("$trainer"/readers/colmap/colmap_{binary,records,text}.cpp "$trainer"/image/{,codecs/}*.cpp
     "$trainer"/readers/transforms/{json_text,transforms,transforms_pose}.cpp "$trainer"/readers/{camera_models,validation}.cpp
     "$trainer"/scene/camera.cpp "$trainer"/writers/{,*/}*.cpp tests/gaussian_splatting/fuzz/{budget,colmap,harness,harnesses,image,transforms}.cpp)
-flags=(-std=c++20 -O1 -g -fno-omit-frame-pointer -I"$trainer" -Itests/gaussian_splatting/fuzz
+flags=(-std=c++20 -O1 -g -fno-omit-frame-pointer -I"$trainer" -Iinclude -Itests/gaussian_splatting/fuzz
+    $(pkg-config --cflags libheif)
     -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
 
 objects=()
@@ -31,7 +32,7 @@ for source in "${sources[@]}"; do
 done
 for harness in "${harnesses[@]}"; do
     clang++ "${flags[@]}" -fsanitize=fuzzer -DWARPAGG_HARNESS="\"$harness\"" tests/gaussian_splatting/fuzz/entry.cpp "${objects[@]}" \
-        -lpng -ljpeg -lz -o "$out/$harness"
+        -lpng -ljpeg -lwebp -lwebpdemux -lheif -lexif -lz -o "$out/$harness"
 done
 
 failed=0

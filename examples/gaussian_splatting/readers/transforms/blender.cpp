@@ -3,11 +3,14 @@
 #include "blender.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <string_view>
 #include <utility>
 
+#include "../../core/enumerated.hpp"
 #include "../../core/error.hpp"
 #include "../../core/sanitize_for_message.hpp"
 #include "../validation.hpp"
@@ -24,13 +27,20 @@ constexpr const char* training_file = "transforms_train.json";
 std::filesystem::path find_photo(const std::filesystem::path& data, const transforms& all,
                                  std::size_t index) {
     const auto plain = data / all.frames[index].path;
-    for (const char* ending : {"", ".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".JPEG"}) {
-        std::filesystem::path file = plain;
-        file += ending;
-        if (std::filesystem::is_regular_file(file)) return file;
+    if (std::filesystem::is_regular_file(plain)) return plain;
+    const std::vector<std::string_view> endings = image_endings();
+    for (const std::string_view lower : endings) {
+        std::string upper(lower);
+        std::ranges::transform(upper, upper.begin(),
+                               [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        for (const auto& ending : {std::string(lower), upper}) {
+            std::filesystem::path file = plain;
+            file += ending;
+            if (std::filesystem::is_regular_file(file)) return file;
+        }
     }
-    throw error(all.where_is(index) + ": the image " + plain.string() +
-                " is missing, with and without .png or .jpg");
+    throw error(all.where_is(index) + ": the image " + plain.string() + " is missing, also with the ending " +
+                enumerated(endings, " or "));
 }
 
 int side(const transforms& all, std::size_t index, transforms_number which, int of_photo) {
