@@ -8,6 +8,7 @@
 #include "reader.hpp"
 #include "synthetic/synthetic.hpp"
 #include "transforms/blender.hpp"
+#include "transforms/nerfstudio.hpp"
 
 namespace gs {
 
@@ -16,6 +17,7 @@ std::span<const reader* const> all_readers() {
         &synthetic_reader,
         &blender_reader,
         &colmap_reader,
+        &nerfstudio_reader,
     };
     return table;
 }
