@@ -5,6 +5,7 @@
 
 #include "../core/enumerated.hpp"
 #include "colmap/colmap.hpp"
+#include "polycam/polycam.hpp"
 #include "reader.hpp"
 #include "synthetic/synthetic.hpp"
 #include "transforms/blender.hpp"
@@ -14,10 +15,8 @@ namespace gs {
 
 std::span<const reader* const> all_readers() {
     static constexpr const reader* table[] = {
-        &synthetic_reader,
-        &blender_reader,
-        &colmap_reader,
-        &nerfstudio_reader,
+        &synthetic_reader,  &blender_reader, &colmap_reader,
+        &nerfstudio_reader, &polycam_reader,
     };
     return table;
 }
