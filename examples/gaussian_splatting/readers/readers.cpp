@@ -5,6 +5,7 @@
 
 #include "../core/enumerated.hpp"
 #include "colmap/colmap.hpp"
+#include "opensfm/opensfm.hpp"
 #include "polycam/polycam.hpp"
 #include "reader.hpp"
 #include "synthetic/synthetic.hpp"
@@ -16,7 +17,7 @@ namespace gs {
 std::span<const reader* const> all_readers() {
     static constexpr const reader* table[] = {
         &synthetic_reader,  &blender_reader, &colmap_reader,
-        &nerfstudio_reader, &polycam_reader,
+        &nerfstudio_reader, &polycam_reader, &opensfm_reader,
     };
     return table;
 }
