@@ -9,7 +9,7 @@ set -euo pipefail
 
 distribution=$(. /etc/os-release 2>/dev/null && echo "${ID:-unknown}" || echo unknown)
 packages=(cmake ninja-build g++ git libglm-dev libcli11-dev nlohmann-json3-dev doctest-dev
-    libpng-dev libjpeg-dev libnanoflann-dev "$@")
+    libpng-dev libjpeg-dev libnanoflann-dev libzip-dev "$@")
 if [[ $distribution != @(debian|ubuntu) ]] || ! command -v apt-get >/dev/null; then
     echo "error: this script installs packages on Debian and Ubuntu only; install the equivalents of ${packages[*]}" >&2
     exit 1

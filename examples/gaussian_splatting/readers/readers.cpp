@@ -25,6 +25,7 @@ std::span<const reader* const> all_readers() {
 std::string accepted_scenes(std::span<const reader* const> readers) {
     std::vector<std::string_view> parts;
     for (const reader* one : readers) parts.push_back(one->accepts);
+    parts.push_back("a .zip archive of such a folder");
     return enumerated(parts, " or ");
 }
 
