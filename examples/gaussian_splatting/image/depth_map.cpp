@@ -28,9 +28,19 @@ struct covered {
     }
 };
 
+/// Replaces depths by inverse depths. The nearest one becomes the largest value.
+void invert(std::vector<std::uint16_t>& values) {
+    constexpr double largest = 65535;
+    double nearest = largest;
+    for (const std::uint16_t value : values)
+        if (value > 0) nearest = std::min<double>(nearest, value);
+    for (std::uint16_t& value : values)
+        if (value > 0) value = static_cast<std::uint16_t>(std::lround(largest * nearest / value));
+}
+
 }  // namespace
 
-depth_map read_depth_map(const std::filesystem::path& file, int width, int height) {
+depth_map read_depth_map(const std::filesystem::path& file, int width, int height, depth_values values) {
     depth_map map;
     try {
         map.values = read_gray_png(file, map.width, map.height);
@@ -42,6 +52,7 @@ depth_map read_depth_map(const std::filesystem::path& file, int width, int heigh
         throw error("the depth map " + file.string() + " is of another shape than its photo: it has " +
                     std::to_string(map.width) + "x" + std::to_string(map.height) + " pixels, the photo " +
                     std::to_string(width) + "x" + std::to_string(height));
+    if (values == depth_values::depth) invert(map.values);
     return resized(map, width, height);
 }
 

@@ -24,10 +24,14 @@ struct depth_fit {
     float scale = 0, offset = 0;
 };
 
+/// The meaning of the values in a file. `depth` is in any unit, the same for the whole file.
+enum class depth_values { inverse_depth, depth };
+
 /// Reads a depth map from a PNG with one channel, and scales it to the size of its photo. Throws
 /// `error` with the file if it is not such a PNG, or if its aspect ratio differs by more than 3 %.
 /// The tolerance exists because networks round sides to multiples of their patch size.
-depth_map read_depth_map(const std::filesystem::path& file, int width, int height);
+depth_map read_depth_map(const std::filesystem::path& file, int width, int height,
+                         depth_values values = depth_values::inverse_depth);
 
 /// Scales a depth map. Each pixel becomes the mean of the known values that it covers, including
 /// fractions of pixels. It is unknown if they cover less than half of it.

@@ -39,6 +39,15 @@ void apply_mask(const image& mask, image& photo) {
     photo.has_alpha = photo.has_transparent_pixel();
 }
 
+void mask_border(int width, image& photo) {
+    if (width <= 0) return;
+    std::size_t pixel = 0;
+    for (int y = 0; y < photo.height; ++y)
+        for (int x = 0; x < photo.width; ++x, ++pixel)
+            if (std::min({x, y, photo.width - 1 - x, photo.height - 1 - y}) < width) photo.mask_pixel(pixel);
+    photo.has_alpha = photo.has_transparent_pixel();
+}
+
 void clear_masked_depths(const image& photo, depth_map& depths) {
     for (std::size_t i = 0; i < depths.values.size(); ++i)
         if (photo.is_masked(i)) depths.values[i] = 0;

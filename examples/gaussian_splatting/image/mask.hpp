@@ -23,6 +23,9 @@ image read_mask(const std::filesystem::path& file, const image& photo);
 /// Masks the pixels of the photo where the mask is darker than half. Precondition: equal sizes.
 void apply_mask(const image& mask, image& photo);
 
+/// Masks the pixels of the photo that are less than `width` pixels from an edge.
+void mask_border(int width, image& photo);
+
 /// Marks depths as unknown at masked pixels of the photo. Precondition: equal sizes, or an empty
 /// depth map.
 void clear_masked_depths(const image& photo, depth_map& depths);

@@ -9,6 +9,7 @@
 #include "../core/error.hpp"
 #include "load_views.hpp"
 #include "photo_files.hpp"
+#include "scene_archive.hpp"
 
 namespace gs {
 namespace {
@@ -75,12 +76,7 @@ bool any_has_alpha(const std::vector<view>& views) {
     return std::ranges::any_of(views, [](const view& one) { return one.pixels.has_alpha; });
 }
 
-}  // namespace
-
-scene load_scene(const load_options& options, const log_function& log, reader_table readers) {
-    if (options.resolution < 1)
-        throw error("the resolution must be at least 1, not " + std::to_string(options.resolution));
-    const log_function say = log ? log : [](const std::string&) {};
+scene load_opened(const load_options& options, const log_function& say, reader_table readers) {
     scene_description described = describe(options, say, readers);
     std::vector<view> views = views_of(described.images, options, say);
     scene result;
@@ -93,6 +89,31 @@ scene load_scene(const load_options& options, const log_function& log, reader_ta
     result.has_alpha = any_has_alpha(result.train) || any_has_alpha(result.test);
     require_views(result, options);
     return result;
+}
+
+scene load_archive(const load_options& options, const log_function& say, reader_table readers) {
+    const extracted_archive archive(options.data);
+    load_options opened = options;
+    opened.data = archive.folder().string();
+    // An archive may have one folder around the files of the scene.
+    const auto accepts = [&](const reader* one) { return one->probe(opened.data); };
+    if (std::ranges::none_of(readers, accepts)) opened.data = archive.only_entry().string();
+    try {
+        return load_opened(
+            opened, [&](const std::string& line) { say(archive.with_archive_name(line)); }, readers);
+    } catch (const error& problem) {
+        throw error(archive.with_archive_name(problem.what()));
+    }
+}
+
+}  // namespace
+
+scene load_scene(const load_options& options, const log_function& log, reader_table readers) {
+    if (options.resolution < 1)
+        throw error("the resolution must be at least 1, not " + std::to_string(options.resolution));
+    const log_function say = log ? log : [](const std::string&) {};
+    return is_archive(options.data) ? load_archive(options, say, readers)
+                                    : load_opened(options, say, readers);
 }
 
 }  // namespace gs

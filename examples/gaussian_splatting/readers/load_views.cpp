@@ -27,7 +27,7 @@ class undistorted_cameras {
         const lens& d = record.distortion;
         if (d.is_none()) return fitted;
         const key same(fitted.width, fitted.height, fitted.fx, fitted.fy, fitted.cx, fitted.cy, d.k1, d.k2,
-                       d.p1, d.p2);
+                       d.p1, d.p2, d.k3);
         auto found = known_.find(same);
         if (found == known_.end()) {
             const auto pinhole = undistorted_camera(fitted, d);
@@ -52,7 +52,7 @@ class undistorted_cameras {
     }
 
   private:
-    using key = std::tuple<int, int, double, double, double, double, double, double, double, double>;
+    using key = std::tuple<int, int, double, double, double, double, double, double, double, double, double>;
     std::map<key, camera> known_;  ///< most photos share a camera; finding its zoom is slow
     std::set<std::string> models_;
 };
@@ -126,18 +126,22 @@ view load_view(const image_record& record, const fitted_photo& fitted, const cam
     const lens& distortion = record.distortion;
     image photo = read_photo(record.file, fitted.turn);
     image mask = record.mask.empty() ? image() : read_mask(record.mask, photo);
-    depth_map depths =
-        record.depth.empty() ? depth_map() : read_depth_map(record.depth, photo.width, photo.height);
+    depth_map depths = record.depth.empty()
+                           ? depth_map()
+                           : read_depth_map(record.depth, photo.width, photo.height, record.depth_holds);
     if (!distortion.is_none()) {
         photo = undistort(photo, fitted.taken_with, distortion, pinhole);
         if (!record.mask.empty()) mask = undistort(mask, fitted.taken_with, distortion, pinhole);
         if (depths.is_there()) depths = undistort(depths, fitted.taken_with, distortion, pinhole);
     }
     apply_mask(mask, photo);  // before downsampling, to keep masked pixels out of averages
+    mask_border(record.masked_border * fitted.width / record.camera.width, photo);
     clear_masked_depths(photo, depths);
     photo = downsample(photo, scaled.width, scaled.height);
     if (photo.is_all_masked())
-        throw error("the mask " + record.mask.string() + " leaves nothing of its photo");
+        throw error(record.mask.empty()
+                        ? record.file.string() + " is no larger than its masked border"
+                        : "the mask " + record.mask.string() + " leaves nothing of its photo");
     return {record.name, scaled, std::move(photo), resized(depths, scaled.width, scaled.height)};
 }
 

@@ -56,6 +56,8 @@ struct image_record {
     std::string camera_model;     ///< name of the model of `distortion`, for messages
     std::filesystem::path mask;   ///< PNG, see `read_mask`; empty without a mask
     std::filesystem::path depth;  ///< PNG, see `read_depth_map`; empty without a depth map
+    depth_values depth_holds = depth_values::inverse_depth;
+    int masked_border = 0;  ///< width of the edges to mask, in pixels of `camera`
 
     image pixels;            ///< instead of `file`: undistorted, at the final resolution
     depth_map depth_pixels;  ///< may accompany `pixels`, and has their size

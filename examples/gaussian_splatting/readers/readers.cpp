@@ -5,17 +5,19 @@
 
 #include "../core/enumerated.hpp"
 #include "colmap/colmap.hpp"
+#include "opensfm/opensfm.hpp"
+#include "polycam/polycam.hpp"
 #include "reader.hpp"
 #include "synthetic/synthetic.hpp"
 #include "transforms/blender.hpp"
+#include "transforms/nerfstudio.hpp"
 
 namespace gs {
 
 std::span<const reader* const> all_readers() {
     static constexpr const reader* table[] = {
-        &synthetic_reader,
-        &blender_reader,
-        &colmap_reader,
+        &synthetic_reader,  &blender_reader, &colmap_reader,
+        &nerfstudio_reader, &polycam_reader, &opensfm_reader,
     };
     return table;
 }
@@ -23,6 +25,7 @@ std::span<const reader* const> all_readers() {
 std::string accepted_scenes(std::span<const reader* const> readers) {
     std::vector<std::string_view> parts;
     for (const reader* one : readers) parts.push_back(one->accepts);
+    parts.push_back("a .zip archive of such a folder");
     return enumerated(parts, " or ");
 }
 

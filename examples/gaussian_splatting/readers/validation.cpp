@@ -28,8 +28,9 @@ bool has_orthonormal_columns(const glm::dmat3& matrix, double tolerance) {
 bool has_valid_intrinsics(const camera& taken_with, const lens& distortion) {
     constexpr double least_focal_length = 1e-6, largest = 1e9;
     const auto k = taken_with.fisheye ? taken_with.fisheye->k() : std::array<double, 4>{};
-    for (const double value : {taken_with.fx, taken_with.fy, taken_with.cx, taken_with.cy, distortion.k1,
-                               distortion.k2, distortion.p1, distortion.p2, k[0], k[1], k[2], k[3]})
+    for (const double value :
+         {taken_with.fx, taken_with.fy, taken_with.cx, taken_with.cy, distortion.k1, distortion.k2,
+          distortion.p1, distortion.p2, distortion.k3, k[0], k[1], k[2], k[3]})
         if (!(std::abs(value) <= largest)) return false;
     return taken_with.fx >= least_focal_length && taken_with.fy >= least_focal_length;
 }

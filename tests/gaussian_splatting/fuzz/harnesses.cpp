@@ -14,6 +14,10 @@ std::vector<harness> make_harnesses() {
     std::vector<harness> all{{"colmap_binary", colmap_binary},
                              {"colmap_text", colmap_text},
                              {"transforms", transforms},
+                             {"polycam", polycam},
+                             {"opensfm", opensfm},
+                             {"point_cloud", point_cloud},
+                             {"archive", archive},
                              {"image", image}};
     for (const gs::writer* one : gs::all_writers()) {
         if (!one->read) continue;

@@ -60,6 +60,12 @@ std::vector<dense_file> dense_files() {
         return "{\"frames\":[" + repeated(of + ",", 20000) + of + "]}";
     };
     const auto unread = [](const std::string& values) { return "{\"frames\":[],\"unread\":[" + values; };
+    const auto opensfm = [](const std::string& section, const std::string& record) {
+        return "[{" + section + ":{" + repeated(record + ",", 20000) + record + "}}]";
+    };
+    const std::string text_points =
+        "ply\nformat ascii 1.0\nelement vertex 50000\nproperty float x\nproperty float y\n"
+        "property float z\nend_header\n";
     std::string bytes_for_floats = "ply\nformat binary_little_endian 1.0\nelement vertex 50000\n";
     for (const char* name : {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1",
                              "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
@@ -93,6 +99,13 @@ std::vector<dense_file> dense_files() {
          frames(R"({"file_path":")" + std::string(100, 'a') + frame.substr(14) + "}")},
         {"frames with masks", "transforms",
          frames(frame + R"(,"mask_path":")" + std::string(16, 'a') + "\"}")},
+        {"frames with empty masks", "transforms", frames(frame + R"(,"mask_path":""})")},
+        {"points", "opensfm", opensfm(R"("points")", R"("":{"coordinates":[0,0,0],"color":[0,0,0]})")},
+        {"shots", "opensfm",
+         opensfm(R"("shots")", R"("":{"rotation":[0,0,0],"translation":[0,0,0],"camera":""})")},
+        {"cameras", "opensfm",
+         opensfm(R"("cameras")", R"("":{"projection_type":"fisheye","width":1,"height":1,"focal":1})")},
+        {"points in text", "point_cloud", text_points + repeated("0 0 0\n", 50000)},
         {"long texts", "transforms", unread(repeated('"' + std::string(4090, 'a') + "\",", 300) + "1]}")},
         {"a long path", "transforms", "{\"frames\":[{\"file_path\":\"" + repeated("a/", 500000)},
         {"a long number", "transforms", unread(repeated("1", 1000000))},

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
-#include <png.h>
 
 #include <array>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "../../support/bytes.hpp"
 #include "../../support/temporary_folder.hpp"
 #include "image/mask.hpp"
+#include "known_scene.hpp"
 #include "readers/colmap/colmap.hpp"
 #include "readers/load_scene.hpp"
 #include "scene/downsample.hpp"
@@ -27,6 +27,7 @@ using gs_test::error_of;
 using gs_test::says;
 using gs_test::temporary_folder;
 using gs_test::write_file;
+using gs_test::write_gray;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -713,22 +714,6 @@ TEST_CASE("masks exclude black pixels, also in undistorted and downsampled photo
         CHECK(says(error_of_loading(options), {"a.png.png"}));
     }
 }
-
-namespace {
-
-/// One channel of 16 bits.
-void write_gray(const std::filesystem::path& file, int width, int height,
-                const std::vector<std::uint16_t>& values) {
-    std::filesystem::create_directories(file.parent_path());
-    png_image gray{};
-    gray.version = PNG_IMAGE_VERSION;
-    gray.width = static_cast<png_uint_32>(width);
-    gray.height = static_cast<png_uint_32>(height);
-    gray.format = PNG_FORMAT_LINEAR_Y;
-    REQUIRE(png_image_write_to_file(&gray, file.c_str(), 0, values.data(), 0, nullptr) != 0);
-}
-
-}  // namespace
 
 TEST_CASE("depth maps are undistorted and downsampled with their photos, and some photos have none") {
     for (const double bent : {0.0, 0.1}) {

@@ -110,7 +110,8 @@ TEST_CASE("readers: a path that no reader accepts is refused with everything tha
     const temporary_folder folder;
     const gs::load_options options = options_for((folder / "nothing").string());
     CHECK(error_of_loading(options, only_made_up) ==
-          options.data + " does not exist; a scene is a file that ends in .made");
+          options.data +
+              " does not exist; a scene is a file that ends in .made or a .zip archive of such a folder");
     write_file(options.data, "x");
     const std::string refusal = error_of_loading(options, gs::all_readers());
     CHECK(says(refusal, {options.data, "is not a scene"}));

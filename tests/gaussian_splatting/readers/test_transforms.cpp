@@ -198,6 +198,9 @@ TEST_CASE("a camera model in a transforms file is that of its frame, or of all")
     file["camera_model"] = "OPENCV_FISHEYE";
     file["frames"][1]["camera_model"] = "OPENCV";
     write_json(folder / "transforms_train.json", file);
+    CHECK(says(error_of_loading(folder.path()), {"frame 1", "k4", "OPENCV_FISHEYE"}));
+    file["frames"][1]["k4"] = 0;
+    write_json(folder / "transforms_train.json", file);
     const gs::scene scene = load(folder.path());
     CHECK(scene.train[0].camera.fisheye.value().k() == std::array{0.1, -0.02, 0.003, -0.0004});
     CHECK_FALSE(scene.train[1].camera.fisheye);
@@ -209,7 +212,7 @@ TEST_CASE("a camera model in a transforms file is that of its frame, or of all")
     CHECK(says(error_of_loading(folder.path()), {"train_0.png", "folds", "4 degrees"}));
     file["frames"][1]["camera_model"] = "EQUIRECTANGULAR";
     write_json(folder / "transforms_train.json", file);
-    CHECK(says(error_of_loading(folder.path()), {"frame 1", "EQUIRECTANGULAR", "OPENCV_FISHEYE"}));
+    CHECK(says(error_of_loading(folder.path()), {"frame 1", "EQUIRECTANGULAR", "pinhole images"}));
     file["camera_model"] = 5;
     write_json(folder / "transforms_train.json", file);
     CHECK(says(error_of_loading(folder.path()), {"camera_model is not a string"}));

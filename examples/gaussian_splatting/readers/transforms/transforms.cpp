@@ -5,21 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/mat4x4.hpp>
-#include <limits>
-#include <nlohmann/json.hpp>
 
 #include "../../core/error.hpp"
 #include "../../core/sanitize_for_message.hpp"
 #include "../camera_models.hpp"
-#include "json_text.hpp"
+#include "../json_events.hpp"
 #include "transforms_pose.hpp"
 
 namespace gs {
 namespace {
-
-using nlohmann::json;
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// The numbers of a frame or of the whole file. A later value replaces an earlier one.
 class number_fields {
@@ -46,153 +40,120 @@ class number_fields {
 
 transforms_lens lens_called(const std::string* name, const std::string& where) {
     if (!name) throw error(where + ": camera_model is not a string");
+    if (*name == "EQUIRECTANGULAR")
+        throw error(where + ": the camera model EQUIRECTANGULAR, of 360-degree photos, is not supported; " +
+                    "convert the photos to pinhole images first");
     return camera_model_named(*name, where).is_fisheye ? transforms_lens::fisheye : transforms_lens::opencv;
 }
 
-/// The nesting level of the parser. Each level is a bracket inside the previous one.
-enum class level { file, top, frames, frame, matrix, row };
-
-level deeper(level from, int by) { return static_cast<level>(static_cast<int>(from) + by); }
-
-/// Collects frames and numbers while nlohmann's parser reads the file, because a document tree
-/// takes ten times the size of its text. Neither the parser nor this class recurses, so values may
-/// nest deeply.
-class reader final : public json::json_sax_t {
+/// Collects frames and numbers while the parser reads the file. The number of steps to a value
+/// tells its level: top (1), frame (2), field of a frame (3), row (4), cell (5).
+class collector final : public json_events {
   public:
-    /// Keeps references to both.
-    reader(transforms& into, const std::string& text) : all_(into), text_(text) {}
+    static constexpr std::size_t deepest = 5;
+
+    explicit collector(transforms& into) : all_(into) {}
 
     void finish() {
         if (!has_frames_) throw error(all_.where + ": the field frames is missing");
         all_.numbers = numbers_.list();
     }
 
-    bool null() override {
-        const bool is_text = field_ == "camera_model" || field_ == "mask_path";
-        return (ignored_ == 0 && (at_ == level::top || at_ == level::frame) && is_text) ||
-               value(not_a_number, nullptr);
-    }
-    bool boolean(bool) override { return value(not_a_number, nullptr); }
-    bool number_integer(number_integer_t number) override {
-        return value(static_cast<double>(number), nullptr);
-    }
-    bool number_unsigned(number_unsigned_t number) override {
-        return value(static_cast<double>(number), nullptr);
-    }
-    bool number_float(number_float_t number, const string_t&) override { return value(number, nullptr); }
-    bool string(string_t& text) override { return value(not_a_number, &text); }
-    bool binary(binary_t&) override { return false; }  // does not occur in JSON
-    bool start_object(std::size_t) override { return open(true); }
-    bool end_object() override { return close(); }
-    bool start_array(std::size_t) override { return open(false); }
-    bool end_array() override { return close(); }
-
-    bool key(string_t& name) override {
-        field_ = name;
-        return true;
-    }
-
-    bool parse_error(std::size_t byte, const std::string&, const json::exception& problem) override {
-        const bool is_range = dynamic_cast<const json::out_of_range*>(&problem) != nullptr;
-        throw error(all_.where + (is_range ? " holds a number that is too large" : " is not valid JSON") +
-                    line_and_byte(text_, byte));
-    }
-
-  private:
-    bool open(bool is_object) {
-        if (ignored_ == 0 && is_expected(is_object)) {
-            enter();
-        } else {
-            value(not_a_number, nullptr);
-            ++ignored_;
-        }
-        return true;
-    }
-
-    bool is_expected(bool is_object) const {
-        if (at_ == level::file || at_ == level::frames) return is_object;
-        if (at_ == level::top) return !is_object && field_ == "frames";
-        if (at_ == level::frame) return !is_object && field_ == "transform_matrix";
-        return !is_object && at_ == level::matrix;
-    }
-
-    void enter() {
-        at_ = deeper(at_, 1);
-        if (at_ == level::frames) {
-            if (has_frames_) throw error(all_.where + " has the field frames twice");
-            has_frames_ = true;
-        } else if (at_ == level::frame) {
-            all_.frames.emplace_back();
-            frame_ = {};
-        } else if (at_ == level::matrix) {
-            frame_.has_matrix = frame_.is_valid = true;
-            frame_.row = 0;
-        } else if (at_ == level::row) {
+    void begin(const json_path& path, bool is_object) override {
+        if (path.empty() && !is_object) throw error(all_.where + " is not a JSON object");
+        if (path.size() == 1) begin_top_field(path, is_object);
+        if (!in_frames(path)) return;
+        if (path.size() == 2) begin_frame(is_object);
+        if (path.size() == 3) begin_frame_field(path[2].key, is_object);
+        if (path.size() == 4 && in_matrix(path)) {
+            frame_.is_valid &= !is_object;
             frame_.column = 0;
         }
     }
 
-    bool close() {
-        if (ignored_ > 0) {
-            --ignored_;
-            return true;
-        }
-        if (at_ == level::row) {
+    void value(const json_path& path, const json_value& one) override {
+        if (path.empty()) throw error(all_.where + " is not a JSON object");
+        if (path.size() == 1) take_top_field(path[0].key, one);
+        if (!in_frames(path)) return;
+        if (path.size() == 2) begin_frame(false);
+        if (path.size() == 3) take_frame_field(path[2].key, one);
+        if (path.size() == 4 && in_matrix(path)) frame_.is_valid = false;
+        if (path.size() == 5 && in_matrix(path)) take_cell(one.number);
+    }
+
+    void end(const json_path& path) override {
+        if (!in_frames(path)) return;
+        if (path.size() == 4 && in_matrix(path)) {
             frame_.is_valid &= frame_.column == 4;
             ++frame_.row;
-        } else if (at_ == level::matrix) {
-            frame_.is_valid &= frame_.row == 4;
-        } else if (at_ == level::frame) {
-            finish_frame();
         }
-        at_ = deeper(at_, -1);
-        return true;
+        if (path.size() == 3 && in_matrix(path)) frame_.is_valid &= frame_.row == 4;
+        if (path.size() == 2) finish_frame();
     }
 
-    /// Handles a value whose contents are not visited. `number` is NaN, and `text` is null, for
-    /// values of other types.
-    bool value(double number, const std::string* text) {
-        if (ignored_ > 0) return true;
-        switch (at_) {
-            case level::file:
-                throw error(all_.where + " is not a JSON object");
-            case level::top:
-                if (field_ == "frames") throw error(all_.where + ": frames is not an array");
-                if (field_ == "camera_model") all_.lens = lens_called(text, all_.where);
-                numbers_.take(field_, number);
-                break;
-            case level::frames:
-                all_.frames.emplace_back();
-                throw error(where() + " is not a JSON object");
-            case level::frame:
-                take_field(number, text);
-                break;
-            case level::matrix:
-                frame_.is_valid = false;
-                break;
-            case level::row:
-                take_cell(number);
-                break;
-        }
-        return true;
+  private:
+    static bool in_frames(const json_path& path) { return path.size() >= 2 && path[0].key == "frames"; }
+    static bool in_matrix(const json_path& path) { return path[2].key == "transform_matrix"; }
+
+    void begin_top_field(const json_path& path, bool is_object) {
+        if (path[0].key != "frames") return take_top_field(path[0].key, {});
+        if (is_object) throw error(all_.where + ": frames is not an array");
+        if (has_frames_) throw error(all_.where + " has the field frames twice");
+        has_frames_ = true;
     }
 
-    void take_field(double number, const std::string* text) {
-        if (field_ == "file_path") {
-            if (!text) throw error(where() + ": file_path is not a string");
-            all_.frames.back().path = *text;
+    void take_top_field(const std::string& field, const json_value& one) {
+        if (field == "frames") throw error(all_.where + ": frames is not an array");
+        if (field == "camera_model") {
+            if (!one.is_null) all_.lens = lens_called(one.text, all_.where);
+        } else if (field == "ply_file_path") {
+            if (!one.is_null) all_.points = require_text(one, "ply_file_path", all_.where);
+        } else {
+            numbers_.take(field, one.number);
+        }
+    }
+
+    void begin_frame(bool is_object) {
+        all_.frames.emplace_back();
+        frame_ = {};
+        if (!is_object) throw error(where() + " is not a JSON object");
+    }
+
+    void begin_frame_field(const std::string& field, bool is_object) {
+        if (field != "transform_matrix" || is_object) return take_frame_field(field, {});
+        frame_.has_matrix = frame_.is_valid = true;
+        frame_.row = 0;
+    }
+
+    void take_frame_field(const std::string& field, const json_value& one) {
+        transforms_frame& frame = all_.frames.back();
+        if (field == "file_path") {
+            frame.path = require_text(one, "file_path", where());
             frame_.has_path = true;
-        } else if (field_ == "transform_matrix") {
+        } else if (field == "transform_matrix") {
             frame_.has_matrix = true;
             frame_.is_valid = false;
-        } else if (field_ == "mask_path") {
-            if (!text) throw error(where() + ": mask_path is not a string");
-            all_.frames.back().mask = *text;
-        } else if (field_ == "camera_model") {
-            all_.frames.back().lens = lens_called(text, where());
+        } else if (field == "mask_path") {
+            if (!one.is_null) extras().mask = require_text(one, "mask_path", where());
+        } else if (field == "depth_file_path") {
+            if (!one.is_null) extras().depth = require_text(one, "depth_file_path", where());
+        } else if (field == "camera_model") {
+            if (!one.is_null) frame.lens = lens_called(one.text, where());
         } else {
-            frame_.numbers.take(field_, number);
+            frame_.numbers.take(field, one.number);
         }
+    }
+
+    static const std::string& require_text(const json_value& one, const char* field,
+                                           const std::string& where) {
+        if (!one.text) throw error(where + ": " + field + " is not a string");
+        return *one.text;
+    }
+
+    transforms_extras& extras() {
+        auto& extras = all_.frames.back().extras;
+        if (!extras) extras = std::make_unique<transforms_extras>();
+        return *extras;
     }
 
     void take_cell(double number) {
@@ -214,10 +175,6 @@ class reader final : public json::json_sax_t {
     std::string where() const { return all_.where_is(all_.frames.size() - 1); }
 
     transforms& all_;
-    const std::string& text_;
-    level at_ = level::file;
-    std::size_t ignored_ = 0;  ///< number of open brackets in an ignored value
-    std::string field_;        ///< the last key, which names the next value
     number_fields numbers_;
     bool has_frames_ = false;
     struct {
@@ -260,9 +217,8 @@ bool transforms::is_fisheye(std::size_t index) const {
 transforms read_transforms(const std::filesystem::path& file) {
     transforms result;
     result.where = file.string();
-    const std::string text = json_text(file);
-    reader all(result, text);
-    json::sax_parse(text, &all);
+    collector all(result);
+    read_json(file, collector::deepest, all);
     all.finish();
     return result;
 }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,10 +32,16 @@ struct number_field {
     double value;
 };
 
+/// Files that few frames have.
+struct transforms_extras {
+    std::string mask;   ///< path of the mask, or empty
+    std::string depth;  ///< path of the depth map, or empty
+};
+
 struct transforms_frame {
-    std::string path;        ///< path of the photo, possibly without the ending
-    std::string mask;        ///< path of the mask, or empty
-    glm::dmat3 rotation{1};  ///< rotation of the camera pose: see `camera`
+    std::string path;                           ///< path of the photo, possibly without the ending
+    std::unique_ptr<transforms_extras> extras;  ///< null if it has none
+    glm::dmat3 rotation{1};                     ///< rotation of the camera pose: see `camera`
     glm::dvec3 translation{0};
     transforms_lens lens = transforms_lens::unset;
     std::vector<number_field> numbers;
@@ -43,6 +50,7 @@ struct transforms_frame {
 struct transforms {
     std::string where;  ///< name of the file, for messages
     std::deque<transforms_frame> frames;
+    std::string points;  ///< path of the PLY file with points, or empty
     transforms_lens lens = transforms_lens::unset;
     std::vector<number_field> numbers;
 

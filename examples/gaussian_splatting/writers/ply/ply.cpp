@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <string>
@@ -19,12 +17,11 @@
 #include "../../core/atomic_file_write.hpp"
 #include "../../core/error.hpp"
 #include "../../core/file_bytes.hpp"
+#include "../../core/ply_scalar.hpp"
 #include "../../core/sanitize_for_message.hpp"
 
 namespace gs {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "PLY rows are copied as they lie in memory");
 
 /// One float of a Gaussian: its name in the file, its array in the model, and its position in the
 /// array.
@@ -86,82 +83,9 @@ std::string header_of(const std::vector<field>& fields, const gaussians& model) 
     return header + "end_header\n";
 }
 
-enum class scalar_type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-
-std::optional<scalar_type> scalar_type_called(std::string_view name) {
-    using enum scalar_type;
-    constexpr std::array<std::pair<std::string_view, scalar_type>, 16> names = {{{"char", int8},
-                                                                                 {"uchar", uint8},
-                                                                                 {"short", int16},
-                                                                                 {"ushort", uint16},
-                                                                                 {"int", int32},
-                                                                                 {"uint", uint32},
-                                                                                 {"float", float32},
-                                                                                 {"double", float64},
-                                                                                 {"int8", int8},
-                                                                                 {"uint8", uint8},
-                                                                                 {"int16", int16},
-                                                                                 {"uint16", uint16},
-                                                                                 {"int32", int32},
-                                                                                 {"uint32", uint32},
-                                                                                 {"float32", float32},
-                                                                                 {"float64", float64}}};
-    for (const auto& [known, type] : names) {
-        if (name == known) return type;
-    }
-    return std::nullopt;
-}
-
-std::size_t size_of(scalar_type type) {
-    switch (type) {
-        case scalar_type::int8:
-        case scalar_type::uint8:
-            return 1;
-        case scalar_type::int16:
-        case scalar_type::uint16:
-            return 2;
-        case scalar_type::int32:
-        case scalar_type::uint32:
-        case scalar_type::float32:
-            return 4;
-        case scalar_type::float64:
-            break;
-    }
-    return 8;
-}
-
-template <typename T>
-double read_as(const char* bytes) {
-    T value;
-    std::memcpy(&value, bytes, sizeof value);
-    return static_cast<double>(value);
-}
-
-double read_scalar(scalar_type type, const char* bytes) {
-    switch (type) {
-        case scalar_type::int8:
-            return read_as<std::int8_t>(bytes);
-        case scalar_type::uint8:
-            return read_as<std::uint8_t>(bytes);
-        case scalar_type::int16:
-            return read_as<std::int16_t>(bytes);
-        case scalar_type::uint16:
-            return read_as<std::uint16_t>(bytes);
-        case scalar_type::int32:
-            return read_as<std::int32_t>(bytes);
-        case scalar_type::uint32:
-            return read_as<std::uint32_t>(bytes);
-        case scalar_type::float32:
-            return read_as<float>(bytes);
-        case scalar_type::float64:
-            break;
-    }
-    return read_as<double>(bytes);
-}
-
 struct property {
     std::string_view name;  ///< a part of the header
-    scalar_type type;
+    ply_scalar type;
     std::size_t offset;  ///< bytes from the row's beginning
 };
 
@@ -180,7 +104,7 @@ struct header {
 /// The position of a field in the rows of a file.
 struct column {
     field to;
-    scalar_type type;
+    ply_scalar type;
     std::size_t offset;  ///< bytes from the row's beginning
 };
 
@@ -335,7 +259,7 @@ class reader {
 
     void add_property(header& h, const line& l) const {
         const std::string_view name = l.last;
-        const std::optional<scalar_type> type = scalar_type_called(l.words[1]);
+        const std::optional<ply_scalar> type = ply_scalar_called(l.words[1]);
         if (!type || l.count != 3) {
             fail("its property '" + sanitize_for_message(name) + "' has the type '" +
                  sanitize_for_message(l.words[1]) + "', which is not a scalar type");
@@ -408,7 +332,7 @@ class reader {
         float* const values =
             (model.*c.to.array).data() + first * width + static_cast<std::size_t>(c.to.offset);
         for (std::size_t i = 0; i < count; ++i) {
-            const double value = read_scalar(c.type, rows + i * stride + c.offset);
+            const double value = read_ply_scalar(c.type, rows + i * stride + c.offset);
             // NaN fails this condition, too. So do doubles beyond the range of float.
             if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
                 fail("the property '" + c.to.name + "' of vertex " + std::to_string(first + i) +

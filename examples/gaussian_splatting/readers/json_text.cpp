@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <string_view>
 
-#include "../../core/error.hpp"
-#include "../../core/file_bytes.hpp"
-#include "../validation.hpp"
+#include "../core/error.hpp"
+#include "../core/file_bytes.hpp"
+#include "validation.hpp"
 
 namespace gs {
 namespace {
