@@ -135,7 +135,7 @@ view load_view(const image_record& record, const fitted_photo& fitted, const cam
         if (depths.is_there()) depths = undistort(depths, fitted.taken_with, distortion, pinhole);
     }
     apply_mask(mask, photo);  // before downsampling, to keep masked pixels out of averages
-    mask_border(record.masked_border * fitted.width / record.camera.width, photo);
+    mask_border(record.masked_border * fitted.taken_with.width / record.camera.width, photo);
     clear_masked_depths(photo, depths);
     photo = downsample(photo, scaled.width, scaled.height);
     if (photo.is_all_masked())
