@@ -25,10 +25,10 @@ bool is_archive(const std::string& data);
 /// removes it.
 class extracted_archive {
   public:
-    /// Unpacks images and the files of cameras and points. Skips all other files, and those of
-    /// macOS and hidden ones. Throws `error` with the archive, and the entry, if the archive is
-    /// malformed or encrypted, exceeds the limits, or has a symbolic link or an entry outside of the
-    /// folder. Nothing stays on the disk then.
+    /// Unpacks images and the files of cameras and points. Skips all other files, those of macOS,
+    /// and hidden ones. Throws `error` with the archive, and the entry, if the archive is malformed
+    /// or encrypted, exceeds the limits, or has a symbolic link or an entry outside of the folder.
+    /// Nothing stays on the disk then.
     explicit extracted_archive(const std::filesystem::path& archive, const archive_limits& limits = {});
     ~extracted_archive();
     extracted_archive(const extracted_archive&) = delete;
