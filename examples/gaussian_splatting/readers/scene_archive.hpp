@@ -35,8 +35,8 @@ class extracted_archive {
     extracted_archive& operator=(const extracted_archive&) = delete;
 
     const std::filesystem::path& folder() const { return folder_; }
-    /// Returns the only entry of `folder()`, or `folder()` if it has several.
-    std::filesystem::path only_entry() const;
+    /// Returns the folder that is the only entry of `folder()`, or `folder()` if it has others.
+    std::filesystem::path only_folder() const;
     /// Returns a message with the path of the archive in place of the temporary folder.
     std::string with_archive_name(std::string message) const;
 
