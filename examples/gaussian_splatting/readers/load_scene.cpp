@@ -97,7 +97,7 @@ scene load_archive(const load_options& options, const log_function& say, reader_
     opened.data = archive.folder().string();
     // An archive may have one folder around the files of the scene.
     const auto accepts = [&](const reader* one) { return one->probe(opened.data); };
-    if (std::ranges::none_of(readers, accepts)) opened.data = archive.only_entry().string();
+    if (std::ranges::none_of(readers, accepts)) opened.data = archive.only_folder().string();
     try {
         return load_opened(
             opened, [&](const std::string& line) { say(archive.with_archive_name(line)); }, readers);

@@ -181,9 +181,10 @@ void extracted_archive::remove_folder() const {
     std::filesystem::remove_all(folder_, ignored);
 }
 
-std::filesystem::path extracted_archive::only_entry() const {
-    const std::filesystem::directory_iterator first(folder_);
-    return std::distance(first, {}) == 1 ? std::filesystem::directory_iterator(folder_)->path() : folder_;
+std::filesystem::path extracted_archive::only_folder() const {
+    const std::filesystem::directory_iterator entries(folder_);
+    const std::filesystem::path first = entries->path();
+    return std::distance(entries, {}) == 1 && std::filesystem::is_directory(first) ? first : folder_;
 }
 
 std::string extracted_archive::with_archive_name(std::string message) const {

@@ -25,18 +25,18 @@ bool is_archive(const std::string& data);
 /// removes it.
 class extracted_archive {
   public:
-    /// Unpacks images and the files of cameras and points. Skips all other files, and those of
-    /// macOS and hidden ones. Throws `error` with the archive, and the entry, if the archive is
-    /// malformed or encrypted, exceeds the limits, or has a symbolic link or an entry outside of the
-    /// folder. Nothing stays on the disk then.
+    /// Unpacks images and the files of cameras and points. Skips all other files, those of macOS,
+    /// and hidden ones. Throws `error` with the archive, and the entry, if the archive is malformed
+    /// or encrypted, exceeds the limits, or has a symbolic link or an entry outside of the folder.
+    /// Nothing stays on the disk then.
     explicit extracted_archive(const std::filesystem::path& archive, const archive_limits& limits = {});
     ~extracted_archive();
     extracted_archive(const extracted_archive&) = delete;
     extracted_archive& operator=(const extracted_archive&) = delete;
 
     const std::filesystem::path& folder() const { return folder_; }
-    /// Returns the only entry of `folder()`, or `folder()` if it has several.
-    std::filesystem::path only_entry() const;
+    /// Returns the folder that is the only entry of `folder()`, or `folder()` if it has others.
+    std::filesystem::path only_folder() const;
     /// Returns a message with the path of the archive in place of the temporary folder.
     std::string with_archive_name(std::string message) const;
 

@@ -107,6 +107,8 @@ TEST_CASE("archive: errors and messages name the archive, and the temporary file
     write_zip(file, {{"a/readme.txt", "no scene"}});
     CHECK(says(error_of([&] { load(file); }),
                {file.string() + "/a is not a scene", "keyframes", ".zip archive"}));
+    write_zip(file, {{"a.json", "{}"}});
+    CHECK(says(error_of([&] { load(file); }), {file.string() + " is not a scene"}));
     write_zip(file, {{"photo.raw", "?"}});
     CHECK(says(error_of([&] { load(file); }), {"scene.zip", "no files of a scene"}));
     CHECK(temporary.are_gone());

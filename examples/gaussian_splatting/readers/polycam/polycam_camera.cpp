@@ -67,9 +67,10 @@ class fields final : public json_events {
     std::array<std::optional<double>, names.size()> values_;
 };
 
-/// Sets the pose. In the file, the world has y up, and the camera looks along -z with y up.
+/// Sets the pose. In the file, the world has y up, and the camera looks along -z with y up. The
+/// world of the result has z up.
 void set_pose(camera& c, const fields& all, const std::string& where) {
-    const std::array<std::array<double, 4>, 3> to_world = {all.row(2), all.row(0), all.row(1)};  // z up
+    const std::array<std::array<double, 4>, 3> to_world = {all.row(2), all.row(0), all.row(1)};
     glm::dmat3 axes;
     glm::dvec3 center;
     for (int i = 0; i < 3; ++i) {
