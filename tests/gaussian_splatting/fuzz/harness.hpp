@@ -22,7 +22,7 @@ run_function polycam;      ///< the file of one camera
 run_function opensfm;      ///< reconstruction.json
 run_function point_cloud;  ///< points in a PLY file
 run_function archive;      ///< a .zip file, which is unpacked
-run_function image;  ///< of any format; a PNG's checksums are put right first
+run_function image;        ///< of any format; a PNG's checksums are put right first
 
 /// A loader, and the name of its corpus.
 struct harness {
