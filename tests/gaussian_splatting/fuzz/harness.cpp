@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../image/known_leaks.hpp"
 #include "budget.hpp"
 #include "core/error.hpp"
 

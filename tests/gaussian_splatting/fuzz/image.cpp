@@ -39,8 +39,9 @@ bool is_heif(std::string_view bytes) { return bytes.size() > 8 && bytes.substr(4
 
 std::size_t padded(int side) { return (static_cast<std::size_t>(side) + 31) / 32 * 32; }
 
-/// Metadata become objects, one for each EXIF tag of 12 bytes or HEIF box of 8 bytes.
-std::size_t parsing(std::size_t file_bytes) { return 32 * file_bytes; }
+/// Metadata become objects, one for each EXIF tag of 12 bytes or HEIF box of 8 bytes. A JPEG's marker that
+/// is cut off may claim 64 KB.
+std::size_t parsing(std::size_t file_bytes) { return 32 * file_bytes + (64 << 10); }
 
 /// The memory that decoding takes: RGBA; the coefficients of a progressive JPEG, two bytes in each of up to
 /// four planes of whole blocks; some rows, of up to 8 bytes a sample; inflate's window.

@@ -9,6 +9,7 @@
 
 #include "../../support/temporary_folder.hpp"
 #include "image/image.hpp"
+#include "known_leaks.hpp"
 #include "make_images.hpp"
 #include "write_jpeg.hpp"
 

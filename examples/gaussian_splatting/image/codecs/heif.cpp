@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "../../core/sanitize_for_message.hpp"
 #include "codec.hpp"
 
 namespace gs {
@@ -37,7 +38,9 @@ void check(const image_file& file, const heif_error& result) {
         file.refuse(
             "libheif has no decoder for it; install libheif-plugin-libde265 for HEIC or "
             "libheif-plugin-dav1d for AVIF, or convert the photo to JPEG");
-    file.refuse("it is damaged, truncated or of an unknown kind (" + std::string(result.message) + ")");
+    std::string_view why = result.message;
+    if (why.ends_with('\n')) why.remove_suffix(1);
+    file.refuse("it is damaged, truncated or of an unknown kind (" + sanitize_for_message(why) + ")");
 }
 
 /// Loads the decoders of libheif once, before threads decode images.
@@ -46,6 +49,22 @@ void load_decoders() {
         decoders() { heif_init(nullptr); }
         ~decoders() { heif_deinit(); }
     } loaded;
+}
+
+std::uint64_t side(int length) { return static_cast<std::uint64_t>(std::max(length, 0)); }
+
+// Encoders pad small images to tiles, which may be larger than the image.
+constexpr std::uint64_t largest_tile_side = 4096;
+
+/// Refuses images that are huge before the file's own cropping. Bounds the size of tiles and of the
+/// grid that joins them, which need not agree with the header.
+void limit_coded_size(const image_file& file, heif_context* context, const heif_image_handle* photo) {
+    const image_size coded{side(heif_image_handle_get_ispe_width(photo)),
+                           side(heif_image_handle_get_ispe_height(photo))};
+    file.check_size(coded);
+    file.check_density(coded);
+    const std::uint64_t limit = std::max({coded.width, coded.height, largest_tile_side});
+    heif_context_set_maximum_image_size_limit(context, static_cast<int>(limit));
 }
 
 /// Returns the photo that a file contains. It keeps the file open.
@@ -58,14 +77,15 @@ heif_photo primary_image(const image_file& file) {
     check(file, heif_context_read_from_file(context.get(), file.path().c_str(), nullptr));
     heif_image_handle* photo = nullptr;
     check(file, heif_context_get_primary_image_handle(context.get(), &photo));
-    return heif_photo(photo);
+    heif_photo owned(photo);
+    limit_coded_size(file, context.get(), photo);
+    return owned;
 }
 
 // After the rotation and mirroring that the file itself specifies, which decoding applies. EXIF data
 // repeats them, so this codec reads no orientation.
 image_size read_heif_size(const image_file& file) {
     const heif_photo photo = primary_image(file);
-    const auto side = [](int length) { return static_cast<std::uint64_t>(std::max(length, 0)); };
     return {side(heif_image_handle_get_width(photo.get())), side(heif_image_handle_get_height(photo.get()))};
 }
 
@@ -96,7 +116,6 @@ void accept_premultiplied(image& pixels) {
 void read_heif(const image_file& file, image& pixels) {
     const heif_photo photo = primary_image(file);
     const heif_pixels decoded = decode(file, photo);
-    const auto side = [](int length) { return static_cast<std::uint64_t>(std::max(length, 0)); };
     file.check_decoded_size({side(heif_image_get_width(decoded.get(), heif_channel_interleaved)),
                              side(heif_image_get_height(decoded.get(), heif_channel_interleaved))},
                             size_of(pixels));

@@ -75,8 +75,10 @@ class png_reader {
     /// Reads the EXIF data that precedes the pixels; leaves it empty if there is none.
     bool read_exif(std::FILE* file, std::size_t file_bytes, std::span<const std::uint8_t>& exif) {
         if (setjmp(png_jmpbuf(png_))) return false;
-        // A chunk cannot be larger than the file, whatever it claims.
+        // A chunk cannot be larger than the file. By default, libpng only warns of one that claims to
+        // be, and allocates memory for it.
         png_set_chunk_malloc_max(png_, file_bytes);
+        png_set_benign_errors(png_, 0);
         begin(file, PNG_HANDLE_CHUNK_AS_DEFAULT);
         png_bytep bytes = nullptr;
         png_uint_32 count = 0;
@@ -190,7 +192,8 @@ orientation read_png_orientation(const image_file& file) {
     png_reader reader;
     if (!reader.ready()) throw std::bad_alloc();
     std::span<const std::uint8_t> exif;
-    if (!reader.read_exif(file.rewound(), file.size_in_bytes(), exif)) refuse_png(file, reader);
+    // The pixels may be intact although other chunks are not, so only reading them reports damage.
+    if (!reader.read_exif(file.rewound(), file.size_in_bytes(), exif)) return {};
     return orientation_in_exif(exif);
 }
 
