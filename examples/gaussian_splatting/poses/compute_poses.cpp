@@ -6,11 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "../core/atomic_file_write.hpp"
+#include "../core/enumerated.hpp"
 #include "../core/error.hpp"
 #include "../core/file_bytes.hpp"
 #include "../readers/photo_files.hpp"
 #include "child_process.hpp"
 #include "colmap_run.hpp"
+#include "readable_photos.hpp"
 #include "video_frames.hpp"
 
 namespace gs::poses {
@@ -20,6 +22,7 @@ namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
 constexpr const char* record_name = "photos.json";
+constexpr const char* copies_name = "photos";  ///< folder of photos that COLMAP can read
 
 void require_no_poses(const std::string& data) {
     for (const reader* one : all_readers())
@@ -45,8 +48,8 @@ photo_set find_photos(const load_options& source, const fs::path& output) {
         throw error("--output " + output.string() + " is the folder of the photos: choose another one");
     photo_set photos{folder, photo_names(folder, output)};
     if (photos.names.size() < fewest_photos)
-        throw error("--poses auto needs at least " + std::to_string(fewest_photos) +
-                    " photos (.jpg, .jpeg or .png), but " + folder.string() + " has " +
+        throw error("--poses auto needs at least " + std::to_string(fewest_photos) + " photos (" +
+                    enumerated(image_endings(), " or ") + "), but " + folder.string() + " has " +
                     std::to_string(photos.names.size()));
     return photos;
 }
@@ -87,7 +90,7 @@ void link_folder(const fs::path& link, const fs::path& folder) {
 
 /// Links the photos, and masks beside them, where the reader looks for them.
 void link_photos(const fs::path& scene, const photo_set& photos, const std::string& data) {
-    link_folder(scene / "images", photos.folder);
+    if (!fs::exists(scene / copies_name)) link_folder(scene / "images", photos.folder);
     if (const fs::path masks = fs::path(data) / "masks"; fs::is_directory(masks))
         link_folder(scene / "masks", fs::canonical(masks));
 }
@@ -166,7 +169,11 @@ void compute_from_photos(const load_options& source, const fs::path& output, con
     const json record = record_of(photos);
     if (!is_reusable(scene, record, user)) {
         require_installed("colmap", "COLMAP", "colmap");
-        compute_scene(scene, record, user, [&](const fs::path&, stage_runner&) { return photos; });
+        compute_scene(scene, record, user, [&](const fs::path& part, stage_runner&) {
+            if (is_readable_by_colmap(photos)) return photos;
+            fs::create_directory_symlink(copies_name, part / "images");
+            return make_readable(photos, part / copies_name, user);
+        });
     }
     link_photos(scene, photos, source.data);
 }

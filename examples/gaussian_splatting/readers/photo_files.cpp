@@ -8,13 +8,13 @@
 #include <string_view>
 
 #include "../core/error.hpp"
+#include "../image/image.hpp"
 
 namespace gs {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 3> photo_endings{".jpg", ".jpeg", ".png"};
 constexpr std::array<std::string_view, 6> video_endings{".mp4", ".mov", ".mkv", ".avi", ".webm", ".m4v"};
 
 bool ends_like(const fs::path& file, const auto& endings) {
@@ -32,7 +32,7 @@ bool holds_other_images(const fs::path& folder, const fs::path& excluded) {
 
 }  // namespace
 
-bool is_photo_name(const fs::path& file) { return ends_like(file, photo_endings); }
+bool is_photo_name(const fs::path& file) { return ends_like(file, image_endings()); }
 
 bool is_video_file(const fs::path& file) {
     return ends_like(file, video_endings) && fs::is_regular_file(file);

@@ -8,7 +8,7 @@
 
 namespace gs {
 
-/// Returns whether the name ends like that of a photo that both the trainer and COLMAP can read.
+/// Returns whether the name ends like that of a photo: see `image_endings`.
 bool is_photo_name(const std::filesystem::path& file);
 /// Returns whether the path is a file whose name ends like that of a video.
 bool is_video_file(const std::filesystem::path& file);

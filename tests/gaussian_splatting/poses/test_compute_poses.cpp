@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "../image/make_images.hpp"
 #include "fake_programs.hpp"
 #include "poses/child_process.hpp"
 #include "poses/colmap_run.hpp"
@@ -354,4 +355,31 @@ TEST_CASE("photos without poses are refused with the step that is missing") {
     write_file(video, "a video");
     CHECK(says(error_of([&] { load({.data = video.string()}); }),
                {video.string(), "a video without camera poses", "--poses auto"}));
+}
+
+TEST_CASE("photos that COLMAP cannot read are converted, and all photos are trained on") {
+    fixture f(4);
+    constexpr int width = fake_programs::width, height = fake_programs::height;
+    const std::vector<std::uint8_t> gray(4 * width * height, 128);
+    write_file(f.data / "phone/a.webp", webp_of(width, height, gray, 100));
+    write_file(f.data / "phone/B.WEBP", webp_of(width, height, gray, 100));
+    fake_programs fakes;
+    fakes.install();
+    const gs::scene scene = load(f.compute());
+    CHECK(scene.train.size() == 6);
+    CHECK(std::ranges::count_if(scene.train,
+                                [](const gs::view& v) { return v.name.starts_with("phone/"); }) == 2);
+    CHECK(says(f.said, {"converted 2 photos that COLMAP cannot read to PNG"}));
+    CHECK(fs::read_symlink(f.output / "colmap/images") == "photos");
+    CHECK(fs::is_regular_file(f.output / "colmap/photos/phone/B.WEBP.png"));
+    CHECK_FALSE(fs::exists(f.data / "phone/a.webp.png"));
+
+    fs::rename(f.output, f.folder / "moved");
+    CHECK(load({.data = (f.folder / "moved/colmap").string()}).train.size() == 6);
+    f.output = f.folder / "moved";
+    CHECK(load(f.compute()).train.size() == 6);
+    CHECK(says(f.said, {"photos are the same"}));
+
+    write_file(f.data / "phone/c.heic", "no image");
+    CHECK(says(f.refusal(), {"cannot read the image", "c.heic"}));
 }
