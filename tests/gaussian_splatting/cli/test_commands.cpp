@@ -132,6 +132,32 @@ TEST_CASE("train reads a COLMAP scene") {
     CHECK(read_json(folder / "results/metrics.json").at("psnr").is_null());  // no views were held out
 }
 
+TEST_CASE("evaluate leaves out masked pixels, or measures them with --no-masks") {
+    const temporary_folder folder;
+    const fs::path scene = folder / "scene", measured = folder / "measured", all = folder / "all";
+    small_scene{}.write(scene);
+    fs::create_directories(scene / "masks");
+    constexpr std::size_t pixels = std::size_t{width} * height;
+    std::vector<float> right_half(3 * pixels, 1.0F);
+    for (std::size_t i = 0; i < right_half.size(); ++i)
+        if (i % width < width / 2) right_half[i] = 0;
+    for (int i = 0; i < 4; ++i) {
+        // The left half is bright, which no model of the gray photos explains.
+        std::vector<float> photo(3 * pixels, 0.5F);
+        for (std::size_t k = 0; k < photo.size(); ++k)
+            if (k % width < width / 2) photo[k] = 1;
+        gs::write_png(scene / "images" / small_scene::photo(i), width, height, photo);
+        gs::write_png(scene / "masks" / small_scene::photo(i), width, height, right_half);
+    }
+    check_success(training(scene) + words{"-o", (folder / "trained").string(), "-q"});
+    const words evaluation{"evaluate", model_of(folder / "trained", 5).string(), "-d", scene.string(), "-q",
+                           "-o"};
+    check_success(evaluation + words{measured.string()});
+    check_success(evaluation + words{all.string(), "--no-masks"});
+    CHECK(read_json(measured / "metrics.json").at("psnr").get<double>() >
+          read_json(all / "metrics.json").at("psnr").get<double>() + 0.5);
+}
+
 TEST_CASE("models have the coordinates of the scene, far from the origin and in any unit") {
     for (const auto& [offset, unit] : {std::pair(0.0, 1e-4), std::pair(1e4, 1.0), std::pair(0.0, 1e4)}) {
         CAPTURE(offset);

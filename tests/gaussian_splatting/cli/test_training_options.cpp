@@ -193,6 +193,19 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
     check_refusal_without_trace(train_spheres + words{"--effects", "glare"}, {"'glare'", "antialiasing"});
 }
 
+TEST_CASE("the options of --strategy mcmc change the model") {
+    const temporary_folder folder;
+    const auto model = [&](const char* name, const words& options) {
+        check_success(small_training(folder / name) + words{"-q", "--deterministic", "--strategy", "mcmc"} +
+                      options);
+        return read_file(model_of(folder / name, 60));
+    };
+    const std::string usual = model("usual", {});
+    CHECK(model("noise", {"--mcmc-noise", "0"}) != usual);
+    CHECK(model("opacity", {"--mcmc-opacity-penalty", "0.5"}) != usual);
+    CHECK(model("scale", {"--mcmc-scale-penalty", "0.5"}) != usual);
+}
+
 TEST_CASE("--quiet prints nothing") {
     const temporary_folder folder;
     const outcome o = run(small_training(folder.path()) + words{"--quiet"});
