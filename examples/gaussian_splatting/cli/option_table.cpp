@@ -188,8 +188,8 @@ rows run_options(settings& s) {
          {.names = "--deterministic",
           .commands = {train},
           .value = flag(s.deterministic),
-          .help = "Makes runs with the same seed on the same machine write the same model bit for bit, with "
-                  "any number of threads; training takes longer"}});
+          .help = "Makes runs with the same seed write the same model bit for bit, with any number of "
+                  "threads; training takes longer"}});
 }
 
 rows length_options(settings& s) {
@@ -395,7 +395,7 @@ std::string purpose_of(command c) {
         case train:
             return "Trains Gaussians on the photos of a scene";
         case evaluate:
-            return "Measures a saved model on the held-out views of a scene";
+            return "Measures a saved model on the held-out views of a scene, or without --eval on all views";
         case render:
             return "Draws a saved model from the cameras of a scene or from an orbit";
         case inspect:
