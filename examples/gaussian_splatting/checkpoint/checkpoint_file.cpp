@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "checkpoint_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 #include "../core/atomic_file_write.hpp"
 #include "../core/error.hpp"
 #include "../core/file_bytes.hpp"
+#include "../core/parse_json.hpp"
 
 namespace gs {
 namespace {
@@ -25,7 +28,7 @@ constexpr const char* metadata_key = "__metadata__";
 constexpr const char* format_key = "format";
 constexpr const char* format = "warpagg checkpoint 1";
 constexpr const char* checksum_key = "crc32";
-constexpr std::uint64_t most_header_bytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t most_header_bytes = std::uint64_t{1} << 24;
 
 std::size_t size_of_element(const std::string& element) {
     if (element == "U8") return 1;
@@ -50,6 +53,14 @@ std::string checksum_of(const json& header, const state_archive::array_map& arra
     for (const auto& [name, array] : arrays)
         checksum = continued(checksum, array.bytes.data(), array.bytes.size());
     return std::to_string(checksum);
+}
+
+/// Returns when the content of a file is on the disk, so that it survives a loss of power.
+void flush_to_disk(const std::filesystem::path& file) {
+    const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    fsync(descriptor);
+    close(descriptor);
 }
 
 /// Reads a checkpoint. Its functions throw `error` for a damaged file.
@@ -85,7 +96,7 @@ class checkpoint_reader {
         std::string text(length, '\0');
         read_bytes(text.data(), text.size());
         data_bytes_ = file_.size - sizeof length - length;
-        json header = json::parse(text, nullptr, false);
+        json header = parse_json<json>(text, "the header of the checkpoint " + file_.name);
         if (!header.is_object()) refuse("its header is no JSON object");
         return header;
     }
@@ -157,6 +168,7 @@ void write_checkpoint(const std::filesystem::path& file, const state_archive& ar
             out.write(reinterpret_cast<const char*>(array.bytes.data()),
                       static_cast<std::streamsize>(array.bytes.size()));
     });
+    flush_to_disk(file);
 }
 
 state_archive read_checkpoint(const std::filesystem::path& file) { return checkpoint_reader(file).read(); }

@@ -3,8 +3,10 @@
 #include "checkpoint_folder.hpp"
 
 #include <charconv>
+#include <new>
 #include <ranges>
 #include <string>
+#include <vector>
 
 #include "../core/error.hpp"
 #include "checkpoint_file.hpp"
@@ -33,8 +35,8 @@ fs::path checkpoint_folder::file_of(int iteration) const {
 
 std::map<int, fs::path> checkpoint_folder::files() const {
     std::map<int, fs::path> all;
-    std::error_code failed;
-    for (const auto& entry : fs::directory_iterator(folder_, failed))
+    if (!fs::exists(folder_)) return all;
+    for (const auto& entry : fs::directory_iterator(folder_))
         if (const auto iteration = iteration_in(entry.path().filename().string()))
             all[*iteration] = entry.path();
     return all;
@@ -54,10 +56,18 @@ void checkpoint_folder::write(int iteration, const state_archive& archive, std::
 
 std::optional<checkpoint_folder::found_checkpoint> checkpoint_folder::newest(const log_function& warn) const {
     const auto all = files();
+    std::vector<fs::path> damaged;
     for (const auto& [iteration, file] : all | std::views::reverse) try {
-            return found_checkpoint{iteration, file, read_checkpoint(file)};
-        } catch (const error& damaged) {
-            warn(damaged.what());
+            found_checkpoint found{iteration, file, read_checkpoint(file)};
+            // Damaged files must not count when old checkpoints are removed.
+            for (const fs::path& bad : damaged) fs::rename(bad, bad.string() + ".damaged");
+            return found;
+        } catch (const error& problem) {
+            warn(problem.what());
+            damaged.push_back(file);
+        } catch (const std::bad_alloc&) {
+            warn("there is not enough memory for the checkpoint " + file.string());
+            damaged.push_back(file);
         }
     if (all.empty()) return {};
     throw error("all checkpoints in " + folder_.string() +

@@ -29,7 +29,8 @@ class checkpoint_folder {
     void write(int iteration, const state_archive& archive, std::size_t keep) const;
 
     /// Returns the newest checkpoint that is not damaged, or nothing if no checkpoint exists.
-    /// Passes one line per damaged checkpoint to `warn`. Throws `error` if all are damaged.
+    /// Passes one line per damaged checkpoint to `warn`, and adds ".damaged" to its name. Throws
+    /// `error` if all are damaged; then no name changes.
     std::optional<found_checkpoint> newest(const log_function& warn) const;
 
   private:

@@ -11,13 +11,18 @@ namespace gs {
 namespace {
 
 template <class T>
-void read(const std::string& name, const std::string& text, T& value) {
+bool read(const std::string& text, T& value) {
     const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failed != std::errc() || end != text.data() + text.size())
-        throw error("the checkpoint has the value '" + text + "' of " + name + ", which is no number");
+    return failed == std::errc() && end == text.data() + text.size();
 }
 
 }  // namespace
+
+void state_archive::refuse(std::string_view name, const std::string& found) const {
+    throw error(
+        "the checkpoint has " + found + " for " + full_name(name) +
+        ", so another version of this program wrote it: give --overwrite to train from the beginning");
+}
 
 bool state_archive::has(std::string_view name) const {
     return values_.contains(full_name(name)) || arrays_.contains(full_name(name));
@@ -25,15 +30,16 @@ bool state_archive::has(std::string_view name) const {
 
 const std::string& state_archive::text_of(std::string_view name) const {
     const auto found = values_.find(full_name(name));
-    if (found == values_.end()) throw error("the checkpoint has no value of " + full_name(name));
+    if (found == values_.end()) refuse(name, "no value");
     return found->second;
 }
 
-const state_archive::array& state_archive::array_of(std::string_view name, std::size_t element_size) const {
+const state_archive::array& state_archive::array_of(std::string_view name, const std::string& element,
+                                                    std::size_t size) const {
     const auto found = arrays_.find(full_name(name));
-    if (found == arrays_.end()) throw error("the checkpoint has no array " + full_name(name));
-    if (found->second.bytes.size() % element_size != 0)
-        throw error("the checkpoint has an array " + full_name(name) + " of the wrong size");
+    if (found == arrays_.end()) refuse(name, "no array");
+    if (found->second.element != element || found->second.bytes.size() % size != 0)
+        refuse(name, "an array of the wrong type");
     return found->second;
 }
 
@@ -44,13 +50,13 @@ std::string state_archive::text_of_number(double value) {
 }
 
 void state_archive::read_number(std::string_view name, double& value) const {
-    read(full_name(name), text_of(name), value);
+    if (!read(text_of(name), value)) refuse(name, "no number");
 }
 void state_archive::read_number(std::string_view name, std::int64_t& value) const {
-    read(full_name(name), text_of(name), value);
+    if (!read(text_of(name), value)) refuse(name, "no number");
 }
 void state_archive::read_number(std::string_view name, std::uint64_t& value) const {
-    read(full_name(name), text_of(name), value);
+    if (!read(text_of(name), value)) refuse(name, "no number");
 }
 
 }  // namespace gs

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace gs {
@@ -67,7 +68,9 @@ class state_archive {
 
   private:
     const std::string& text_of(std::string_view name) const;
-    const array& array_of(std::string_view name, std::size_t element_size) const;
+    const array& array_of(std::string_view name, const std::string& element, std::size_t size) const;
+    /// Throws `error` for a value or an array that this program cannot have written.
+    [[noreturn]] void refuse(std::string_view name, const std::string& found) const;
     std::string full_name(std::string_view name) const { return prefix_ + std::string(name); }
 
     static std::string text_of_number(double value);
@@ -110,6 +113,8 @@ void state_archive::exchange(std::string_view name, T& value) {
         if (loads_) {
             widest<T> read{};
             read_number(name, read);
+            if constexpr (std::is_integral_v<T> && !std::same_as<T, bool>)
+                if (!std::in_range<T>(read)) refuse(name, "a number out of range");
             value = static_cast<T>(read);
         } else {
             values_[full_name(name)] = text_of_number(static_cast<widest<T>>(value));
@@ -121,7 +126,7 @@ template <class T>
 void state_archive::exchange(std::string_view name, std::vector<T>& elements) {
     static_assert(std::is_trivially_copyable_v<T>);
     if (loads_) {
-        const array& saved = array_of(name, sizeof(T));
+        const array& saved = array_of(name, element_name<T>(), sizeof(T));
         elements.resize(saved.bytes.size() / sizeof(T));
         if (!elements.empty()) std::memcpy(elements.data(), saved.bytes.data(), saved.bytes.size());
     } else {

@@ -7,6 +7,7 @@
 
 #include "../core/error.hpp"
 #include "../core/file_bytes.hpp"
+#include "../core/parse_json.hpp"
 #include "../core/sanitize_for_message.hpp"
 #include "nearest_word.hpp"
 
@@ -17,7 +18,7 @@ using nlohmann::ordered_json;
 using words = std::vector<std::string>;
 
 ordered_json options_in(const std::string& file) {
-    ordered_json all = ordered_json::parse(file_bytes(file), nullptr, false);
+    ordered_json all = parse_json(file_bytes(file), "--config " + file);
     if (!all.is_object()) throw error("--config " + file + " is no JSON object of options");
     const auto given = all.find(given_options_key);
     if (given == all.end()) return all;

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* checkpoints_name = "checkpoints";
+constexpr const char *checkpoints_name = "checkpoints", *replaced_name = "replaced";
 /// The results of training that belong to one run.
 constexpr std::array result_names{"point_cloud", "test",       "settings.json",  "metrics.json",
                                   "metrics.csv", "metrics.md", "exposures.json", checkpoints_name};
@@ -37,9 +37,21 @@ void require_no_earlier_run(const settings& s) {
             "--output");
 }
 
-void remove_earlier_run(const fs::path& output) {
-    for (const char* name : result_names) fs::remove_all(output / name);
+void set_aside_earlier_run(const fs::path& output) {
+    const fs::path replaced = output / replaced_name;
+    const bool was_interrupted = fs::exists(replaced);
+    fs::create_directory(replaced);
+    for (const char* name : result_names) {
+        if (!fs::exists(output / name)) continue;
+        if (was_interrupted) {
+            fs::remove_all(output / name);
+        } else {
+            fs::rename(output / name, replaced / name);
+        }
+    }
 }
+
+void remove_replaced_run(const fs::path& output) { fs::remove_all(output / replaced_name); }
 
 std::optional<checkpoint_folder::found_checkpoint> checkpoint_to_resume(const settings& s,
                                                                         const log_function& warn) {
@@ -52,11 +64,18 @@ std::optional<checkpoint_folder::found_checkpoint> checkpoint_to_resume(const se
 }
 
 std::string changed_options(const nlohmann::ordered_json& before, const nlohmann::ordered_json& now) {
-    constexpr std::array ignored{given_options_key, "output", "save_iterations", "checkpoint_iterations"};
+    constexpr std::array ignored{
+        "output",           "save_iterations", "checkpoint_iterations", "checkpoint_every", "log_level",
+        "keep_checkpoints", "device"};
+    const auto is_given = [](const nlohmann::ordered_json& all, const std::string& name) {
+        const auto given = all.find(given_options_key);
+        return given != all.end() && given->contains(name);
+    };
     std::string changes;
     for (const auto& [name, value] : now.items()) {
         const auto old = before.find(name);
-        if (old == before.end() || *old == value || std::ranges::find(ignored, name) != ignored.end())
+        if (old == before.end() || *old == value || std::ranges::find(ignored, name) != ignored.end() ||
+            (!is_given(before, name) && !is_given(now, name)))
             continue;
         changes += (changes.empty() ? "" : ", ") + name + " " + old->dump() + " to " + value.dump();
     }

@@ -9,7 +9,13 @@ namespace {
 
 volatile std::sig_atomic_t received_signal = 0;
 
-void record(int number) { received_signal = number; }
+void record(int number) {
+    if (received_signal != 0) {  // the second one ends the process
+        std::signal(number, SIG_DFL);
+        std::raise(number);
+    }
+    received_signal = number;
+}
 
 /// Sets a handler, unless the process ignores the signal, as programs do in the background.
 void set_handler(int number, void (*handler)(int)) {
@@ -17,7 +23,7 @@ void set_handler(int number, void (*handler)(int)) {
     sigaction(number, nullptr, &action);
     if (action.sa_handler == SIG_IGN) return;
     action.sa_handler = handler;
-    action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);  // the second signal ends the process
+    action.sa_flags = SA_RESTART;
     sigaction(number, &action, nullptr);
 }
 
@@ -25,13 +31,11 @@ void set_handler(int number, void (*handler)(int)) {
 
 stop_signals::stop_signals() {
     received_signal = 0;
-    set_handler(SIGINT, record);
-    set_handler(SIGTERM, record);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) set_handler(number, record);
 }
 
 stop_signals::~stop_signals() {
-    set_handler(SIGINT, SIG_DFL);
-    set_handler(SIGTERM, SIG_DFL);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) set_handler(number, SIG_DFL);
 }
 
 int stop_signals::received() const { return received_signal; }

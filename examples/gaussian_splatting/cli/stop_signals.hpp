@@ -7,8 +7,8 @@
 
 namespace gs::cli {
 
-/// While an object exists, the first SIGINT (Ctrl-C) or SIGTERM does not end the process, but is
-/// recorded. A second one ends it. At most one object may exist.
+/// While an object exists, the first SIGINT (Ctrl-C), SIGTERM or SIGHUP (a closed terminal) does not
+/// end the process, but is recorded. A second one ends it. At most one object may exist.
 class stop_signals {
   public:
     stop_signals();

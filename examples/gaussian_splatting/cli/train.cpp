@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "../core/error.hpp"
+#include "../core/parse_json.hpp"
 #include "../training/initialize.hpp"
 #include "../writers/writer.hpp"
 #include "command_context.hpp"
@@ -76,8 +77,8 @@ class training_run {
     train::train_events events();
     void warn(const std::string& line);
     void save(int iteration);
-    /// Removes the earlier run that --overwrite replaces. Call it before the first result is written, so
-    /// that a training that fails removes nothing.
+    /// Sets aside the earlier run that --overwrite replaces. Call it before the first result is
+    /// written. `write_reports` removes that run, so that a training that fails loses nothing.
     void replace_earlier_run();
     void test(int iteration);
     void save_checkpoint(int iteration, state_archive& archive);
@@ -96,7 +97,7 @@ class training_run {
     scene scene_;
     train::train_options options_;
     output_folder output_;
-    bool replaces_ = s_.overwrite;  ///< whether an earlier run is still to be removed
+    bool replaces_ = s_.overwrite;  ///< whether an earlier run is still to be set aside
     progress_bar bar_;
     training_measures measures_;
 };
@@ -135,12 +136,13 @@ void training_run::resume() {
     archive.exchange("settings", settings_text);
     archive.exchange("tests", tests);
     archive.exchange("training_psnr", measures_.last.psnr);
-    measures_.tests = nlohmann::ordered_json::parse(tests);
+    measures_.tests = parse_json(tests, "the value of tests in " + checkpoint_->file.string());
     options_.resume_from = &archive;
     context_.say("continuing after iteration " + std::to_string(checkpoint_->iteration) + ", from " +
                  checkpoint_->file.string());
     const std::string changes =
-        changed_options(nlohmann::ordered_json::parse(settings_text), resolved_settings());
+        changed_options(parse_json(settings_text, "the value of settings in " + checkpoint_->file.string()),
+                        resolved_settings());
     if (!changes.empty()) context_.say("changed options: " + changes);
 }
 
@@ -169,21 +171,23 @@ void training_run::warn(const std::string& line) {
 
 /// A checkpoint that cannot be written is no reason to end training, except after an interruption.
 void training_run::save_checkpoint(int iteration, state_archive& archive) {
-    std::string settings_text = resolved_settings().dump(), tests = measures_.tests.dump();
+    std::string tests = measures_.tests.dump();
+    std::string settings_text =
+        resolved_settings().dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     archive.exchange("settings", settings_text);
     archive.exchange("tests", tests);
     archive.exchange("training_psnr", measures_.last.psnr);
-    replace_earlier_run();
     try {
+        replace_earlier_run();
         checkpoints_in(s_.output).write(iteration, archive, s_.keep_checkpoints);
-    } catch (const error& failed) {
+    } catch (const std::exception& failed) {
         if (signals_->received() != 0) throw;
         warn(failed.what() + std::string("; training continues"));
     }
 }
 
 void training_run::replace_earlier_run() {
-    if (replaces_) remove_earlier_run(s_.output);
+    if (replaces_) set_aside_earlier_run(s_.output);
     replaces_ = false;
 }
 
@@ -211,11 +215,12 @@ void training_run::train() {
     measures_.result = train::train(*engine_, scene_, options_, events());
     const int last = measures_.result.iterations;
     if (last < options_.schedule.iterations)
-        throw interruption(signals_->received(),
-                           "training was interrupted after iteration " + std::to_string(last) +
-                               "; to continue it, add --resume to the same options; to finish it here, add "
-                               "--resume --iterations " +
-                               std::to_string(last));
+        throw interruption(
+            signals_->received(),
+            "training was interrupted after iteration " + std::to_string(last) +
+                "; to continue it, add --resume to the same options; to finish it here, also set "
+                "--iterations " +
+                std::to_string(last));
     signals_.reset();
     measures_.stages = engine_->profile().times();
     measures_.pairs_per_iteration =
@@ -244,6 +249,7 @@ void training_run::write_reports() {
     write_json(output_.path() / "settings.json", resolved_settings());
     options_.features.write_results(*engine_, scene_, output_.path());
     write_metrics(output_.path(), metrics, measures_.held_out);
+    remove_replaced_run(output_.path());
 }
 
 void training_run::print_summary() const {

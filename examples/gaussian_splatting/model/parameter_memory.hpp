@@ -62,7 +62,8 @@ class parameter_memory {
     }
     /// Returns whether the arrays have the sizes for this number of Gaussians and this SH degree.
     bool fits(std::size_t count, int sh_degree) const {
-        bool fits = gaussians_with_sh_ <= count;
+        bool fits = gaussians_with_sh_ == count ||
+                    (gaussians_with_sh_ < count && gaussians_with_sh_ % block_length == 0);
         for (std::size_t p = 0; p < parameter_count; ++p) {
             const std::size_t rows = is_view_dependent(p) ? gaussians_with_sh_ : count;
             fits = fits &&

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../checkpoint/exchange_buffer.hpp"
+#include "../core/error.hpp"
 #include "../device/device.hpp"
 #include "ordered_sums.hpp"
 
@@ -49,6 +50,9 @@ class adam_parameters {
         exchange_buffer(archive, device_, "values", values_);
         exchange_buffer(archive, device_, "first_moments", first_);
         exchange_buffer(archive, device_, "second_moments", second_);
+        for (const auto* memory : {&values_, &first_, &second_})
+            if (memory->size() != Width * rows())
+                throw error("the checkpoint has learned values that do not fit their number of steps");
     }
 
     std::size_t rows() const { return steps_.size(); }

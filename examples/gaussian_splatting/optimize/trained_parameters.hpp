@@ -18,8 +18,10 @@ struct trained_parameters {
 
     /// Returns whether all arrays have the sizes for this number of Gaussians and this SH degree.
     bool fits(std::size_t count, int sh_degree) const {
+        const std::size_t with_sh = values.gaussians_with_sh();
         return values.fits(count, sh_degree) && first.fits(count, sh_degree) &&
-               second.fits(count, sh_degree) && last_step.size() == count;
+               second.fits(count, sh_degree) && last_step.size() == count &&
+               first.gaussians_with_sh() == with_sh && second.gaussians_with_sh() == with_sh;
     }
     /// Saves or loads all parameters. Waits for the device.
     void exchange(state_archive& archive, Device& device) {

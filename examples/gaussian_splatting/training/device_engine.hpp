@@ -217,7 +217,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
         archive.exchange("steps", steps_);
         trained_.exchange(archive, device_);
         exchange_buffer(archive, device_, "statistics", seen_);
-        if (!trained_.fits(count_, sh_degree_) || seen_.size() != count_)
+        if (sh_degree_ < 0 || sh_degree_ > 3 || !trained_.fits(count_, sh_degree_) || seen_.size() != count_)
             throw error("the checkpoint has arrays that do not fit its number of Gaussians");
         exchange_lists(archive);
         std::uint64_t trained_pairs = pairs();
@@ -234,6 +234,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
         std::uint64_t capacity = renderer_.reserved_instances();
         archive.exchange("level", level);
         archive.exchange("list_capacity", capacity);
+        level = std::min(level, views_.levels() - 1);  // the run may have fewer
         if (level != level_) set_level(level);
         std::vector<std::uint64_t> pixels;
         for (const photo& shot : views_.train(level_)) pixels.push_back(shot.pixels());

@@ -58,6 +58,7 @@ class device_views {
                         " sizes, so they cannot be halved " + std::to_string(level) + " times");
         return train_[level];
     }
+    std::size_t levels() const { return train_.size(); }
     const std::vector<photo>& smallest() const { return train_.back(); }
     const photo& held_out(std::size_t view) const { return held_out_[view]; }
     /// Returns the centers of the training cameras, in device memory.

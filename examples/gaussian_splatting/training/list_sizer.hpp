@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../checkpoint/exchange_buffer.hpp"
+#include "../core/error.hpp"
 #include "../device/device.hpp"
 #include "../render/renderer.hpp"
 
@@ -35,8 +36,11 @@ class list_sizer {
     }
     /// Saves or loads the lengths. Waits for the device.
     void exchange(state_archive& archive) {
+        const std::size_t views = counts_.size();
         exchange_buffer(archive, device_, "lengths", lengths_);
         archive.exchange("counts", counts_);
+        if (counts_.size() != views || lengths_.size() != views)
+            throw error("the checkpoint has lengths of tile lists that do not fit its views");
     }
     /// Returns the address in device memory where a step stores the length of this view.
     std::uint64_t* length(std::size_t view) { return lengths_.data() + view; }

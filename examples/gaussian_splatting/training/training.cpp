@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "../core/error.hpp"
+#include "../core/parse_json.hpp"
 #include "../core/sanitize_for_message.hpp"
 #include "view_order.hpp"
 
@@ -46,10 +47,16 @@ std::string photos_of(const scene& scene) {
     return names.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
+/// Returns the place, the unit and the extent of the scene, which its cameras determine.
+std::string cameras_of(const scene& scene) {
+    const normalization& n = scene.normalization;
+    return nlohmann::json({n.origin.x, n.origin.y, n.origin.z, n.scale, scene.extent()}).dump();
+}
+
 /// Throws `error` if the training photos are not those of a checkpoint.
 void require_photos(const std::string& in_checkpoint, const scene& scene) {
     if (in_checkpoint == photos_of(scene)) return;
-    const auto saved = nlohmann::json::parse(in_checkpoint, nullptr, false);
+    const auto saved = parse_json(in_checkpoint, "the list of photos in the checkpoint");
     for (std::size_t i = 0; i < std::max(saved.size(), scene.train.size()); ++i) {
         const std::string before = i < saved.size() ? saved[i].dump() : "none",
                           now = i < scene.train.size() ? '"' + scene.train[i].name + '"' : "none";
@@ -63,7 +70,9 @@ void require_photos(const std::string& in_checkpoint, const scene& scene) {
 void exchange_reports(state_archive& archive, std::map<std::string, nlohmann::ordered_json>& reports) {
     std::string text = nlohmann::ordered_json(reports).dump();
     archive.exchange("reports", text);
-    reports = nlohmann::ordered_json::parse(text).get<std::map<std::string, nlohmann::ordered_json>>();
+    reports.clear();
+    const auto saved = parse_json(text, "the value of reports in the checkpoint");
+    for (const auto& [name, report] : saved.items()) reports[name] = report;
 }
 
 }  // namespace
@@ -155,7 +164,8 @@ void training::add_reports(const train_events& events) {
     };
     add({phase::observe, "test", tests, call(events.test)});
     add_checkpoints(events);
-    add({phase::observe, "save", saves, call(events.save)});
+    save_ = call(events.save);
+    add({phase::observe, "save", saves, save_});
 }
 
 void training::add_checkpoints(const train_events& events) {
@@ -195,6 +205,13 @@ void training::exchange(state_archive& archive) {
         std::string photos = photos_of(scene_);
         archive.exchange("photos", photos);
         require_photos(photos, scene_);
+        std::string cameras = cameras_of(scene_);
+        archive.exchange("cameras", cameras);
+        if (cameras != cameras_of(scene_))
+            throw error(
+                "the cameras or the points of the scene have changed since the checkpoint: restore the "
+                "scene, "
+                "or give --overwrite to train from the beginning");
         archive.exchange("iteration", finished_);
         archive.exchange("size_level", level_);
         double seconds_so_far = archive.loads() ? 0 : seconds();
@@ -214,6 +231,8 @@ void training::exchange(state_archive& archive) {
 void training::restore(state_archive& checkpoint) {
     exchange(checkpoint);
     checked_ = finished_;
+    level_ = std::min(level_, schedule_.num_downscales);
+    if (finished_ < 1) throw error("the checkpoint is from iteration " + std::to_string(finished_));
     if (finished_ > schedule_.iterations)
         throw error("the checkpoint is from iteration " + std::to_string(finished_) +
                     ", after the last iteration " + std::to_string(schedule_.iterations) +
@@ -227,6 +246,8 @@ train_result training::run() {
     }
     engine_.profile().wait();
     start_ = clock_();
+    // The checkpoint of an iteration precedes its save, which an interruption can prevent.
+    if (options_.save_iterations.contains(finished_)) save_(finished_);
     for (int iteration = finished_ + 1; iteration <= schedule_.iterations && !interrupted_; ++iteration) {
         interrupted_ = is_interrupted_();
         restructured_ = false;

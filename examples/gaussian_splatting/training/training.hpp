@@ -180,6 +180,7 @@ class training {
     train::schedule schedule_;
     std::vector<action> actions_;
     std::vector<std::function<void(state_archive&)>> states_;
+    std::function<void(int iteration)> save_;
     int finished_ = 0;  ///< last finished iteration
     std::function<bool()> is_interrupted_;
     bool interrupted_ = false;  ///< whether training ends after this iteration

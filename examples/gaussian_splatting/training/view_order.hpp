@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "../checkpoint/state_archive.hpp"
+#include "../core/error.hpp"
 
 namespace gs::train {
 
@@ -20,7 +22,8 @@ inline void exchange_random(state_archive& archive, std::string_view name, std::
     text << random;
     std::string state = text.str();
     archive.exchange(name, state);
-    std::istringstream(state) >> random;
+    if (!(std::istringstream(state) >> random))
+        throw error("the checkpoint has an invalid state of random numbers");
 }
 
 /// Returns each view once in random order, then each view again in another random order, and so on.
@@ -38,8 +41,12 @@ class view_order {
         return order_[next_++];
     }
     void exchange(state_archive& archive) {
+        std::vector<std::size_t> views(order_.size());
+        std::iota(views.begin(), views.end(), std::size_t{0});
         archive.exchange("views", order_);
         archive.exchange("next_view", next_);
+        if (next_ > order_.size() || !std::ranges::is_permutation(order_, views))
+            throw error("the checkpoint has an invalid order of views");
         exchange_random(archive, "random_views", random_);
     }
 

@@ -118,14 +118,40 @@ TEST_CASE("a checkpoint is refused if it is truncated at any byte, or has more b
     CHECK(says(error_of([&] { gs::read_checkpoint(folder / "missing"); }), {"cannot read", "missing"}));
 }
 
+TEST_CASE("a checkpoint whose header nests too deeply or is too long is refused") {
+    const temporary_folder folder;
+    const fs::path file = folder / "state.safetensors";
+    const auto refusal_of = [&](const std::string& header) {
+        const std::uint64_t length = header.size();
+        gs_test::write_file(file,
+                            std::string(reinterpret_cast<const char*>(&length), sizeof length) + header);
+        return error_of([&] { gs::read_checkpoint(file); });
+    };
+    const std::string deep =
+        "{\"a\":{\"shape\":" + std::string(200000, '[') + std::string(200000, ']') + "}}";
+    CHECK(says(refusal_of(deep), {file.string(), "no valid JSON"}));
+    CHECK(says(refusal_of(std::string(std::size_t{1} << 25, ' ')), {file.string(), "truncated"}));
+    CHECK(says(refusal_of("{}"), {file.string(), "no checkpoint of this program"}));
+}
+
 TEST_CASE("an archive names the value or array that it lacks") {
-    state_archive archive({{"word", "seven"}}, {{"odd", {"U8", std::vector<std::byte>(3)}}});
+    state_archive archive(
+        {{"word", "seven"}, {"large", "300"}, {"negative", "-1"}},
+        {{"odd", {"F32", std::vector<std::byte>(3)}}, {"whole", {"I32", std::vector<std::byte>(8)}}});
     int number = 0;
+    unsigned char small = 0;
+    std::size_t count = 0;
     std::vector<float> floats;
-    CHECK(error_of([&] { archive.exchange("nothing", number); }) == "the checkpoint has no value of nothing");
-    CHECK(says(error_of([&] { archive.exchange("word", number); }), {"'seven'", "word"}));
-    CHECK(error_of([&] { archive.exchange("nothing", floats); }) == "the checkpoint has no array nothing");
-    CHECK(says(error_of([&] { archive.exchange("odd", floats); }), {"odd", "wrong size"}));
+    const auto problem = [&](const char* name, auto& member) {
+        return error_of([&] { archive.exchange(name, member); });
+    };
+    CHECK(says(problem("nothing", number), {"no value for nothing", "--overwrite"}));
+    CHECK(says(problem("word", number), {"no number for word"}));
+    CHECK(says(problem("large", small), {"a number out of range for large"}));
+    CHECK(says(problem("negative", count), {"for negative"}));
+    CHECK(says(problem("nothing", floats), {"no array for nothing"}));
+    CHECK(says(problem("odd", floats), {"an array of the wrong type for odd"}));
+    CHECK(says(problem("whole", floats), {"an array of the wrong type for whole"}));
 }
 
 TEST_CASE("a checkpoint folder keeps the newest checkpoints and removes files of killed runs") {
@@ -160,8 +186,11 @@ TEST_CASE("a damaged checkpoint is reported, and the one before it is used") {
     CHECK(newest->iteration == 10);
     REQUIRE(warnings.size() == 1);
     CHECK(says(warnings[0], {"iteration_20", "is damaged"}));
+    CHECK(gs_test::read_file(checkpoints.file_of(20).string() + ".damaged") == "damaged");
+    checkpoints.write(30, saved(), 2);
+    CHECK(fs::exists(checkpoints.file_of(10)));
 
-    gs_test::write_file(checkpoints.file_of(10), "damaged");
+    for (const int iteration : {10, 30}) gs_test::write_file(checkpoints.file_of(iteration), "damaged");
     CHECK(says(error_of([&] { checkpoints.newest(warn); }), {"all checkpoints", "--overwrite"}));
-    CHECK(gs_test::read_file(checkpoints.file_of(20)) == "damaged");
+    CHECK(gs_test::read_file(checkpoints.file_of(30)) == "damaged");
 }

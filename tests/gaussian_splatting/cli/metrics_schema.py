@@ -50,7 +50,7 @@ class Schema(unittest.TestCase):
         write_zero_weights(weights)
         self.assertIsNone(self.run_program("train", "-i", "20", *SCENE)["psnr"])
         further = ["--eval", "--fit-exposure", "--lpips", weights]
-        trained = self.run_program("train", "-i", "60", "--test-iterations", "20", "--deterministic", *further, *SCENE)
+        trained = self.run_program("train", "--overwrite", "-i", "60", "--test-iterations", "20", "--deterministic", *further, *SCENE)
         model = self.folder / "point_cloud/iteration_60/point_cloud.ply"
         evaluated = self.run_program("evaluate", model, *further, *SCENE)
         self.assertNotIn("lpips", self.run_program("evaluate", model, *SCENE))

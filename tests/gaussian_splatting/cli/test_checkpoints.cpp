@@ -77,6 +77,34 @@ TEST_CASE("checkpoints: SIGTERM and SIGINT save the state, and the hint continue
     }
 }
 
+TEST_CASE("checkpoints: an interrupted training is finished early with fewer iterations") {
+    const temporary_folder folder;
+    const fs::path output = folder / "output";
+    words options = long_training(output);
+    const outcome o =
+        stopped(options + words{"--checkpoint-iterations", "40"}, checkpoint(output, 40), SIGTERM);
+    const auto at = o.err.find("--iterations ");
+    REQUIRE(at != std::string::npos);
+    options[2] = std::to_string(std::stoi(o.err.substr(at + 13)));
+    check_success(options + words{"--resume"});
+    CHECK(fs::exists(model_of(output, std::stoi(options[2]))));
+}
+
+TEST_CASE("checkpoints: a replaced run stays until the new one is complete") {
+    const temporary_folder folder;
+    const fs::path output = folder / "output";
+    check_success(small_training(output) + words{"-q"});
+    const std::string model = read_file(model_of(output, 60));
+    const words options = long_training(output) + words{"--checkpoint-iterations", "40"};
+    stopped(options + words{"--overwrite"}, checkpoint(output, 40), SIGKILL);
+    CHECK(read_file(model_of(output / "replaced", 60)) == model);
+    stopped(options + words{"--overwrite"}, checkpoint(output, 40), SIGKILL);
+    CHECK(read_file(model_of(output / "replaced", 60)) == model);
+    check_success(options + words{"--resume"});
+    CHECK_FALSE(fs::exists(output / "replaced"));
+    CHECK(fs::exists(model_of(output, 400)));
+}
+
 TEST_CASE("checkpoints: an earlier run is continued or replaced only on request") {
     const temporary_folder folder;
     const fs::path output = folder / "output";
@@ -93,6 +121,7 @@ TEST_CASE("checkpoints: an earlier run is continued or replaced only on request"
     CHECK_FALSE(fs::exists(model_of(output, 60)));
     CHECK(fs::exists(model_of(output, 50)));
     CHECK(read_file(output / "notes.txt") == "mine");
+    CHECK_FALSE(fs::exists(output / "replaced"));
 }
 
 TEST_CASE("checkpoints: --resume begins without a checkpoint, and reports changed options") {

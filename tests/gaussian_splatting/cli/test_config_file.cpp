@@ -60,7 +60,7 @@ TEST_CASE("--config: options of the file follow the rules of the command line") 
     CHECK(says(problem(R"({"test_every": 5})"), {"--test-every needs --eval"}));
     CHECK(says(problem(R"({"mcmc_noise": 5})"), {"--mcmc-noise belongs to --strategy mcmc"}));
     CHECK(says(problem(R"([5])"), {"config.json is no JSON object"}));
-    CHECK(says(problem(R"({"iterations": 5)"), {"config.json is no JSON object"}));
+    CHECK(says(problem(R"({"iterations": 5)"), {"config.json is no valid JSON"}));
     CHECK(says(problem(R"({"given": 5})"), {"config.json", "'given' is no object"}));
     CHECK(says(error_of([] {
                    gs::cli::parse({"train", "--config", "missing.json"});

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "../../core/error.hpp"
 #include "../../engine/sh_degree_state.hpp"
 #include "../../training/training.hpp"
 #include "../text.hpp"
@@ -35,18 +36,15 @@ int revise(train::training& training, int sh_degree) {
     return review.sh_degree;
 }
 
-/// Saves or loads the present SH degree. If the run began with another degree than the checkpoint,
-/// its options have changed, and the model gets the new degree.
-void exchange_degree(state_archive& archive, int first_degree, train::training& training) {
-    const state_archive::scope scope(archive, "direction");
-    int saved_first = first_degree, degree = training.schedule().sh_degree;
-    archive.exchange("first_degree", saved_first);
-    archive.exchange("degree", degree);
-    if (saved_first != first_degree) {
-        degree = first_degree;
-        state_of(training.engine()).set_degree(degree);
-    }
-    training.schedule().sh_degree = degree;
+/// Saves or loads the present SH degree. With --sh-degree, a loaded model gets that degree.
+void exchange_degree(state_archive& archive, std::optional<int> explicit_degree, train::training& training) {
+    int degree = training.schedule().sh_degree;
+    archive.exchange("direction.degree", degree);
+    if (!archive.loads()) return;
+    if (degree < 0 || degree > 3) throw error("the checkpoint has the SH degree " + std::to_string(degree));
+    training.schedule().sh_degree = explicit_degree.value_or(degree);
+    state_of(training.engine()).set_degree(training.schedule().sh_degree);
+    training.result().feature_reports["direction"]["sh_degree"] = training.schedule().sh_degree;
 }
 
 }  // namespace
@@ -79,10 +77,12 @@ void sh_degree_feature::prepare(const selected_feature& selected, scene&, gaussi
 void sh_degree_feature::schedule(const selected_feature& selected, train::training& training) const {
     const int degree = first_sh_degree(selected.values);
     training.schedule().sh_degree = degree;
+    const bool revises = selected.values.size() > 1 && selected.values[1] != 0;
+    const std::optional<int> explicit_degree = revises ? std::nullopt : std::optional(degree);
     training.add_state(
-        [=, &training](state_archive& archive) { exchange_degree(archive, degree, training); });
+        [=, &training](state_archive& archive) { exchange_degree(archive, explicit_degree, training); });
     training.result().feature_reports["direction"]["sh_degree"] = degree;
-    if (selected.values.size() < 2 || selected.values[1] == 0) return;
+    if (!revises) return;
     schedule_revision(
         training, [&training](int so_far) { return revise(training, so_far); }, prune_change_limit);
 }
@@ -115,9 +115,16 @@ void schedule_revision(train::training& training, std::function<int(int sh_degre
                           *prune_after = std::max(*prune_after, iteration + schedule.sh_degree_interval);
                   }});
     if (!prune_change) return;
-    training.add_state([=](state_archive& archive) {
+    training.add_state([=, &training](state_archive& archive) {
         if (archive.loads() && !archive.has("direction.prune_after")) return;
-        archive.exchange("direction.prune_after", *prune_after);
+        int saved = *prune_after, iteration = 0;
+        archive.exchange("direction.prune_after", saved);
+        if (!archive.loads()) return;
+        // More iterations can delay it; then the coefficients of the report exist again.
+        *prune_after = std::max(*prune_after, saved);
+        archive.exchange("training.iteration", iteration);
+        if (*prune_after > iteration)
+            training.result().feature_reports["direction"].erase("gaussians_with_bands");
     });
     training.add({train::phase::restructure, "prune SH bands",
                   [=, &schedule](int iteration) {
