@@ -25,5 +25,5 @@ cp -r tests/packaging/consumers tests/packaging/use_packages.sh "$work"
 mmdebstrap --quiet --variant=minbase --dpkgopt=force-unsafe-io \
     --customize-hook="mkdir \"\$1/check\"" \
     --customize-hook="sync-in '$work' /check" \
-    --customize-hook="chroot \"\$1\" bash /check/use_packages.sh" \
+    --customize-hook="env -i PATH='$PATH' chroot \"\$1\" bash /check/use_packages.sh" \
     bookworm /dev/null
