@@ -17,11 +17,30 @@ void check_iterations(const std::set<int>& iterations, int last, const std::stri
 
 void check_downscales(const train::schedule& plan) {
     const std::int64_t until = std::int64_t{plan.num_downscales} * plan.resolution_interval();
-    if (plan.num_downscales > 0 && until >= plan.iterations)
+    if (plan.num_downscales > 0 && until >= plan.iterations.last())
         throw error("--num-downscales " + std::to_string(plan.num_downscales) +
                     " with --resolution-schedule " + std::to_string(plan.resolution_interval()) +
                     " trains on whole photos only after iteration " + std::to_string(until) +
-                    ", but there are only " + std::to_string(plan.iterations) + ": lower one of them");
+                    ", but there are only " + std::to_string(plan.iterations.last()) + ": lower one of them");
+}
+
+bool knows_iterations(const settings& s) { return !s.seconds && !s.schedule.iterations.is_corrected(); }
+
+/// Checks the options that name iterations, if the number of iterations is known in advance.
+void check_iterations(const settings& s) {
+    if (!knows_iterations(s)) return;
+    const int last = s.schedule.iterations.last();
+    check_iterations(s.save_iterations, last, "--save-iterations");
+    check_iterations(s.test_iterations, last, "--test-iterations");
+    check_iterations(s.checkpoint_iterations, last, "--checkpoint-iterations");
+    check_downscales(s.schedule);
+}
+
+void check_seconds(const settings& s) {
+    if (s.seconds && s.deterministic)
+        throw error(
+            "--deterministic excludes --seconds, because the speed of the machine then decides the "
+            "model: give --iterations instead of --seconds");
 }
 
 void check_background(const settings& s) {
@@ -53,12 +72,12 @@ void set_dependent_values(settings& s) {
 }
 
 void check_settings(const settings& s) {
-    check_iterations(s.save_iterations, s.schedule.iterations, "--save-iterations");
-    check_iterations(s.test_iterations, s.schedule.iterations, "--test-iterations");
-    check_iterations(s.checkpoint_iterations, s.schedule.iterations, "--checkpoint-iterations");
-    check_downscales(s.schedule);
-    s.densification.check(
-        {.iterations = s.schedule.iterations, .max_gaussians = s.max_cap.value_or(0), .seed = s.seed});
+    check_seconds(s);
+    check_iterations(s);
+    constexpr int any_number = static_cast<int>(options::most_iterations);
+    s.densification.check({.iterations = knows_iterations(s) ? s.schedule.iterations : any_number,
+                           .max_gaussians = s.max_cap.value_or(0),
+                           .seed = s.seed});
     check_background(s);
     check_video_frames(s);
 }

@@ -40,6 +40,27 @@ option_value effect_list(features::selection& member) {
             .suggestions = suggestions};
 }
 
+/// A number of iterations, or a plan of it that changes: see `iteration_plan::parse`.
+option_value planned_iterations(iteration_plan& member) {
+    constexpr int most = static_cast<int>(most_iterations);
+    const std::string range = "1 to " + std::to_string(most);
+    return {.type = "INTEGER",
+            .range = range,
+            .read =
+                [=, &member](const std::string& word) {
+                    const auto plan = iteration_plan::parse(word, most);
+                    if (!plan)
+                        throw refused_word("must be a whole number from " + range +
+                                           " or a plan such as 7000,100:6500, not '" + word + "'");
+                    member = *plan;
+                },
+            .json =
+                [&member] {
+                    return member.is_corrected() ? nlohmann::ordered_json(member.text())
+                                                 : nlohmann::ordered_json(member.last());
+                }};
+}
+
 rows grouped(const std::string& heading, rows all) {
     for (option& row : all) row.group = heading;
     return all;
@@ -197,9 +218,18 @@ rows length_options(settings& s) {
         "Length and resolution",
         {{.names = "-i,--iterations",
           .commands = {train},
-          .value = whole(s.schedule.iterations, 1, most_iterations),
-          .help = "Number of training iterations",
+          .value = planned_iterations(s.schedule.iterations),
+          .help = "Number of training iterations; a plan such as 7000,100:6500 in settings.json changes "
+                  "it to 6500 after iteration 100",
           .unit = "iterations"},
+         {.names = "--seconds",
+          .commands = {train},
+          .value = positive(s.seconds),
+          .help = "Time of training, without loading and evaluation: chooses the number of iterations by "
+                  "the speed of this machine",
+          .unit = "seconds",
+          .default_text = "none; --iterations decides",
+          .excludes = {"--iterations"}},
          {.names = "--quality",
           .commands = {train},
           .value = choice(s.quality),

@@ -60,6 +60,7 @@ struct settings {
 
     quality_preset quality = quality_preset::balanced;
     train::schedule schedule;
+    std::optional<double> seconds;  ///< time of training, instead of `schedule.iterations`
     train::strategy_settings densification;
     std::string loss = train::default_loss;
     features::selection effects;

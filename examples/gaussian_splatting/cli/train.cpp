@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 
 #include "../core/error.hpp"
 #include "../core/parse_json.hpp"
@@ -27,17 +28,14 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     train::train_options o;
     o.schedule = s.schedule;
     o.schedule.transparent = scene.has_alpha;
-    o.densification = s.densification.resolved({.iterations = s.schedule.iterations,
-                                                .views = static_cast<int>(scene.train.size()),
-                                                .transparent = scene.has_alpha,
-                                                .seed = s.seed});
+    o.seconds = s.seconds;
+    o.densification = s.densification;
     o.loss = s.loss;
     o.max_cap =
         s.max_cap.value_or(std::max(train::default_cap(scene), s.densification.target_count().value_or(0)));
     o.seed = s.seed;
     o.background = context.background(scene.has_alpha && !features.is_on("exposure"));
     o.save_iterations = s.save_iterations;
-    o.save_iterations.insert(s.schedule.iterations);
     o.test_iterations = s.test_iterations;
     o.checkpoint_every = s.checkpoint_every;
     o.checkpoint_iterations = s.checkpoint_iterations;
@@ -83,6 +81,8 @@ class training_run {
     void test(int iteration);
     void save_checkpoint(int iteration, state_archive& archive);
     void resume();
+    /// Warns if the run of --seconds was shorter or longer.
+    void warn_of_missed_time();
     nlohmann::ordered_json resolved_settings() const;
     fs::path model_file(int iteration) const;
     fs::path renders_folder() const;
@@ -147,7 +147,7 @@ void training_run::resume() {
 }
 
 nlohmann::ordered_json training_run::resolved_settings() const {
-    return settings_json(resolved(s_, options_, effects_in_use(options_.features)));
+    return settings_json(resolved(s_, options_, scene_.train.size(), effects_in_use(options_.features)));
 }
 
 train::train_events training_run::events() {
@@ -210,21 +210,35 @@ void training_run::test(int iteration) {
                  number("%.2f dB", report.psnr()));
 }
 
+void training_run::warn_of_missed_time() {
+    constexpr double tolerance = 0.03;
+    const double seconds = measures_.result.seconds;
+    if (!s_.seconds || std::abs(seconds - *s_.seconds) <= tolerance * *s_.seconds) return;
+    const bool is_short = measures_.result.iterations < train::time_budget::first_plan_after;
+    warn("training took " + number("%.3g s", seconds) + " instead of " + number("%.3g s", *s_.seconds) +
+         (is_short ? ", because the time is too short to plan " +
+                         std::to_string(measures_.result.iterations) + " iterations: raise --seconds"
+                   : ", because the speed of the machine changed shortly before the end"));
+}
+
 void training_run::train() {
     signals_.emplace();
     measures_.result = train::train(*engine_, scene_, options_, events());
-    const int last = measures_.result.iterations;
-    if (last < options_.schedule.iterations)
+    const train::train_result& result = measures_.result;
+    if (result.iterations < result.plan.last())
         throw interruption(
             signals_->received(),
-            "training was interrupted after iteration " + std::to_string(last) +
+            "training was interrupted after iteration " + std::to_string(result.iterations) +
                 "; to continue it, add --resume to the same options; to finish it here, also set "
                 "--iterations " +
-                std::to_string(last));
+                std::to_string(result.iterations) + (s_.seconds ? " instead of --seconds" : ""));
+    warn_of_missed_time();
+    options_.schedule.iterations = result.plan;
+    options_.seconds.reset();
+    if (!options_.save_iterations.contains(result.iterations)) save(result.iterations);
     signals_.reset();
     measures_.stages = engine_->profile().times();
-    measures_.pairs_per_iteration =
-        static_cast<double>(engine_->profile().pairs()) / options_.schedule.iterations;
+    measures_.pairs_per_iteration = static_cast<double>(engine_->profile().pairs()) / result.iterations;
     measures_.gaussians = engine_->count();
 }
 
@@ -273,7 +287,7 @@ void training_run::print_summary() const {
         context_.say("renders   " + (renders_folder() / "renders" / first).string() +
                      (views > 1 ? " and " + std::to_string(views - 1) + " more" : ""));
     }
-    context_.say("model     " + model_file(options_.schedule.iterations).string());
+    context_.say("model     " + model_file(measures_.result.iterations).string());
     context_.say("metrics   " + (output_.path() / "metrics.json").string());
 }
 
@@ -282,7 +296,7 @@ fs::path training_run::model_file(int iteration) const {
 }
 
 fs::path training_run::renders_folder() const {
-    return output_.path() / "test" / ("ours_" + std::to_string(options_.schedule.iterations));
+    return output_.path() / "test" / ("ours_" + std::to_string(measures_.result.iterations));
 }
 
 }  // namespace

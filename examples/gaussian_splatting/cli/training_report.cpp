@@ -37,7 +37,8 @@ std::size_t peak_host_bytes() {
 
 }  // namespace
 
-settings resolved(settings s, const train::train_options& options, const std::string& effects_in_use) {
+settings resolved(settings s, const train::train_options& options, std::size_t views,
+                  const std::string& effects_in_use) {
     const train::schedule& plan = options.schedule;
     s.schedule = plan;
     s.schedule.position_lr_init = plan.position_rate_init();
@@ -45,11 +46,16 @@ settings resolved(settings s, const train::train_options& options, const std::st
     s.schedule.sh_lr = plan.sh_rate();
     s.schedule.dropout = plan.dropout_share();
     s.schedule.resolution_schedule = plan.resolution_interval();
-    s.densification = options.densification;
+    s.densification = options.densification.resolved({.iterations = plan.iterations,
+                                                      .views = static_cast<int>(views),
+                                                      .transparent = plan.transparent,
+                                                      .seed = s.seed});
     s.sh_degree = features::first_sh_degree(options.features.values_if_on("direction"));
     s.effects.text = effects_in_use;
     s.max_cap = options.max_cap;
     s.save_iterations = options.save_iterations;
+    s.save_iterations.insert(plan.iterations.last());
+    s.seconds = options.seconds;
     return s;
 }
 
@@ -59,13 +65,14 @@ ordered_json settings_json(settings s) {
         if (row.belongs_to(command::train) && row.is_recorded &&
             (row.strategy.empty() || row.strategy == s.densification.name))
             all[row.key()] = row.value.json();
+    if (!s.seconds && s.given.erase("seconds") > 0) s.given["iterations"] = all.at("iterations");
     all[given_options_key] = s.given;
     return all;
 }
 
 ordered_json metrics_json(const settings& s, const training_measures& measures) {
     const train::train_result& result = measures.result;
-    const int iterations = s.schedule.iterations;
+    const int iterations = result.iterations;
     ordered_json metrics = to_json(measures.held_out);
     metrics.update({{"training_psnr", measures.last.psnr},
                     {"tests", measures.tests},

@@ -25,8 +25,10 @@ struct training_measures {
     evaluate::held_out_report held_out;
 };
 
-/// Returns the settings with the values of dependent defaults.
-settings resolved(settings s, const train::train_options& options, const std::string& effects_in_use);
+/// Returns the settings with the values of dependent defaults. `views` is the number of training
+/// views. If `options` have a plan of iterations in place of --seconds, so do the settings.
+settings resolved(settings s, const train::train_options& options, std::size_t views,
+                  const std::string& effects_in_use);
 
 /// Returns all options of train with their values, for settings.json.
 nlohmann::ordered_json settings_json(settings s);

@@ -5,13 +5,17 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "../core/iteration_plan.hpp"
 #include "../render/gradients/accumulator.hpp"
 
 namespace gs::train {
 
 /// The facts about a training that a densification strategy is created with.
 struct training_facts {
-    int iterations = 7000;
+    /// The plan of iterations. Training can correct it between two iterations, for example to finish
+    /// in a given time; copies of the facts see the correction. So ask it again in each iteration,
+    /// and take milestones and progress from it.
+    iteration_plan iterations{};
     int views = 1;                  ///< number of training views
     double extent = 1;              ///< extent of the scene, see `scene::extent`
     bool white = false;             ///< whether images have transparent parts, shown on white

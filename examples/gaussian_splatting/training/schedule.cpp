@@ -17,11 +17,11 @@ int schedule::downscales_at(int iteration) const {
 }
 
 int schedule::resolution_interval() const {
-    return resolution_schedule.value_or(iterations / (4 + std::max(1, num_downscales)));
+    return resolution_schedule.value_or(iterations.milestone(1.0 / (4 + std::max(1, num_downscales))));
 }
 
 std::array<float, 8> schedule::rates_at(int iteration) const {
-    const double t = std::min(1.0, static_cast<double>(iteration) / iterations);
+    const double t = iterations.progress(iteration);
     const double mean =
         extent * std::exp(std::log(position_rate_init()) * (1 - t) + std::log(position_rate_final()) * t);
     const double sh = feature_lr, band = sh_rate();

@@ -7,13 +7,15 @@
 #include <cstddef>
 #include <optional>
 
+#include "../core/iteration_plan.hpp"
+
 namespace gs::train {
 
 /// The learning rates, the image size and the SH degree of each iteration. Based on the schedule of
 /// Kerbl et al. 2023, scaled from 30,000 iterations to any number. Rates and intervals are
 /// positive.
 struct schedule {
-    int iterations = 7000;
+    iteration_plan iterations{};
     int sh_degree = 3;
     int sh_degree_interval = 500;  ///< iterations between two increases of the SH degree
     double extent = 1;             ///< see `scene::extent`
@@ -38,10 +40,10 @@ struct schedule {
 
     int sh_degree_at(int iteration) const;
     bool updates_sh(int iteration) const { return iteration % sh_update_interval == 0; }
-    /// Returns the iteration after which the SH degree is revised: half of the iterations, or the
-    /// end of the last degree's interval if that is later.
-    int bands_are_known_after() const {
-        return std::max(iterations / 2, (sh_degree + 1) * sh_degree_interval);
+    /// Returns the iteration after which the SH degree is revised, which is `degree` at first: half
+    /// of the iterations, or the end of the last degree's interval if that is later.
+    int bands_are_known_after(int degree) const {
+        return std::max(iterations.milestone(0.5), (degree + 1) * sh_degree_interval);
     }
     int downscales_at(int iteration) const;
     /// Returns the number of iterations between two doublings of the image size. It is

@@ -10,6 +10,7 @@
 #include "../core/error.hpp"
 #include "../core/parse_json.hpp"
 #include "../core/sanitize_for_message.hpp"
+#include "../options/option_value.hpp"
 #include "view_order.hpp"
 
 namespace gs::train {
@@ -83,8 +84,11 @@ training::training(train::engine& engine, const gs::scene& scene, const train_op
       scene_(scene),
       options_(options),
       schedule_(options.schedule),
+      budget_(options.seconds ? std::optional<time_budget>({*options.seconds, options.max_cap})
+                              : std::nullopt),
       is_interrupted_(events.is_interrupted),
       clock_(events.seconds) {
+    schedule_.iterations = options.schedule.iterations.first_iterations(0);
     schedule_.extent = scene.extent();
     schedule_.transparent = scene.has_alpha;
     engine_.begin(setup_of(scene, options, schedule_));
@@ -137,11 +141,10 @@ void training::add_memory() {
 
 void training::add_reports(const train_events& events) {
     constexpr int report_every = 100;
-    const int last = schedule_.iterations;
     const auto tests = [this](int iteration) { return options_.test_iterations.contains(iteration); };
     const auto saves = [this](int iteration) { return options_.save_iterations.contains(iteration); };
-    const auto reports = [=](int iteration) {
-        return iteration % report_every == 0 || iteration == last || tests(iteration);
+    const auto reports = [=, this](int iteration) {
+        return iteration % report_every == 0 || is_last(iteration) || tests(iteration);
     };
     add({phase::observe, "check for faults",
          [=, this](int iteration) {
@@ -157,7 +160,8 @@ void training::add_reports(const train_events& events) {
          }});
     add({phase::observe, "report", reports, [=, this](int iteration) {
              const loss_report mean = losses_.take();
-             events.report({iteration, last, mean.loss, mean.psnr(), engine_.count(), seconds()});
+             events.report({iteration, schedule_.iterations.last(), mean.loss, mean.psnr(), engine_.count(),
+                            seconds()});
          }});
     const auto call = [this](const std::function<void(int)>& callback) {
         return [=, this](int iteration) { call_untimed([&] { callback(iteration); }); };
@@ -213,6 +217,7 @@ void training::exchange(state_archive& archive) {
                 "scene, "
                 "or give --overwrite to train from the beginning");
         archive.exchange("iteration", finished_);
+        exchange_plan(archive);
         archive.exchange("size_level", level_);
         double seconds_so_far = archive.loads() ? 0 : seconds();
         archive.exchange("seconds", seconds_so_far);
@@ -228,14 +233,57 @@ void training::exchange(state_archive& archive) {
     for (const auto& state : states_) state(archive);
 }
 
+/// Saves the plan. A run with a time budget also continues with it; other runs have their own plan.
+void training::exchange_plan(state_archive& archive) {
+    if (archive.loads() && (!budget_ || !archive.has("plan"))) {
+        schedule_.iterations.replace(options_.schedule.iterations.first_iterations(finished_));
+        return;
+    }
+    std::string text = schedule_.iterations.text();
+    archive.exchange("plan", text);
+    const auto plan = iteration_plan::parse(text, static_cast<int>(options::most_iterations));
+    if (!plan) throw error("the checkpoint has the plan of iterations " + sanitize_for_message(text));
+    schedule_.iterations.replace(*plan);
+}
+
+bool training::makes_checkpoint(int iteration) const {
+    const bool is_asked = options_.checkpoint_iterations.contains(iteration) ||
+                          (options_.checkpoint_every && iteration % *options_.checkpoint_every == 0);
+    const bool has_any = options_.checkpoint_every || !options_.checkpoint_iterations.empty();
+    return interrupted_ || is_asked || (has_any && is_last(iteration));
+}
+
+training_moment training::now() {
+    engine_.profile().wait();
+    return {finished_, seconds(), engine_.count()};
+}
+
+void training::begin_budget() {
+    if (!budget_) return;
+    const training_moment moment = now();
+    if (const auto last = budget_->correction_at_resume(moment, schedule_.iterations.last()))
+        schedule_.iterations.correct(finished_, *last);
+    budget_->begin(moment, schedule_);
+}
+
+void training::correct_plan(int iteration) {
+    if (const auto last = options_.schedule.iterations.correction_after(iteration); last && !budget_)
+        schedule_.iterations.correct(iteration, *last);
+    if (!budget_ || !budget_->due(iteration)) return;
+    const training_moment moment = now();
+    if (const auto last = budget_->correction(moment, schedule_, timetable().count_is_final_after()))
+        schedule_.iterations.correct(iteration, *last);
+    budget_->continue_from(moment, schedule_);
+}
+
 void training::restore(state_archive& checkpoint) {
     exchange(checkpoint);
     checked_ = finished_;
     level_ = std::min(level_, schedule_.num_downscales);
     if (finished_ < 1) throw error("the checkpoint is from iteration " + std::to_string(finished_));
-    if (finished_ > schedule_.iterations)
+    if (finished_ > options_.schedule.iterations.last() && !budget_)
         throw error("the checkpoint is from iteration " + std::to_string(finished_) +
-                    ", after the last iteration " + std::to_string(schedule_.iterations) +
+                    ", after the last iteration " + std::to_string(options_.schedule.iterations.last()) +
                     ": raise --iterations");
 }
 
@@ -246,18 +294,22 @@ train_result training::run() {
     }
     engine_.profile().wait();
     start_ = clock_();
+    begin_budget();
     // The checkpoint of an iteration precedes its save, which an interruption can prevent.
     if (options_.save_iterations.contains(finished_)) save_(finished_);
-    for (int iteration = finished_ + 1; iteration <= schedule_.iterations && !interrupted_; ++iteration) {
+    for (int iteration = finished_ + 1; iteration <= schedule_.iterations.last() && !interrupted_;
+         ++iteration) {
         interrupted_ = is_interrupted_();
         restructured_ = false;
         for (const auto phase : {phase::prepare, phase::step, phase::restructure, phase::size_lists,
                                  phase::upkeep, phase::observe})
             run_phase(phase, iteration);
         finished_ = iteration;
+        correct_plan(iteration);
     }
     engine_.profile().wait();
     result_.iterations = finished_;
+    result_.plan = schedule_.iterations;
     result_.seconds = seconds();
     result_.left_out_gradients = faults_.left_out_gradients();
     result_.left_out_sums = faults_.left_out_sums();
@@ -270,12 +322,6 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
     options.features.schedule(training);
     if (options.resume_from != nullptr) training.restore(*options.resume_from);
     return training.run();
-}
-
-bool train_options::has_checkpoint_after(int iteration) const {
-    if (checkpoint_iterations.contains(iteration)) return true;
-    if (iteration == schedule.iterations) return checkpoint_every || !checkpoint_iterations.empty();
-    return checkpoint_every && iteration % *checkpoint_every == 0;
 }
 
 std::size_t default_cap(const scene& scene) {

@@ -17,6 +17,7 @@
 #include "../features/resolve.hpp"
 #include "fault_log.hpp"
 #include "schedule.hpp"
+#include "time_budget.hpp"
 
 namespace gs::train {
 
@@ -28,6 +29,8 @@ struct background_choice {
 
 struct train_options {
     train::schedule schedule;
+    /// If set, training lasts about this long: it corrects the plan of `schedule` while it runs.
+    std::optional<double> seconds;
     strategy_settings densification;
     std::size_t max_cap = 0;  ///< largest number of Gaussians
     std::string loss = default_loss;
@@ -37,13 +40,13 @@ struct train_options {
     features::feature_set features;
     std::set<int> save_iterations;
     std::set<int> test_iterations;
+    /// The iterations after which training passes a checkpoint to `train_events::checkpoint`. If
+    /// there are any, it also passes one at the end.
+    /// @{
     std::optional<int> checkpoint_every;  ///< iterations between two checkpoints
     std::set<int> checkpoint_iterations;
+    /// @}
     state_archive* resume_from = nullptr;  ///< state of a checkpoint to continue from, or null
-
-    /// Returns whether training passes a checkpoint to `train_events::checkpoint`: after these
-    /// iterations, and at the end if there are any.
-    bool has_checkpoint_after(int iteration) const;
 };
 
 /// The progress of a training run.
@@ -56,6 +59,7 @@ struct progress {
 
 struct train_result {
     int iterations = 0;          ///< last iteration; less than planned if training was interrupted
+    iteration_plan plan;         ///< with all corrections; training with it needs no clock
     double seconds = 0;          ///< time of the loop, without the `test` and `save` callbacks
     double densify_seconds = 0;  ///< part of it in the phases `restructure` and `size_lists`
     std::uint64_t skipped_steps = 0;
@@ -166,10 +170,13 @@ class training {
     void add_memory();
     void add_reports(const train_events& events);
     void add_checkpoints(const train_events& events);
-    bool makes_checkpoint(int iteration) const {
-        return interrupted_ || options_.has_checkpoint_after(iteration);
-    }
+    bool makes_checkpoint(int iteration) const;
+    bool is_last(int iteration) const { return iteration == schedule_.iterations.last(); }
+    void begin_budget();
+    void correct_plan(int iteration);
+    training_moment now();
     void exchange(state_archive& archive);
+    void exchange_plan(state_archive& archive);
     void run_phase(train::phase phase, int iteration);
     void call_untimed(const std::function<void()>& callback);
     double seconds() const { return before_ + clock_() - start_ - outside_; }
@@ -178,6 +185,7 @@ class training {
     const gs::scene& scene_;
     const train_options& options_;
     train::schedule schedule_;
+    std::optional<time_budget> budget_;
     std::vector<action> actions_;
     std::vector<std::function<void(state_archive&)>> states_;
     std::function<void(int iteration)> save_;

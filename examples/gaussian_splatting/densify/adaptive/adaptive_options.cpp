@@ -72,10 +72,10 @@ std::vector<option> adaptive_config::options() {
 
 void adaptive_config::check(const training_facts& facts) const {
     const adaptive_schedule schedule(*this, facts);
-    if (schedule.share_to_prune() > 0 && schedule.densify_until() >= facts.iterations)
+    if (schedule.share_to_prune() > 0 && schedule.densify_until() >= facts.iterations.last())
         throw error("--prune-share prunes after densification, which --densify-until-iter ends at " +
                     std::to_string(schedule.densify_until()) + ", but there are only " +
-                    std::to_string(facts.iterations) +
+                    std::to_string(facts.iterations.last()) +
                     " iterations: lower --densify-until-iter or set --prune-share 0");
     if (facts.max_gaussians > 0 && budget.value_or(0) > facts.max_gaussians)
         throw error("--budget " + std::to_string(*budget) + " is more than --max-cap " +

@@ -16,8 +16,8 @@ bool adaptive_schedule::densifies(int iteration) const {
 }
 
 int adaptive_schedule::densify_until() const {
-    return std::min(config_.densify_until_iter.value_or(std::min(15000, facts_.iterations / 2)),
-                    facts_.iterations);
+    const iteration_plan& plan = facts_.iterations;
+    return std::min(config_.densify_until_iter.value_or(std::min(15000, plan.milestone(0.5))), plan.last());
 }
 
 densify_config adaptive_schedule::densify_config_at(int iteration, std::size_t gaussians) const {
@@ -53,13 +53,15 @@ int adaptive_schedule::densifications_from(int iteration) const {
 double adaptive_schedule::share_to_prune() const {
     const int interval = config_.densification_interval;
     const int first = (config_.densify_from_iter / interval + 1) * interval;
-    const bool grows = first < densify_until() && densify_until() < facts_.iterations;
+    const bool grows = first < densify_until() && densify_until() < facts_.iterations.last();
     return config_.prune_share.value_or(grows && !config_.budget ? 0.2 : 0.0);
 }
 
 int adaptive_schedule::prune_after() const {
+    if (share_to_prune() == 0) return 0;
     const int until = densify_until();
-    return share_to_prune() > 0 ? std::min(until + facts_.views, (until + facts_.iterations + 1) / 2) : 0;
+    const iteration_plan& plan = facts_.iterations;
+    return std::min(until + facts_.views, plan.milestone((plan.progress(until + 1) + 1) / 2));
 }
 
 bool adaptive_schedule::resets_opacity(int iteration) const {

@@ -62,7 +62,7 @@ class adaptive_schedule final : public timetable {
     /// Returns whether Gaussians near a camera are hidden: at each densification interval until the
     /// end.
     bool hides_near_cameras(int iteration) const {
-        return iteration % config_.densification_interval == 0 || iteration == facts_.iterations;
+        return iteration % config_.densification_interval == 0 || iteration == facts_.iterations.last();
     }
 
   private:

@@ -34,7 +34,7 @@ class mcmc final : public strategy<Device> {
     bool due(int iteration) const override {
         return iteration > first() && iteration % interval == 0 && iteration <= count_is_final_after();
     }
-    int count_is_final_after() const override { return facts_.iterations / 6 * 5; }
+    int count_is_final_after() const override { return facts_.iterations.milestone(5.0 / 6); }
 
     void after_step(int iteration, const step_context<Device>& c) override {
         if (is_last(iteration)) return;  // the result has no noise
@@ -77,9 +77,9 @@ class mcmc final : public strategy<Device> {
   private:
     static constexpr int interval = 100;
 
-    bool is_last(int iteration) const { return iteration == facts_.iterations; }
+    bool is_last(int iteration) const { return iteration == facts_.iterations.last(); }
     /// Returns the last iteration before the first run.
-    int first() const { return std::min(500, facts_.iterations / 10); }
+    int first() const { return std::min(500, facts_.iterations.milestone(0.1)); }
     /// Returns the number of Gaussians after the run of this iteration.
     std::size_t grown(std::size_t count, int iteration) const {
         const int runs = std::max(1, count_is_final_after() / interval - (iteration - 1) / interval);

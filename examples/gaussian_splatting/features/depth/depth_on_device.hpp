@@ -72,7 +72,7 @@ class depth_on_device final : public device_feature<Renderer> {
     /// from 1 to 0.01, as in the implementation of Kerbl et al. 2024, which uses units of structure
     /// from motion.
     float weight_at(int iteration) const {
-        return static_cast<float>(std::pow(0.01, static_cast<double>(iteration) / iterations_));
+        return static_cast<float>(std::pow(0.01, iterations_.progress(iteration)));
     }
 
     float pixel_weight(const step& s) const {
@@ -84,7 +84,7 @@ class depth_on_device final : public device_feature<Renderer> {
     buffer<float> gradient_;
     std::vector<std::vector<std::size_t>> first_;  ///< index in `maps_`, by level and view
     std::vector<depth_fit> fits_;                  ///< one per training view if the feature is on
-    int iterations_ = 7000;
+    iteration_plan iterations_;
 };
 
 }  // namespace gs::features

@@ -69,9 +69,10 @@ std::vector<float> exposure_feature::neutral_values(const scene& scene) const {
 void exposure_feature::schedule(const selected_feature& selected, train::training& training) const {
     if (!selected.on) return;
     const int views = static_cast<int>(training.scene().train.size());
-    const int last = training.options().schedule.iterations;
     training.add({train::phase::upkeep, "normalize exposures",
-                  [=](int iteration) { return iteration % views == 0 || iteration == last; },
+                  [=, &training](int iteration) {
+                      return iteration % views == 0 || iteration == training.schedule().iterations.last();
+                  },
                   [&training](int) { training.engine().feature("exposure").normalize(); }});
 }
 

@@ -62,12 +62,12 @@ class exposure_on_device final : public device_feature<Renderer> {
     /// begin at 0.01.
     float rate_at(int iteration) const {
         const double first =
-            std::min(0.05, 1.5 * static_cast<double>(views_) / static_cast<double>(iterations_));
-        return static_cast<float>(first * std::pow(0.1, static_cast<double>(iteration) / iterations_));
+            std::min(0.05, 1.5 * static_cast<double>(views_) / static_cast<double>(iterations_.last()));
+        return static_cast<float>(first * std::pow(0.1, iterations_.progress(iteration)));
     }
 
     exposures<typename Renderer::device_type> of_training_, of_held_out_;
-    int iterations_ = 1;
+    iteration_plan iterations_;
     std::size_t views_ = 0;
     bool learns_ = false;
 };

@@ -99,11 +99,15 @@ int first_sh_degree(const std::vector<float>& values) {
 void schedule_revision(train::training& training, std::function<int(int sh_degree)> revise,
                        std::optional<double> prune_change) {
     train::schedule& schedule = training.schedule();
-    const int revise_after = schedule.bands_are_known_after();
-    const auto prune_after =
-        std::make_shared<int>(std::max(revise_after, training.timetable().count_is_final_after()));
+    const auto revise_after = [&schedule, first_degree = schedule.sh_degree] {
+        return schedule.bands_are_known_after(first_degree);
+    };
+    const auto earliest_prune = std::make_shared<int>(0);
+    const auto prune_after = [=, &training] {
+        return std::max({*earliest_prune, revise_after(), training.timetable().count_is_final_after()});
+    };
     training.add({train::phase::restructure, "revise the SH degree",
-                  [=](int iteration) { return iteration == revise_after; },
+                  [=](int iteration) { return iteration == revise_after(); },
                   [=, &training, &schedule](int iteration) {
                       const int before = schedule.sh_degree;
                       schedule.sh_degree = revise(before);
@@ -112,23 +116,23 @@ void schedule_revision(train::training& training, std::function<int(int sh_degre
                       report["on"] = schedule.sh_degree > 0;
                       report["sh_degree"] = schedule.sh_degree;
                       if (schedule.sh_degree > before)  // new coefficients need time to learn
-                          *prune_after = std::max(*prune_after, iteration + schedule.sh_degree_interval);
+                          *earliest_prune = iteration + schedule.sh_degree_interval;
                   }});
     if (!prune_change) return;
     training.add_state([=, &training](state_archive& archive) {
         if (archive.loads() && !archive.has("direction.prune_after")) return;
-        int saved = *prune_after, iteration = 0;
+        int saved = *earliest_prune, iteration = 0;
         archive.exchange("direction.prune_after", saved);
         if (!archive.loads()) return;
         // More iterations can delay it; then the coefficients of the report exist again.
-        *prune_after = std::max(*prune_after, saved);
+        *earliest_prune = std::max(*earliest_prune, saved);
         archive.exchange("training.iteration", iteration);
-        if (*prune_after > iteration)
+        if (prune_after() > iteration)
             training.result().feature_reports["direction"].erase("gaussians_with_bands");
     });
     training.add({train::phase::restructure, "prune SH bands",
                   [=, &schedule](int iteration) {
-                      return iteration == *prune_after && iteration < schedule.iterations;
+                      return iteration == prune_after() && iteration < schedule.iterations.last();
                   },
                   [=, &training, &schedule](int) {
                       if (schedule.sh_degree == 0) return;

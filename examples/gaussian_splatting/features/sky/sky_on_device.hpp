@@ -33,11 +33,11 @@ class sky_on_device final : public device_feature<Renderer> {
   private:
     /// Returns Adam's learning rate of the coefficients, which decays to a hundredth.
     float rate_at(int iteration) const {
-        return static_cast<float>(0.01 * std::pow(0.01, static_cast<double>(iteration) / iterations_));
+        return static_cast<float>(0.01 * std::pow(0.01, iterations_.progress(iteration)));
     }
 
     sky<typename Renderer::device_type> sky_;
-    int iterations_ = 7000;
+    iteration_plan iterations_;
 };
 
 }  // namespace gs::features
