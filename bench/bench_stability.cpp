@@ -178,7 +178,7 @@ int bench(const options& o) {
         t.large_count = o.large_count;
         t.large_iterations = o.large_iterations;
         c.make(t);
-        ordered_json row{{"name", c.name}, {"what", c.what}, {"iterations", t.schedule.iterations}};
+        ordered_json row{{"name", c.name}, {"what", c.what}, {"iterations", t.schedule.iterations.last()}};
         try {
             run(t, *make(), row);
         } catch (const std::exception& problem) {

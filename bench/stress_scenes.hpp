@@ -93,7 +93,7 @@ inline const std::vector<hard_case>& hard_cases() {
          [](trial& t) {
              speed_up(t.schedule);
              t.adaptive.opacity_reset_interval = 100;
-             t.adaptive.densify_until_iter = t.schedule.iterations;
+             t.adaptive.densify_until_iter = t.schedule.iterations.last();
          }},
         {"one_view", "one view, and the points that it sees",
          [](trial& t) {

@@ -11,7 +11,7 @@
 namespace gs::train {
 namespace {
 
-constexpr double short_time = 0.05;       ///< share of the time after which it is short
+constexpr double short_time = 0.25;       ///< share of the time after which it is short
 constexpr double last_correction = 0.01;  ///< share of the time that is too short for another window
 constexpr double tolerance = 0.005;       ///< share of the time
 constexpr double rest_tolerance = 0.04;   ///< share of the time that is left
@@ -69,7 +69,9 @@ void time_budget::begin(const training_moment& now, const schedule& schedule) {
 void time_budget::continue_from(const training_moment& now, const schedule& schedule) {
     const int left = schedule.iterations.last() - now.iteration;
     const bool is_after_change = size_changes_;
-    window_ = now;
+    // Single steps vary. The first one is slower, because it allocates memory.
+    const bool is_long_enough = now.iteration <= 1 || now.iteration >= first_plan_after;
+    if (is_long_enough || size_changes_ || window_.iteration == 0) window_ = now;
     size_changes_ = false;
     if (left <= 1 || seconds_ - now.seconds < last_correction * seconds_) {
         next_ = std::numeric_limits<int>::max();
