@@ -65,7 +65,10 @@ ordered_json settings_json(settings s) {
         if (row.belongs_to(command::train) && row.is_recorded &&
             (row.strategy.empty() || row.strategy == s.densification.name))
             all[row.key()] = row.value.json();
-    if (!s.seconds && s.given.erase("seconds") > 0) s.given["iterations"] = all.at("iterations");
+    if (!s.seconds && s.given.contains("seconds")) {
+        s.given.erase("seconds");
+        s.given["iterations"] = all.at("iterations");
+    }
     all[given_options_key] = s.given;
     return all;
 }

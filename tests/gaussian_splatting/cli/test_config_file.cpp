@@ -87,6 +87,37 @@ TEST_CASE("--config: settings.json repeats a run, and also with other options") 
     check_refusal(words{"train", "-q", "--config", first / "settings.json"}, {"holds an earlier run"});
 }
 
+TEST_CASE("--seconds: settings.json has the plan of iterations, which repeats the run") {
+    const temporary_folder folder;
+    const fs::path first = folder / "first", again = folder / "again", third = folder / "third";
+    const words options{"-d", "synthetic:spheres", "-r", "24",     "--device", "cpu", "--quality", "best",
+                        "-q", "--save-iterations", "5",  "1000000"};
+    check_success(words{"train", "--seconds", "0.5", "-o", first} + options);
+    const json settings = read_json(first / "settings.json"), metrics = read_json(first / "metrics.json");
+    const int last = metrics.at("iterations");
+    CHECK(settings.at("seconds").is_null());
+    CHECK_FALSE(settings.at("given").contains("seconds"));
+    CHECK(settings.at("given").at("iterations") == settings.at("iterations"));
+    CHECK(settings.at("iterations").get<std::string>().ends_with(":" + std::to_string(last)));
+    CHECK(fs::exists(model_of(first, 5)));
+    CHECK(fs::exists(model_of(first, last)));
+    // The plan replaces time, so repetitions can be deterministic.
+    for (const fs::path& output : {again, third})
+        check_success({"train", "-q", "--deterministic", "--config", first / "settings.json", "-o", output});
+    CHECK(read_file(model_of(again, last)) == read_file(model_of(third, last)));
+    const json repeated = read_json(again / "settings.json");
+    CHECK(repeated.at("iterations") == settings.at("iterations"));
+    CHECK(repeated.at("densify_until_iter") == settings.at("densify_until_iter"));
+}
+
+TEST_CASE("--seconds: a time that is too short to plan ends after a few steps and a warning") {
+    const temporary_folder folder;
+    const outcome o = run({"train", "--seconds", "1e-6", "-o", folder / "run", "-d", "synthetic:spheres",
+                           "-r", "24", "--device", "cpu", "--log-level", "warning"});
+    REQUIRE(o.code == 0);
+    CHECK(says(o.out, {"warning: training took", "instead of 1e-06 s", "too short", "raise --seconds"}));
+}
+
 TEST_CASE("--log-level: warnings appear from level warning on, and other messages from level info on") {
     const temporary_folder folder;
     for (const char* level : {"error", "warning", "info"}) {

@@ -32,6 +32,13 @@ TEST_CASE("contradictory options are refused") {
                                 {"--budget 2000", "--max-cap 1999"});
     check_refusal_without_trace(train_spheres + words{"--budget", "2000", "--densify-grad-threshold", "1e-4"},
                                 {"--budget", "--densify-grad-threshold"});
+    check_refusal_without_trace(train_spheres + words{"--seconds", "5", "--iterations", "20"},
+                                {"--seconds and --iterations exclude each other"});
+    check_refusal_without_trace(train_spheres + words{"--seconds", "5", "--deterministic"},
+                                {"--deterministic", "give --iterations instead of --seconds"});
+    check_refusal_without_trace(train_spheres + words{"--seconds", "0"}, {"--seconds must be", "'0'"});
+    check_refusal_without_trace(train_spheres + words{"--iterations", "100,50"},
+                                {"--iterations must be", "'100,50'", "7000,100:6500"});
     check_refusal_without_trace({"render", "model.ply", "--orbit-views", "3", "-d", "synthetic:spheres"},
                                 {"--orbit-views", "--data"});
     check_refusal_without_trace({"render", "model.ply", "--eval"}, {"--eval", "--data"});

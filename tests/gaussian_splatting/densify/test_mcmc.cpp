@@ -113,7 +113,7 @@ TEST_CASE("mcmc: runs at its interval until five sixths of the iterations") {
     setup.facts.iterations = 1234;
     e->begin(setup);
     const gs::train::timetable& t = e->timetable();
-    CHECK(t.count_is_final_after() == 1025);
+    CHECK(t.count_is_final_after() == 1028);
     for (const int iteration : {1, 100, 199, 201, 1100, 1200}) CHECK_FALSE(t.due(iteration));
     for (const int iteration : {200, 300, 1000}) CHECK(t.due(iteration));
     CHECK_FALSE(t.wants(600));
