@@ -154,44 +154,52 @@ TEST_CASE("adaptive: a copy and its original together are as opaque as it was al
     }
 }
 
-TEST_CASE("adaptive: a split leaves two Gaussians 1.6 times smaller, near their origin") {
+TEST_CASE("adaptive: a split places two thinner Gaussians on the longest axis of their origin") {
     const gs::scene scene = small_scene();
-    const gaussians model = gs::from_points(scene.points, 0, 200, 1);
+    gaussians model = gs::from_points(scene.points, 0, 200, 1);
+    for (std::size_t i = 0; i < 200; ++i) {
+        model.log_scale[3 * i + i % 3] += 0.5f;
+        for (std::size_t k = 0; k < 4; ++k) model.quaternion[4 * i + k] = k == i % 4 ? 1 : 0.25f;
+        model.opacity[i] = static_cast<float>(i) / 20 - 5;
+    }
+    model.opacity[7] = 90;
     for (const auto make : engines()) {
         const auto e = make();
-        e->set_views(scene.train, scene.test);
-        e->set_model(model);
-        e->reserve();
-        auto still = plan_for(0);
-        still.rates = {};
-        e->step(still);
+        look_at_all(*e, scene, model);
         adaptive_config config;
         config.densify_grad_threshold = 1e-12;
         config.least_opacity = 0;
         densify_once(*e, config, 1000, splits_all);
         const gaussians grown = e->get_model();
         REQUIRE(grown.count() > 300);
-        std::size_t halves = 0;
-        for (std::size_t i = 0, parent = 0; i < grown.count(); ++parent) {
+        const auto center = [](const gaussians& of, std::size_t i) {
+            return glm::vec3(of.mean[3 * i], of.mean[3 * i + 1], of.mean[3 * i + 2]);
+        };
+        std::size_t splits = 0;
+        for (std::size_t i = 0, parent = 0; i < grown.count(); ++i, ++parent) {
             REQUIRE(parent < model.count());
-            const float smaller = model.log_scale[3 * parent] - std::log(1.6f);
-            const bool is_split = std::abs(grown.log_scale[3 * i] - smaller) < 1e-5f;
-            for (std::size_t half = 0; half < (is_split ? 2 : 1); ++half, ++i) {
-                float distance = 0;
+            if (center(grown, i) == center(model, parent)) continue;
+            REQUIRE(i + 1 < grown.count());
+            ++splits;
+            const std::size_t axis = parent % 3;
+            const float* q = &model.quaternion[4 * parent];
+            const glm::mat3 rotation =
+                gs::raster::rotation_of(glm::normalize(glm::vec4(q[0], q[1], q[2], q[3])));
+            const glm::vec3 step = 0.5f * std::exp(model.log_scale[3 * parent + axis]) *
+                                   rotation[static_cast<glm::vec3::length_type>(axis)];
+            const float opacity = 0.6f * gs::sigmoid(model.opacity[parent]);
+            for (std::size_t half = 0; half < 2; ++half) {
+                const glm::vec3 expected = center(model, parent) + (half == 0 ? -step : step);
+                CHECK(glm::distance(center(grown, i + half), expected) < 1e-4f * glm::length(step) + 1e-6f);
                 for (std::size_t k = 0; k < 3; ++k)
-                    distance =
-                        std::max(distance, std::abs(grown.mean[3 * i + k] - model.mean[3 * parent + k]));
-                if (is_split) {
-                    ++halves;
-                    CHECK(grown.log_scale[3 * i] == doctest::Approx(smaller));
-                    CHECK(distance > 0);
-                    CHECK(distance < 6 * std::exp(model.log_scale[3 * parent]));
-                } else {
-                    CHECK(distance == 0);
-                }
+                    CHECK(
+                        grown.log_scale[3 * (i + half) + k] ==
+                        doctest::Approx(model.log_scale[3 * parent + k] + std::log(k == axis ? 0.5 : 0.85)));
+                CHECK(gs::sigmoid(grown.opacity[i + half]) == doctest::Approx(opacity).epsilon(1e-4));
             }
+            ++i;
         }
-        CHECK(halves == 2 * (grown.count() - model.count()));
+        CHECK(splits == grown.count() - model.count());
     }
 }
 

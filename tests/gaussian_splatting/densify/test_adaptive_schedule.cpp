@@ -10,7 +10,7 @@
 using gs::train::adaptive_config;
 using gs::train::adaptive_schedule;
 
-TEST_CASE("densification ends half-way through training, at iteration 15000 at the latest") {
+TEST_CASE("densification ends half-way through training, or after 40 iterations per view") {
     const adaptive_schedule half({}, {.iterations = 7000});
     CHECK_FALSE(half.densifies(500));
     CHECK(half.densifies(600));
@@ -18,8 +18,18 @@ TEST_CASE("densification ends half-way through training, at iteration 15000 at t
     CHECK(half.densifies(3400));
     CHECK_FALSE(half.densifies(3500));
     CHECK(half.densify_until() == 3500);
-    CHECK(adaptive_schedule({}, {.iterations = 30000}).densify_until() == 15000);
-    CHECK(adaptive_schedule({}, {.iterations = 100000}).densify_until() == 15000);
+    const auto until = [](int iterations, int views, bool transparent) {
+        const gs::train::training_facts facts{
+            .iterations = iterations, .views = views, .transparent = transparent};
+        return adaptive_schedule({}, facts).densify_until();
+    };
+    CHECK(until(30000, 20, false) == 3500);
+    CHECK(until(30000, 200, false) == 8000);
+    CHECK(until(10000, 200, false) == 5000);
+    CHECK(until(100000, 1000000000, false) == 15000);
+    CHECK(until(7000, 20, true) == 3500);
+    CHECK(until(30000, 20, true) == 15000);
+    CHECK(until(100000, 20, true) == 15000);
     CHECK(adaptive_schedule({.densify_until_iter = 30000}, {.iterations = 7000}).densify_until() == 7000);
 }
 
@@ -30,7 +40,7 @@ TEST_CASE("opacities are reset only when an interval of densification is left") 
         CHECK(half.resets_opacity(500) == white);
         const adaptive_schedule whole({.densify_until_iter = 30000}, {.iterations = 7000, .white = white});
         CHECK_FALSE(whole.resets_opacity(6000));
-        const adaptive_schedule large({}, {.iterations = 100000, .white = white});
+        const adaptive_schedule large({}, {.iterations = 100000, .views = 1000, .white = white});
         CHECK(large.resets_opacity(3000));
         CHECK(large.resets_opacity(12000));
         CHECK_FALSE(large.resets_opacity(15000));
@@ -39,7 +49,7 @@ TEST_CASE("opacities are reset only when an interval of densification is left") 
 
 TEST_CASE("the shorter densification is, the larger is the growth threshold, unless it is set") {
     const auto threshold = [](const adaptive_config& config, int iterations) {
-        return adaptive_schedule(config, {.iterations = iterations}).growth_threshold();
+        return adaptive_schedule(config, {.iterations = iterations, .views = 1000}).growth_threshold();
     };
     CHECK(threshold({}, 30000) == doctest::Approx(8e-5));
     CHECK(threshold({}, 100000) == doctest::Approx(8e-5));

@@ -121,9 +121,11 @@ class training_on {
         gs::parameter_arrays<const float> model;
         model.log_scale = log_scale.data();
         model.opacity = opacity.data();
-        device.for_each_index(
-            n, gs::train::classify{model, seen.data(), config, stays.data(), large.data(), urgency.data(),
-                                   identities.data(), without_gradient.data()});
+        device.for_each_index(n, gs::train::classify{model,
+                                                     seen.data(),
+                                                     config,
+                                                     {stays.data(), large.data(), urgency.data(),
+                                                      identities.data(), without_gradient.data()}});
         return {on.get_as_they_are(stays.data(), n), on.get_as_they_are(urgency.data(), n),
                 on.get_as_they_are(without_gradient.data(), 1)[0]};
     }

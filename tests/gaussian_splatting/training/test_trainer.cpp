@@ -62,8 +62,9 @@ class recorder final : public gs::train::engine, gs::device::profiler {
         if (schedule_->densifies(iteration)) {
             const densify_config c = schedule_->densify_config_at(iteration, count_);
             densifications.push_back(c);
-            const std::size_t staying = count_ - dropped, room = c.cap - std::min(staying, c.cap);
-            count_ = staying + std::min({room, c.most_births, staying});
+            const std::size_t staying = count_ - dropped,
+                              room = c.limits.cap - std::min(staying, c.limits.cap);
+            count_ = staying + std::min({room, c.limits.most_births, staying});
             counts.push_back(count_);
         } else {
             CHECK(schedule_->prunes(iteration));

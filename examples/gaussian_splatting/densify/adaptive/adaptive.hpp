@@ -5,11 +5,12 @@
 #include <cstddef>
 
 #include "../../model/opacity.hpp"
+#include "../growth/growth.hpp"
 #include "../hide_near_camera.hpp"
 #include "../penalties.hpp"
 #include "../strategy.hpp"
 #include "adaptive_schedule.hpp"
-#include "densifier.hpp"
+#include "densify_kernels.hpp"
 
 namespace gs::train {
 
@@ -23,7 +24,7 @@ class adaptive final : public strategy<Device> {
     using settings = adaptive_config;
 
     adaptive(Device& device, const adaptive_config& config, const training_facts& facts)
-        : schedule_(config, facts), densifier_(device), penalties_{schedule_.opacity_penalty()} {}
+        : schedule_(config, facts), growth_(device), penalties_{schedule_.opacity_penalty()} {}
 
     bool wants(int iteration) const override { return schedule_.wants(iteration); }
     bool due(int iteration) const override { return schedule_.due(iteration); }
@@ -35,14 +36,16 @@ class adaptive final : public strategy<Device> {
 
     densify_report run(int iteration, const run_context<Device>& c) override {
         if (c.count == 0) return {};
+        const growth_marks marks = growth_.begin(c);
         if (schedule_.densifies(iteration)) {
-            const auto tally = densifier_.densify(c, schedule_.densify_config_at(iteration, c.count));
+            const densify_config config = schedule_.densify_config_at(iteration, c.count);
+            c.device.for_each_index(c.count,
+                                    classify{c.parameters.values.read(), c.statistics, config, marks});
+            const auto tally = growth_.grow(c, config.limits);
             return {tally.count, tally.without_gradient};
         }
-        const auto removed =
-            static_cast<std::size_t>(schedule_.share_to_prune() * static_cast<double>(c.count));
-        if (removed > 0) densifier_.prune(c, removed);
-        return {c.count - removed};
+        c.device.for_each_index(c.count, rate_by_gradient{c.statistics, marks});
+        return {growth_.remove(c, schedule_.number_to_prune(c.count)).count};
     }
 
     void adjust(int iteration, const trained_gaussians<Device>& g) override {
@@ -57,7 +60,7 @@ class adaptive final : public strategy<Device> {
 
   private:
     adaptive_schedule schedule_;
-    densifier<Device> densifier_;
+    growth<Device> growth_;
     penalty_weights penalties_;
 };
 

@@ -20,7 +20,9 @@ std::vector<option> timing_options(adaptive_config& c) {
              .value = whole(c.densify_until_iter, 0, most_iterations),
              .help = "Iteration that ends densification",
              .unit = "iterations",
-             .default_text = "half of the iterations, at most 15000"},
+             .default_text =
+                 "half of the iterations, at most 15000; without transparent parts of photos, at most "
+                 "the larger of 3500 and 40 for each photo"},
             {.names = "--densification-interval",
              .value = whole(c.densification_interval, 1, most_iterations),
              .help = "Iterations between two densification steps",

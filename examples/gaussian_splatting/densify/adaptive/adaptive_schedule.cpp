@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "../growth/growth_end.hpp"
+
 namespace gs::train {
 
 int adaptive_schedule::count_is_final_after() const { return std::max(densify_until(), prune_after()); }
@@ -16,8 +18,8 @@ bool adaptive_schedule::densifies(int iteration) const {
 }
 
 int adaptive_schedule::densify_until() const {
-    const iteration_plan& plan = facts_.iterations;
-    return std::min(config_.densify_until_iter.value_or(std::min(15000, plan.milestone(0.5))), plan.last());
+    const int by_default = default_growth_end(facts_.iterations, facts_.views, facts_.transparent);
+    return std::min(config_.densify_until_iter.value_or(by_default), facts_.iterations.last());
 }
 
 densify_config adaptive_schedule::densify_config_at(int iteration, std::size_t gaussians) const {
@@ -25,17 +27,15 @@ densify_config adaptive_schedule::densify_config_at(int iteration, std::size_t g
     config.dense_scale = static_cast<float>(0.01 * facts_.extent);
     config.gradient = static_cast<float>(growth_threshold());
     config.least_opacity = config_.least_opacity;
-    config.cap = facts_.max_gaussians;
+    config.limits.cap = facts_.max_gaussians;
     if (config_.budget) {
         const std::size_t budget = *config_.budget;
         const auto left = static_cast<std::size_t>(densifications_from(iteration));
         config.gradient = 0;
-        config.cap = std::min(config.cap, budget);
-        config.most_births = budget > gaussians ? (budget - gaussians + left - 1) / left : 0;
+        config.limits.cap = std::min(config.limits.cap, budget);
+        config.limits.most_births = budget > gaussians ? (budget - gaussians + left - 1) / left : 0;
     }
-    config.revised_opacity = config_.revised_opacity;
-    config.seed = facts_.seed;
-    config.step = static_cast<std::uint64_t>(iteration);
+    config.limits.revised_opacity = config_.revised_opacity;
     return config;
 }
 

@@ -24,8 +24,7 @@ class adaptive_schedule final : public timetable {
     int count_is_final_after() const override;
 
     bool densifies(int iteration) const;
-    /// Returns the first iteration without densification, by default half of the iterations, at
-    /// most 15,000.
+    /// Returns the first iteration without densification: see `default_growth_end`.
     int densify_until() const;
     /// Returns the thresholds of the densification in this iteration, which has `gaussians`
     /// Gaussians. A budget spreads the missing Gaussians evenly over the remaining densifications.
@@ -44,6 +43,9 @@ class adaptive_schedule final : public timetable {
     /// Returns the share of Gaussians to remove. The default is a fifth if densification adds
     /// Gaussians without a budget and ends before training does.
     double share_to_prune() const;
+    std::size_t number_to_prune(std::size_t gaussians) const {
+        return static_cast<std::size_t>(share_to_prune() * static_cast<double>(gaussians));
+    }
     /// Returns the iteration at which each training view was used about once since the last
     /// densification, or 0 for never.
     int prune_after() const;
