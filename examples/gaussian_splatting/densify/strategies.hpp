@@ -10,6 +10,7 @@
 #include "../core/enumerated.hpp"
 #include "../core/error.hpp"
 #include "adaptive/adaptive.hpp"
+#include "error/error.hpp"
 #include "mcmc/mcmc.hpp"
 #include "strategy.hpp"
 #include "strategy_settings.hpp"
@@ -41,6 +42,6 @@ struct strategy_list {
 
 /// All strategies. To add one, add it here and add its settings to `strategy_settings::configs`.
 template <device::device Device>
-using strategies = strategy_list<Device, adaptive<Device>, mcmc<Device>>;
+using strategies = strategy_list<Device, adaptive<Device>, error_driven<Device>, mcmc<Device>>;
 
 }  // namespace gs::train

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "adaptive/adaptive_config.hpp"
+#include "error/error_config.hpp"
 #include "mcmc/mcmc_config.hpp"
 #include "timetable.hpp"
 
@@ -42,7 +43,7 @@ concept strategy_config = std::copyable<T> && requires(T config, const T& set, c
 /// The name of the selected densification strategy, and the settings of all strategies.
 struct strategy_settings {
     /// The settings types of all strategies. Add those of a new strategy here.
-    using configs = std::tuple<adaptive_config, mcmc_config>;
+    using configs = std::tuple<adaptive_config, error_config, mcmc_config>;
 
     std::string name = "adaptive";
     configs all;
