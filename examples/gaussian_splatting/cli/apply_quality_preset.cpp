@@ -16,8 +16,7 @@ struct preset_row {
 
 constexpr std::array presets{preset_row{quality_preset::fast, "--iterations", "5000"},
                              preset_row{quality_preset::fast, "--sh-lr", "5e-4"},
-                             preset_row{quality_preset::best, "--iterations", "30000"},
-                             preset_row{quality_preset::best, "--densify-grad-threshold", "5e-5"}};
+                             preset_row{quality_preset::best, "--iterations", "30000"}};
 
 }  // namespace
 

@@ -15,7 +15,8 @@ void check_iterations(const std::set<int>& iterations, int last, const std::stri
                     ": raise --iterations or leave it out");
 }
 
-void check_downscales(const train::schedule& plan) {
+void check_downscales(train::schedule plan, std::optional<int> num_downscales) {
+    plan.num_downscales = num_downscales.value_or(plan.num_downscales);
     const std::int64_t until = std::int64_t{plan.num_downscales} * plan.resolution_interval();
     if (plan.num_downscales > 0 && until >= plan.iterations.last())
         throw error("--num-downscales " + std::to_string(plan.num_downscales) +
@@ -33,7 +34,7 @@ void check_iterations(const settings& s) {
     check_iterations(s.save_iterations, last, "--save-iterations");
     check_iterations(s.test_iterations, last, "--test-iterations");
     check_iterations(s.checkpoint_iterations, last, "--checkpoint-iterations");
-    check_downscales(s.schedule);
+    check_downscales(s.schedule, s.num_downscales);
 }
 
 void check_seconds(const settings& s) {

@@ -65,6 +65,7 @@ struct settings {
     std::string loss = train::default_loss;
     features::selection effects;
     std::optional<int> sh_degree;        ///< if unset, `effects` decides
+    std::optional<int> num_downscales;   ///< if unset, the size of the photos decides
     std::optional<std::size_t> max_cap;  ///< if unset, the size of the photos decides
     bool fit_exposure = false;
     std::string lpips;  ///< file of weights; if empty, LPIPS is not computed

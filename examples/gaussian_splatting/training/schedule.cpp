@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../densify/growth/growth_end.hpp"
+
 namespace gs::train {
 
 int schedule::sh_degree_at(int iteration) const {
@@ -17,17 +19,19 @@ int schedule::downscales_at(int iteration) const {
 }
 
 int schedule::resolution_interval() const {
-    return resolution_schedule.value_or(iterations.milestone(1.0 / (4 + std::max(1, num_downscales))));
+    const int growth_end = default_growth_end(iterations, views, transparent);
+    return resolution_schedule.value_or(2 * growth_end / (4 + std::max(1, num_downscales)));
 }
 
 std::array<float, 8> schedule::rates_at(int iteration) const {
     const double t = iterations.progress(iteration);
     const double mean =
         extent * std::exp(std::log(position_rate_init()) * (1 - t) + std::log(position_rate_final()) * t);
-    const double sh = feature_lr, band = sh_rate();
+    const double rest = std::pow(0.1, std::max(0.0, 5 * t - 4)), sh = feature_lr, band = sh_rate();
+    std::array<double, 8> all{mean, scaling_lr, rotation_lr, opacity_lr, sh, band, band, band};
+    for (std::size_t p = 1; p < all.size(); ++p) all[p] *= rest;
     std::array<float, 8> rates{};
-    std::ranges::transform(std::array{mean, scaling_lr, rotation_lr, opacity_lr, sh, band, band, band},
-                           rates.begin(), [](double rate) { return static_cast<float>(rate); });
+    std::ranges::transform(all, rates.begin(), [](double rate) { return static_cast<float>(rate); });
     return rates;
 }
 

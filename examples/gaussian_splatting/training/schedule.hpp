@@ -19,6 +19,7 @@ struct schedule {
     int sh_degree = 3;
     int sh_degree_interval = 500;  ///< iterations between two increases of the SH degree
     double extent = 1;             ///< see `scene::extent`
+    int views = 1;                 ///< number of training views
     /// Whether photos have transparent parts. Such photos show where the scene is empty. Gaussians
     /// then need no regularization and may move faster.
     bool transparent = false;
@@ -47,7 +48,7 @@ struct schedule {
     }
     int downscales_at(int iteration) const;
     /// Returns the number of iterations between two doublings of the image size. It is
-    /// `resolution_schedule`, or if that is unset, a fifth of the iterations, and less if
+    /// `resolution_schedule`, or if that is unset, two fifths of `default_growth_end`, and less if
     /// `num_downscales` exceeds 1. Returns 0 if the run is too short; images then have full size.
     int resolution_interval() const;
     /// Returns the first and the last learning rate of positions. The defaults are those of Kerbl
@@ -62,7 +63,8 @@ struct schedule {
     /// Returns the share of the Gaussians that each step leaves out: see `raster::dropout`. The
     /// default is 0.05, or 0 for `transparent` photos.
     double dropout_share() const { return dropout.value_or(transparent ? 0 : 0.05); }
-    /// Returns Adam's learning rates by `parameter`.
+    /// Returns Adam's learning rates by `parameter`. In the last fifth of the run, all rates but that
+    /// of positions fall exponentially to a tenth, so that the parameters come to rest.
     std::array<float, 8> rates_at(int iteration) const;
 };
 

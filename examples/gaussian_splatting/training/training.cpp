@@ -90,6 +90,7 @@ training::training(train::engine& engine, const gs::scene& scene, const train_op
       clock_(events.seconds) {
     schedule_.iterations = options.schedule.iterations.first_iterations(0);
     schedule_.extent = scene.extent();
+    schedule_.views = static_cast<int>(scene.train.size());
     schedule_.transparent = scene.has_alpha;
     engine_.begin(setup_of(scene, options, schedule_));
     add_step();
@@ -329,6 +330,21 @@ std::size_t default_cap(const scene& scene) {
     for (const view& v : scene.train)
         pixels += static_cast<std::size_t>(v.camera.width) * static_cast<std::size_t>(v.camera.height);
     return std::max<std::size_t>(pixels / 32, 10000);
+}
+
+int default_downscales(const scene& scene, const schedule& schedule) {
+    std::size_t pixels = 0;
+    for (const view& v : scene.train)
+        pixels = std::max(
+            pixels, static_cast<std::size_t>(v.camera.width) * static_cast<std::size_t>(v.camera.height));
+    const auto leaves_whole_photos = [&](int downscales) {
+        train::schedule with = schedule;
+        with.num_downscales = downscales;
+        return downscales * with.resolution_interval() < schedule.iterations.last();
+    };
+    int downscales = 1;
+    while ((pixels >> (2 * downscales)) > 200000 && leaves_whole_photos(downscales + 1)) ++downscales;
+    return downscales;
 }
 
 }  // namespace gs::train

@@ -211,4 +211,9 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
 /// and at least 10,000.
 std::size_t default_cap(const scene& scene);
 
+/// Returns the default of `schedule::num_downscales`: how often the largest training view must be
+/// halved to have at most 200,000 pixels, at least once, but not so often that training ends before
+/// the photos are whole.
+int default_downscales(const scene& scene, const schedule& schedule);
+
 }  // namespace gs::train

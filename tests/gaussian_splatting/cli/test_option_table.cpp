@@ -36,6 +36,10 @@ const gs::train::adaptive_config& adaptive(const settings& s) {
 }
 const gs::train::mcmc_config& mcmc(const settings& s) { return s.densification.of<gs::train::mcmc_config>(); }
 
+const gs::train::error_config& by_error(const settings& s) {
+    return s.densification.of<gs::train::error_config>();
+}
+
 std::string config_with_seed_7() {
     static const gs_test::temporary_folder folder;
     gs_test::write_file(folder / "config.json", R"({"seed": 7})");
@@ -77,7 +81,7 @@ const std::map<std::string, option_case> cases{
     {"--iterations", {{"20"}, [](const settings& s) { return s.schedule.iterations == 20; }}},
     {"--seconds", {{"90.5"}, [](const settings& s) { return s.seconds == 90.5; }}},
     {"--quality", {{"best"}, [](const settings& s) { return s.quality == quality_preset::best; }}},
-    {"--num-downscales", {{"2"}, [](const settings& s) { return s.schedule.num_downscales == 2; }}},
+    {"--num-downscales", {{"2"}, [](const settings& s) { return s.num_downscales == 2; }}},
     {"--resolution-schedule", {{"7"}, [](const settings& s) { return s.schedule.resolution_schedule == 7; }}},
     {"--effects", {{"none,+sky"}, [](const settings& s) { return s.effects.text == "none,+sky"; }}},
     {"--sh-degree", {{"2"}, [](const settings& s) { return s.sh_degree == 2; }}},
@@ -94,6 +98,12 @@ const std::map<std::string, option_case> cases{
     {"--dropout", {{"0.2"}, [](const settings& s) { return s.schedule.dropout == 0.2; }}},
     {"--loss", {{"l1_ssim"}, [](const settings& s) { return s.loss == "l1_ssim"; }, {}, true}},
     {"--strategy", {{"mcmc"}, [](const settings& s) { return s.densification.name == "mcmc"; }}},
+    {"--error-views",
+     {{"3"}, [](const settings& s) { return by_error(s).views == 3; }, {"--strategy", "error"}}},
+    {"--error-level",
+     {{"0.2"}, [](const settings& s) { return by_error(s).level == 0.2; }, {"--strategy", "error"}}},
+    {"--error-pixels",
+     {{"4"}, [](const settings& s) { return by_error(s).pixels == 4; }, {"--strategy", "error"}}},
     {"--mcmc-noise", {{"0"}, [](const settings& s) { return mcmc(s).noise == 0; }, {"--strategy", "mcmc"}}},
     {"--mcmc-opacity-penalty",
      {{"0.5"}, [](const settings& s) { return mcmc(s).opacity_penalty == 0.5; }, {"--strategy", "mcmc"}}},

@@ -115,10 +115,7 @@ TEST_CASE("--quality best does not override explicit options") {
                      "--quality", "best"};
     check_refusal_without_trace(best + words{"--save-iterations", "30001"}, {"30001", "1 to 30000"});
     check_success(best + words{"-o", (folder / "chosen").string(), "-i", "20"});
-    CHECK(read_json(folder / "chosen/settings.json").at("densify_grad_threshold") == 5e-5);
     CHECK(read_json(folder / "chosen/settings.json").at("iterations") == 20);
-    check_success(best + words{"-o", (folder / "said").string(), "-i", "20", "--budget", "900"});
-    CHECK(read_json(folder / "said/settings.json").at("densify_grad_threshold") > 5e-5);
 }
 
 TEST_CASE("--prune-share is 0.2 after densification, 0 with --budget, and as given") {
@@ -191,6 +188,33 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
     CHECK(psnr(model) != psnr((folder / "plain.ply").string()));
 
     check_refusal_without_trace(train_spheres + words{"--effects", "glare"}, {"'glare'", "antialiasing"});
+}
+
+TEST_CASE("large photos are halved more often at first, unless --num-downscales says otherwise") {
+    const temporary_folder folder;
+    const auto halvings = [&](const char* name, const words& options) {
+        check_success(words{"train", "-d", "synthetic:spheres", "--device", "cpu", "-q", "-o",
+                            (folder / name).string(), "--max-cap", "200"} +
+                      options);
+        return read_json(folder / name / "settings.json").at("num_downscales");
+    };
+    CHECK(halvings("small", {"-r", "32", "-i", "5"}) == 1);
+    CHECK(halvings("large", {"-r", "1000", "-i", "12"}) == 2);
+    CHECK(halvings("short", {"-r", "1000", "-i", "2"}) == 1);
+    CHECK(halvings("given", {"-r", "1000", "-i", "5", "--num-downscales", "0"}) == 0);
+}
+
+TEST_CASE("the options of --strategy error change the model") {
+    const temporary_folder folder;
+    const auto model = [&](const char* name, const words& options) {
+        check_success(small_training(folder / name) +
+                      words{"-q", "--deterministic", "--strategy", "error", "-i", "1300"} + options);
+        return read_file(model_of(folder / name, 1300));
+    };
+    const std::string usual = model("usual", {});
+    CHECK(model("views", {"--error-views", "1"}) != usual);
+    CHECK(model("level", {"--error-level", "0.5"}) != usual);
+    CHECK(model("pixels", {"--error-pixels", "50"}) != usual);
 }
 
 TEST_CASE("the options of --strategy mcmc change the model") {

@@ -18,6 +18,16 @@ TEST_CASE("rates of the positions fall a hundredfold, by the scene's extent") {
     CHECK(s.rates_at(1)[5] == doctest::Approx(s.rates_at(1)[4] / 10));
 }
 
+TEST_CASE("the other rates fall to a tenth in the last fifth of the iterations") {
+    schedule s;
+    s.iterations = 1000;
+    for (std::size_t p = 1; p < 8; ++p) {
+        CHECK(s.rates_at(800)[p] == s.rates_at(1)[p]);
+        CHECK(s.rates_at(900)[p] == doctest::Approx(s.rates_at(1)[p] * std::sqrt(0.1)));
+        CHECK(s.rates_at(1000)[p] == doctest::Approx(s.rates_at(1)[p] / 10));
+    }
+}
+
 TEST_CASE("photos with transparent parts have faster rates, and no dropout, unless they are set") {
     schedule opaque, cut_out;
     cut_out.transparent = true;
@@ -71,6 +81,19 @@ TEST_CASE("photos are whole after a fifth of the iterations, or from the first o
     CHECK(s.downscales_at(43) == 0);
     s.iterations = 6;
     CHECK(s.downscales_at(1) == 0);
+}
+
+TEST_CASE("photos are whole before growth ends, however long training is") {
+    schedule s;
+    s.iterations = 30000;
+    CHECK(s.downscales_at(1400) == 1);
+    CHECK(s.downscales_at(1401) == 0);
+    s.views = 200;  // growth ends at 8000
+    CHECK(s.downscales_at(3200) == 1);
+    CHECK(s.downscales_at(3201) == 0);
+    s.transparent = true;  // growth ends at 15000
+    CHECK(s.downscales_at(6000) == 1);
+    CHECK(s.downscales_at(6001) == 0);
 }
 
 TEST_CASE("colors that depend on direction can learn more rarely") {
