@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "../../model/opacity.hpp"
@@ -36,7 +37,9 @@ class adaptive final : public strategy<Device> {
     densify_report run(int iteration, const run_context<Device>& c) override {
         if (c.count == 0) return {};
         if (schedule_.densifies(iteration)) {
-            const auto tally = densifier_.densify(c, schedule_.densify_config_at(iteration, c.count));
+            densify_config config = schedule_.densify_config_at(iteration, c.count);
+            config.cap = std::min(config.cap, c.most);
+            const auto tally = densifier_.densify(c, config);
             return {tally.count, tally.without_gradient};
         }
         const auto removed =
