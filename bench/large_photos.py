@@ -102,7 +102,8 @@ def train(args, memory, out):
 
 def compare(args):
     with tempfile.TemporaryDirectory() as folder:
-        runs = {"resident": train(args, args.resident_memory, folder), "streamed": train(args, args.photo_memory, folder)}
+        runs = {"resident": train(args, args.resident_memory, folder),
+                "streamed": train(args, args.photo_memory, folder)}
     for name, run in runs.items():
         print(f"{name}: {run['seconds']['train']:.2f} s of training, {run['seconds']['load']:.2f} s of loading, "
               f"{run['peak_device_bytes'] / 1e9:.2f} GB of device memory, {run['peak_host_bytes'] / 1e9:.2f} GB of "
@@ -125,9 +126,11 @@ def main():
     comparer.add_argument("program", help="the trainer")
     comparer.add_argument("--photo-memory", required=True)
     comparer.add_argument("--resident-memory", default="1TB")
-    comparer.add_argument("options", nargs="*", help="options of both trainings, after --")
     comparer.set_defaults(run=compare)
-    args = words.parse_args()
+    given = sys.argv[1:]
+    end = given.index("--") if "--" in given else len(given)
+    args = words.parse_args(given[:end])
+    args.options = given[end + 1:]
     args.run(args)
 
 

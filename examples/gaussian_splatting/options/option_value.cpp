@@ -65,7 +65,7 @@ std::uint64_t read_byte_size(const std::string& word) {
     constexpr double most = 1e18;
     if (found == byte_units.end() || !number || !(*number > 0) ||
         !(*number * static_cast<double>(found->second) <= most))
-        throw refused_word("must be a size such as 16GiB or 500MB, not '" + word + "'");
+        throw refused_word("must be a size such as 16GB or 500MB, not '" + word + "'");
     return static_cast<std::uint64_t>(*number * static_cast<double>(found->second));
 }
 
@@ -104,7 +104,7 @@ option_value iterations(std::set<int>& member) {
 
 option_value byte_size(std::optional<std::uint64_t>& member) {
     return {.type = "SIZE",
-            .range = "such as 16GiB or 500MB",
+            .range = "such as 16GB or 500MB",
             .read = [&member](const std::string& word) { member = read_byte_size(word); },
             .json = [&member] { return json_of(member); }};
 }

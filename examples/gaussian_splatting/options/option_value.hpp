@@ -132,7 +132,7 @@ option_value share(Member& member) {
             .json = [&member] { return json_of(member); }};
 }
 
-/// A size in bytes, such as 16GiB.
+/// A size in bytes, such as 16GB.
 option_value byte_size(std::optional<std::uint64_t>& member);
 
 /// One of the words in `names_of(Enum)`.
