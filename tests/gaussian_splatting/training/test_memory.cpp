@@ -37,7 +37,6 @@ outcome grown(make_engine make, const gs::scene& scene, const std::string& strat
     adaptive.densify_grad_threshold = 1e-9;
     o.max_cap = most;
     o.max_device_bytes = max_bytes;
-    o.checkpoint_every = 1;
     const auto engine = make();
     const std::size_t before = engine->profile().used_device_bytes();
     engine->set_views(scene.train, {}, 0);
@@ -45,15 +44,16 @@ outcome grown(make_engine make, const gs::scene& scene, const std::string& strat
     gs::train::train_events events{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
     events.warn = [&](const std::string& line) { found.warnings.push_back(line); };
     events.begins = [&] { found.forecast = engine->profile().forecast(most, 3); };
-    events.checkpoint = [&](int, gs::state_archive&) {
+    events.is_interrupted = [&] {
         found.used = std::max(found.used, engine->profile().used_device_bytes() - before);
+        return false;
     };
     found.result = gs::train::train(*engine, scene, o, events);
     found.gaussians = engine->count();
     return found;
 }
 
-gs::scene scene_with_points() { return small_scene("synthetic:spheres,points=8000", 64); }
+gs::scene scene_with_points() { return small_scene("synthetic:spheres,points=8000", 32); }
 
 }  // namespace
 
@@ -62,8 +62,8 @@ TEST_CASE("memory: the forecast before training is near the memory that training
     std::uint64_t photos = 0;
     for (const gs::view& v : scene.train) photos += gs::photos::packed_bytes(v.camera, v.depths.is_there());
     for (const auto make : engines()) {
-        const outcome run = grown(make, scene, "mcmc", 30000, 0);
-        REQUIRE(run.gaussians == 30000);
+        const outcome run = grown(make, scene, "mcmc", 15000, 0);
+        REQUIRE(run.gaussians == 15000);
         CHECK(run.forecast.photos == photos);
         CHECK(run.result.growth_limited_by == "max_cap");
         const double relative = static_cast<double>(run.forecast.total()) / static_cast<double>(run.used);
@@ -80,11 +80,11 @@ TEST_CASE("memory: growth stops near the limit, with one warning") {
     for (const auto make : engines())
         for (const std::string strategy : {"adaptive", "mcmc"}) {
             CAPTURE(strategy);
-            const outcome free = grown(make, scene, strategy, 30000, 0);
+            const outcome free = grown(make, scene, strategy, 15000, 0);
             CHECK(free.warnings.empty());
-            REQUIRE(free.gaussians > 8000);
+            REQUIRE(free.gaussians > 7000);
             const std::uint64_t limit = free.used / 2;
-            const outcome limited = grown(make, scene, strategy, 30000, limit);
+            const outcome limited = grown(make, scene, strategy, 15000, limit);
             CHECK(limited.gaussians > 4000);
             CHECK(limited.gaussians < 3 * free.gaussians / 4);
             CHECK(static_cast<double>(limited.used) < 1.1 * static_cast<double>(limit));
