@@ -195,6 +195,22 @@ rows output_options(settings& s) {
                                .is_recorded = false}});
 }
 
+rows memory_options(settings& s) {
+    return grouped(
+        "Memory",
+        {{.names = "--photo-memory",
+          .commands = {train},
+          .value = byte_size(s.photo_memory),
+          .help = "Largest size of decoded photos in memory, of host and device together; above it, "
+                  "photos stay in their files and threads decode them ahead of training",
+          .default_text = "a share of the memory that is available"},
+         {.names = "--max-memory",
+          .commands = {train},
+          .value = byte_size(s.max_memory),
+          .help = "Size of the device memory near which the number of Gaussians stops growing",
+          .default_text = "a share of the memory that is available, or none with --deterministic"}});
+}
+
 rows run_options(settings& s) {
     return grouped(
         "Device and reproducibility",
@@ -407,9 +423,10 @@ rows evaluation_options(settings& s) {
 
 std::vector<option> option_table(settings& s) {
     rows table;
-    for (auto& group : {scene_options(s), pose_options(s), output_options(s), checkpoint_options(s),
-                        length_options(s), effect_options(s), learning_rate_options(s),
-                        densification_options(s), strategy_options(s), evaluation_options(s), run_options(s)})
+    for (auto& group :
+         {scene_options(s), pose_options(s), output_options(s), checkpoint_options(s), length_options(s),
+          effect_options(s), learning_rate_options(s), densification_options(s), strategy_options(s),
+          memory_options(s), evaluation_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }

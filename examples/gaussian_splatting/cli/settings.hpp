@@ -67,6 +67,8 @@ struct settings {
     std::optional<int> sh_degree;        ///< if unset, `effects` decides
     std::optional<int> num_downscales;   ///< if unset, the size of the photos decides
     std::optional<std::size_t> max_cap;  ///< if unset, the size of the photos decides
+    std::optional<std::uint64_t> photo_memory,
+        max_memory;  ///< limits in bytes; if unset, see `memory_limits`
     bool fit_exposure = false;
     std::string lpips;  ///< file of weights; if empty, LPIPS is not computed
     std::set<int> save_iterations;

@@ -5,11 +5,13 @@
 
 #include "../core/error.hpp"
 #include "../core/parse_json.hpp"
+#include "../features/sh_degree/sh_degree_feature.hpp"
 #include "../training/initialize.hpp"
 #include "../writers/writer.hpp"
 #include "command_context.hpp"
 #include "commands.hpp"
 #include "earlier_run.hpp"
+#include "memory_limits.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
 #include "scene_with_poses.hpp"
@@ -24,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 train::train_options options_of(const settings& s, const scene& scene, const command_context& context,
-                                features::feature_set features) {
+                                const device::profiler& device, features::feature_set features) {
     train::train_options o;
     o.schedule = s.schedule;
     o.schedule.transparent = scene.has_alpha;
@@ -36,6 +38,7 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     o.max_cap =
         s.max_cap.value_or(std::max(train::default_cap(scene), s.densification.target_count().value_or(0)));
     o.seed = s.seed;
+    o.max_device_bytes = device_limit(s, device);
     o.background = context.background(scene.has_alpha && !features.is_on("exposure"));
     o.save_iterations = s.save_iterations;
     o.test_iterations = s.test_iterations;
@@ -75,6 +78,7 @@ class training_run {
 
   private:
     train::train_events events();
+    void say_expected_memory();
     void warn(const std::string& line);
     void save(int iteration);
     /// Sets aside the earlier run that --overwrite replaces. Call it before the first result is
@@ -96,7 +100,9 @@ class training_run {
     std::unique_ptr<train::engine> engine_;
     std::unique_ptr<evaluate::lpips_network> lpips_;
     stopwatch loading_;
+    photos::photo_limits limits_;
     scene scene_;
+    photos::photo_plan photo_memory_;  ///< empty if photos are resident
     train::train_options options_;
     output_folder output_;
     bool replaces_ = s_.overwrite;  ///< whether an earlier run is still to be set aside
@@ -111,14 +117,16 @@ training_run::training_run(const settings& s, const load_options& source,
       checkpoint_(checkpoint_to_resume(s, [this](const std::string& line) { context_.warn(line); })),
       engine_(std::move(engine)),
       lpips_(context_.load_lpips()),
-      scene_(context_.load(source)),
-      options_(options_of(s, scene_, context_, resolve_effects(s, scene_, context_))),
+      limits_(photo_limits(s, engine_->profile())),
+      scene_(context_.load(with_limit(source, limits_))),
+      photo_memory_(photo_memory(scene_, limits_)),
+      options_(options_of(s, scene_, context_, engine_->profile(), resolve_effects(s, scene_, context_))),
       output_(s.output),
       bar_(s.log_level < log_level::info) {
     options_.gradient = gradient;
     gaussians model = first_model(scene_, options_);
     options_.features.prepare(scene_, model);
-    engine_->set_views(scene_.train, scene_.test, options_.schedule.num_downscales);
+    engine_->set_views(scene_.train, scene_.test, options_.schedule.num_downscales, photo_memory_);
     engine_->set_model(model);
     measures_.load_seconds = loading_.seconds();
     measures_.device = engine_->profile().device_name();
@@ -163,7 +171,17 @@ train::train_events training_run::events() {
         .test = [this](int iteration) { test(iteration); },
         .warn = [this](const std::string& line) { warn(line); },
         .checkpoint = [this](int iteration, state_archive& archive) { save_checkpoint(iteration, archive); },
-        .is_interrupted = [this] { return signals_->received() != 0; }};
+        .is_interrupted = [this] { return signals_->received() != 0; },
+        .begins = [this] { say_expected_memory(); }};
+}
+
+void training_run::say_expected_memory() {
+    const int sh_degree = features::first_sh_degree(options_.features.values_if_on("direction"));
+    if (photo_memory_.workers > 0)
+        context_.say("photos stay in their files: " + std::to_string(photo_memory_.workers) +
+                     (photo_memory_.workers == 1 ? " thread decodes" : " threads decode") + " them ahead");
+    context_.say(expected_memory(engine_->profile().forecast(options_.max_cap, sh_degree), options_.max_cap,
+                                 photos_on_host(scene_, photo_memory_)));
 }
 
 void training_run::warn(const std::string& line) {

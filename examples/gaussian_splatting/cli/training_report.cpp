@@ -78,28 +78,31 @@ ordered_json metrics_json(const settings& s, const training_measures& measures) 
     const train::train_result& result = measures.result;
     const int iterations = result.iterations;
     ordered_json metrics = to_json(measures.held_out);
-    metrics.update({{"training_psnr", measures.last.psnr},
-                    {"tests", measures.tests},
-                    {"iterations", iterations},
-                    {"gaussians", measures.gaussians},
-                    {"seconds",
-                     {{"load", measures.load_seconds},
-                      {"train", result.seconds},
-                      {"evaluate", measures.evaluate_seconds}}},
-                    {"iterations_per_second", iterations / result.seconds},
-                    {"densify_seconds", result.densify_seconds},
-                    {"skipped_steps", result.skipped_steps},
-                    {"left_out_gradients", result.left_out_gradients},
-                    {"left_out_sums", result.left_out_sums},
-                    {"gaussians_without_gradient", result.without_gradient},
-                    {"pairs_per_iteration", measures.pairs_per_iteration},
-                    {"stages", stages_json(measures.stages, measures.pairs_per_iteration)},
-                    {"peak_host_bytes", peak_host_bytes()},
-                    {"peak_device_bytes", measures.peak_device_bytes},
-                    {"device", measures.device},
-                    {"accumulator", s.deterministic ? "fixed" : "native"},
-                    {"deterministic", s.deterministic},
-                    {"seed", s.seed}});
+    metrics.update(
+        {{"training_psnr", measures.last.psnr},
+         {"tests", measures.tests},
+         {"iterations", iterations},
+         {"gaussians", measures.gaussians},
+         {"seconds",
+          {{"load", measures.load_seconds},
+           {"train", result.seconds},
+           {"evaluate", measures.evaluate_seconds}}},
+         {"iterations_per_second", iterations / result.seconds},
+         {"densify_seconds", result.densify_seconds},
+         {"skipped_steps", result.skipped_steps},
+         {"left_out_gradients", result.left_out_gradients},
+         {"left_out_sums", result.left_out_sums},
+         {"gaussians_without_gradient", result.without_gradient},
+         {"pairs_per_iteration", measures.pairs_per_iteration},
+         {"stages", stages_json(measures.stages, measures.pairs_per_iteration)},
+         {"peak_host_bytes", peak_host_bytes()},
+         {"peak_device_bytes", measures.peak_device_bytes},
+         {"growth_limited_by",
+          result.growth_limited_by.empty() ? ordered_json(nullptr) : ordered_json(result.growth_limited_by)},
+         {"device", measures.device},
+         {"accumulator", s.deterministic ? "fixed" : "native"},
+         {"deterministic", s.deterministic},
+         {"seed", s.seed}});
     return metrics;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -73,6 +74,15 @@ class parameter_gather {
 
   public:
     explicit parameter_gather(Device& device) : device_(device) {}
+
+    /// Returns the size of the memory for each Gaussian of an SH degree.
+    static std::size_t bytes_per_gaussian(int sh_degree) {
+        std::size_t widest = 0;
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            if (has_parameter(p, sh_degree))
+                widest = std::max<std::size_t>(widest, width_of(static_cast<parameter>(p)));
+        return 3 * widest * sizeof(float) + sizeof(birth) + 2 * sizeof(std::uint32_t);
+    }
 
     /// Sets the capacity of `origins` and `births` to `most` new Gaussians. Both lose their
     /// contents.

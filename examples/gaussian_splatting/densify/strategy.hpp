@@ -46,6 +46,7 @@ struct run_context : trained_gaussians<Device> {
     const raster::visibility* statistics;
     parameter_gather<Device>& gather;  ///< moves Gaussians to their new places
     score_views& views;                ///< renders training views, to score pixels
+    std::size_t most;                  ///< largest number of Gaussians for which there is memory
 };
 
 /// A densification strategy decides which Gaussians to add, move and remove. The engine creates one

@@ -16,11 +16,12 @@ struct training_facts {
     /// in a given time; copies of the facts see the correction. So ask it again in each iteration,
     /// and take milestones and progress from it.
     iteration_plan iterations{};
-    int views = 1;                  ///< number of training views
-    double extent = 1;              ///< extent of the scene, see `scene::extent`
-    bool white = false;             ///< whether images have transparent parts, shown on white
-    bool transparent = false;       ///< whether photos have transparent parts
-    std::size_t max_gaussians = 0;  ///< largest number of Gaussians
+    int views = 1;                       ///< number of training views
+    double extent = 1;                   ///< extent of the scene, see `scene::extent`
+    bool white = false;                  ///< whether images have transparent parts, shown on white
+    bool transparent = false;            ///< whether photos have transparent parts
+    std::size_t max_gaussians = 0;       ///< largest number of Gaussians
+    std::uint64_t max_device_bytes = 0;  ///< growth stops near this size of the device's memory; 0: none
     std::uint64_t seed = 0;
     accumulator gradient = accumulator::native;  ///< accumulator of the sums of scores
 };

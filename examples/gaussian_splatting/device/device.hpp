@@ -57,17 +57,25 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
     { c.size() } -> std::same_as<std::size_t>;
 };
 
-/// A device. All pointers are to its memory, except the host side of `upload` and `download`.
+/// `D::host_buffer<T>`: the same in host memory, as the source of `begin_upload`.
+
+/// A device. All pointers are to its memory, except the host side of copies from and to the host.
 ///
 /// Types
 /// - `warp`: the model of `warpagg::warp` that kernels run on.
 /// - `narrow_warp`: the same for kernels that hold many values per lane; may have fewer lanes.
 /// - `buffer<T>`: see `buffer_of`.
+/// - `host_buffer<T>`: see `buffer_of`.
+/// - `transfer`: a copy by `begin_upload`. `is_done()` returns whether it has finished, or was never
+///   begun. `wait()` waits for it.
 ///
 /// Properties
 /// - `name()`: kind and model for reports, such as "cuda, NVIDIA H200".
 /// - `resident_warps()`: number of warps that keep the whole device busy.
 /// - `peak_bytes()`: largest amount of device memory in use so far; zero if it is host memory.
+/// - `shares_host_memory`: whether device memory is host memory.
+/// - `used_bytes()`: size of all buffers of this process.
+/// - `free_bytes()`: amount of device memory that new buffers can take.
 ///
 /// Launches
 /// - `for_each_index(n, f)`: runs `f(i)` for each i in [0, n).
@@ -83,6 +91,9 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 /// - `copy(to, from, n)`: copies them within the device; the arrays do not overlap.
 /// - `upload(to, from, n)`: copies them from the host, where they must stay until the next `wait`.
 /// - `download(to, from, n)`: copies them to the host. Waits.
+/// - `begin_upload(transfer, to, from, n)`: copies them from a `host_buffer`. The copy begins after
+///   all earlier launches and runs beside later ones.
+/// - `await(transfer)`: later launches begin after this copy.
 ///
 /// Algorithms
 /// - `prefix_sum(in, out, n)`: `out[i] = in[0] + ... + in[i - 1]` for i in [0, n].
@@ -105,7 +116,7 @@ concept device = std::default_initializable<D> && warpagg::warp<typename D::warp
 float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, std::uint32_t* listed,
                    archetype::range* ranges, std::uint64_t* required,
                    typename D::template buffer<std::uint32_t> numbers,
-                   typename D::template buffer<std::uint64_t> sums) {
+                   typename D::template buffer<std::uint64_t> sums, typename D::transfer& transfer) {
     { c.name() } -> std::same_as<std::string>;
     { c.resident_warps() } -> std::same_as<std::size_t>;
     d.for_each_index(n, archetype::index_kernel{});
@@ -115,6 +126,12 @@ float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, s
     d.copy(p, from, n);
     d.upload(p, from, n);
     d.download(p, from, n);
+    requires buffer_of < typename D::template host_buffer<float>,
+    float > ;
+    d.begin_upload(transfer, p, from, n);
+    d.await(transfer);
+    { transfer.is_done() } -> std::same_as<bool>;
+    transfer.wait();
     d.prefix_sum(numbers, sums, n);
     d.sort_pairs(numbers, numbers, n);
     d.distribute(n, archetype::item_list{}, n, std::uint64_t{}, listed, ranges, required);
@@ -124,6 +141,9 @@ float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, s
     d.sample_times(1);
     { d.times() } -> std::convertible_to<stage_times>;
     { c.peak_bytes() } -> std::same_as<std::size_t>;
+    { D::shares_host_memory } -> std::convertible_to<bool>;
+    { c.used_bytes() } -> std::same_as<std::size_t>;
+    { c.free_bytes() } -> std::same_as<std::size_t>;
     d.wait();
 };
 

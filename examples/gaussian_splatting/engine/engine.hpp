@@ -12,8 +12,10 @@
 #include "../checkpoint/state_archive.hpp"
 #include "../device/profiler.hpp"
 #include "../model/gaussians.hpp"
+#include "../photos/photo_plan.hpp"
 #include "../scene/scene.hpp"
 #include "feature_state.hpp"
+#include "photo_prefetch.hpp"
 #include "step_report.hpp"
 #include "training_setup.hpp"
 
@@ -26,9 +28,10 @@ class engine {
     virtual ~engine() = default;
 
     /// Sets the training views and the held-out views. Also stores each training view at
-    /// `downscales` smaller sizes; each size halves the previous one.
-    virtual void set_views(const std::vector<view>& train, const std::vector<view>& test,
-                           int downscales = 0) = 0;
+    /// `downscales` smaller sizes; each size halves the previous one. If the views are streamed,
+    /// loads their photos within `memory` when they are needed.
+    virtual void set_views(const std::vector<view>& train, const std::vector<view>& test, int downscales = 0,
+                           const photos::photo_plan& memory = {}) = 0;
     /// Replaces the model and sets Adam's moments to zero. Features keep their learned values, such
     /// as exposures.
     virtual void set_model(const gaussians& model) = 0;
@@ -65,6 +68,8 @@ class engine {
                                   std::vector<float>* render = nullptr) = 0;
 
     std::size_t count() const { return count_; }
+    /// Returns whether the last call of `densify` made as many Gaussians as `max_device_bytes` allows.
+    bool lacks_memory() const { return lacks_memory_; }
     /// Returns the timetable of the densification strategy. Precondition: `begin` was called.
     const train::timetable& timetable() const { return *timetable_; }
     device::profiler& profile() { return *profiler_; }
@@ -72,12 +77,16 @@ class engine {
     /// it: `take_report` was called after the last step. Precondition for loading it: `begin` was
     /// called, with the same training views.
     checkpointed& state() { return *state_; }
+    /// Returns the interface to streamed photos, or null if all photos are in device memory.
+    photo_prefetch* streamed_photos() { return photos_; }
 
   protected:
     std::size_t count_ = 0;  ///< number of Gaussians
+    bool lacks_memory_ = false;
     const train::timetable* timetable_ = nullptr;
     device::profiler* profiler_ = nullptr;
     checkpointed* state_ = nullptr;
+    photo_prefetch* photos_ = nullptr;
 };
 
 /// Returns a factory of CPU engines for each instruction set that this machine can run, the best

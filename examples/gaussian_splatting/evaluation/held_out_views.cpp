@@ -9,6 +9,7 @@
 #include <set>
 
 #include "../core/parallel.hpp"
+#include "../scene/view_photo.hpp"
 #include "fit_exposure.hpp"
 #include "interior_ssim.hpp"
 #include "png_psnr.hpp"
@@ -76,7 +77,8 @@ class batch {
 
   private:
     void measure_on_host(std::size_t first, std::size_t i, view_quality& to) {
-        const image& photo = scene_.test[first + i].pixels;
+        const view_photo decoded(scene_.test[first + i]);
+        const image& photo = decoded.pixels();
         const image_pair& pair = pairs_[i] = comparable(renders_[i], photo, background_);
         to.ssim_interior = interior_ssim(pair.render, pair.target, photo);
         to.psnr_8bit = png_psnr(pair.render, pair.target, photo);

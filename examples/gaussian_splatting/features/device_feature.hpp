@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "../checkpoint/state_archive.hpp"
@@ -10,7 +11,6 @@
 #include "../engine/training_setup.hpp"
 #include "../model/gaussians.hpp"
 #include "../render/renderer.hpp"
-#include "../scene/image_pyramid.hpp"
 
 namespace gs::features {
 
@@ -20,7 +20,7 @@ template <class Renderer>
 struct step {
     const train::step_plan& plan;
     const gs::camera& camera;
-    std::size_t level;  ///< size level of the view: it is downsampled by two this many times
+    const std::uint16_t* depths;  ///< depth map of the view, in device memory, or null
     Renderer& renderer;
     float gradient_scale;  ///< the largest gradient scale of the loss and of all features
     accumulator accumulate;
@@ -40,7 +40,7 @@ class device_feature : public train::feature_state {
 
     /// Prepares a training run. If the feature is on, a call of `set_values` follows.
     virtual void begin(const train::training_setup&) {}
-    virtual void set_views(const image_pyramid&) {}
+    virtual void set_views(std::size_t /*training_views*/) {}
     virtual void set_model(const gaussians&) {}
     virtual void get_model(gaussians&) {}
 

@@ -44,8 +44,8 @@ class device_features {
                 f->set_values(values->second);
         }
     }
-    void set_views(const image_pyramid& levels) {
-        for (auto& [name, f] : parts_) f->set_views(levels);
+    void set_views(std::size_t training_views) {
+        for (auto& [name, f] : parts_) f->set_views(training_views);
     }
     void set_model(const gaussians& model) {
         for (auto& [name, f] : parts_) f->set_model(model);

@@ -13,9 +13,9 @@ namespace gs {
 struct depth_map {
     int width = 0;
     int height = 0;
-    std::vector<std::uint16_t> values;  ///< by rows from the top; 0 if unknown; empty without a map
+    std::vector<std::uint16_t> values;  ///< by rows from the top; 0 if unknown
 
-    bool is_there() const { return !values.empty(); }
+    bool is_there() const { return width > 0; }
 };
 
 /// The line from values to inverse depths: inverse depth = scale * value + offset. A scale of zero

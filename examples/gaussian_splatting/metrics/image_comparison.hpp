@@ -27,6 +27,9 @@ class image_comparison {
         device_.zero(totals_.data(), comparison_total_count);
     }
 
+    /// Returns the size of the maps of a pixel.
+    static constexpr std::size_t bytes_per_pixel() { return comparison_maps<Real>::count * sizeof(Real); }
+
     /// Sets the target of the next comparisons.
     void set_target(const target_image& target) {
         static_assert(std::endian::native == std::endian::little);

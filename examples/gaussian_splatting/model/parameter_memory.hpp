@@ -30,6 +30,13 @@ class parameter_memory {
                                   : 0);
         gaussians_with_sh_ = count;
     }
+    /// Returns the size of the parameters of a Gaussian.
+    static std::size_t bytes_per_gaussian(int sh_degree) {
+        std::size_t values = 0;
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            if (has_parameter(p, sh_degree)) values += width_of(static_cast<parameter>(p));
+        return values * sizeof(float);
+    }
     /// Changes the SH degree and keeps the contents. Frees the coefficients above degree `to`; new
     /// coefficients above degree `from` are zero.
     void change_sh_degree(Device& device, int from, int to) {

@@ -16,6 +16,10 @@ struct trained_parameters {
     /// The last step that updated each Gaussian.
     typename Device::template buffer<std::uint32_t> last_step;
 
+    /// Returns the size of the parameters of a Gaussian with their moments.
+    static std::size_t bytes_per_gaussian(int sh_degree) {
+        return 3 * parameter_memory<Device>::bytes_per_gaussian(sh_degree) + sizeof(std::uint32_t);
+    }
     /// Returns whether all arrays have the sizes for this number of Gaussians and this SH degree.
     bool fits(std::size_t count, int sh_degree) const {
         const std::size_t with_sh = values.gaussians_with_sh();

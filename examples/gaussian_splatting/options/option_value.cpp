@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <string_view>
 
+#include "../core/byte_size.hpp"
 #include "../core/enumerated.hpp"
 
 namespace gs::options {
@@ -54,6 +56,19 @@ double read_share(const std::string& word) {
     return *value;
 }
 
+std::uint64_t read_byte_size(const std::string& word) {
+    const std::size_t digits = std::min(word.find_first_not_of("0123456789."), word.size());
+    const std::string_view unit = std::string_view(word).substr(digits);
+    const auto found =
+        std::ranges::find(byte_units, unit.empty() ? "B" : unit, &decltype(byte_units)::value_type::first);
+    const auto number = number_in<double>(word.substr(0, digits));
+    constexpr double most = 1e18;
+    if (found == byte_units.end() || !number || !(*number > 0) ||
+        !(*number * static_cast<double>(found->second) <= most))
+        throw refused_word("must be a size such as 16GB or 500MB, not '" + word + "'");
+    return static_cast<std::uint64_t>(*number * static_cast<double>(found->second));
+}
+
 std::size_t read_choice(const std::string& word, const std::vector<std::string>& names) {
     const auto found = std::ranges::find(names, word);
     if (found == names.end()) throw refused_word("must be " + alternatives(names) + ", not '" + word + "'");
@@ -85,6 +100,13 @@ option_value iterations(std::set<int>& member) {
                 },
             .json = [&member] { return json_of(member); },
             .is_list = true};
+}
+
+option_value byte_size(std::optional<std::uint64_t>& member) {
+    return {.type = "SIZE",
+            .range = "such as 16GB or 500MB",
+            .read = [&member](const std::string& word) { member = read_byte_size(word); },
+            .json = [&member] { return json_of(member); }};
 }
 
 option_value word(std::string& member, std::vector<std::string> names) {

@@ -44,6 +44,9 @@ std::uint64_t read_whole(const std::string& word, std::uint64_t least, std::uint
 double read_positive(const std::string& word);
 double read_not_negative(const std::string& word);
 double read_share(const std::string& word);
+/// A size in bytes: a number, which may have a fraction, and a unit of `byte_units`; without a unit,
+/// whole bytes.
+std::uint64_t read_byte_size(const std::string& word);
 /// @}
 
 /// Returns the index of `word` in `names`. Throws `refused_word`, which lists the names, for other
@@ -128,6 +131,9 @@ option_value share(Member& member) {
             .read = [&member](const std::string& word) { member = read_share(word); },
             .json = [&member] { return json_of(member); }};
 }
+
+/// A size in bytes, such as 16GB.
+option_value byte_size(std::optional<std::uint64_t>& member);
 
 /// One of the words in `names_of(Enum)`.
 template <class Enum>

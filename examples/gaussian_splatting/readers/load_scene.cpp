@@ -6,7 +6,10 @@
 #include <iterator>
 #include <utility>
 
+#include "../core/byte_size.hpp"
 #include "../core/error.hpp"
+#include "../photos/packed_photo.hpp"
+#include "../photos/photo_plan.hpp"
 #include "load_views.hpp"
 #include "photo_files.hpp"
 #include "scene_archive.hpp"
@@ -53,7 +56,7 @@ std::vector<view> views_of(std::vector<image_record>& images, const load_options
     std::vector<image_record> files;
     std::ranges::copy_if(images, std::back_inserter(files),
                          [](const image_record& one) { return !one.has_pixels(); });
-    std::vector<view> loaded = load_views(files, options.resolution, log);
+    std::vector<view> loaded = load_views(files, options, log);
     auto next = loaded.begin();
     std::vector<view> views;
     views.reserve(images.size());
@@ -76,9 +79,21 @@ bool any_has_alpha(const std::vector<view>& views) {
     return std::ranges::any_of(views, [](const view& one) { return one.pixels.has_alpha; });
 }
 
+/// Throws `error` if photos that have no files exceed the limit of memory.
+void require_memory(const std::vector<view>& views, const load_options& options) {
+    std::uint64_t bytes = 0;
+    for (const view& v : views)
+        if (!v.is_streamed()) bytes += photos::packed_bytes(v.camera, v.depths.is_there());
+    if (bytes > options.most_photo_bytes)
+        throw error("the photos of " + options.data + " have " + size_in_bytes(bytes) +
+                    " and no files, so they cannot be loaded in parts: lower --resolution, or raise "
+                    "--photo-memory");
+}
+
 scene load_opened(const load_options& options, const log_function& say, reader_table readers) {
     scene_description described = describe(options, say, readers);
     std::vector<view> views = views_of(described.images, options, say);
+    require_memory(views, options);
     scene result;
     result.points = std::move(described.points);
     result.object_centered = described.object_centered;
@@ -99,8 +114,13 @@ scene load_archive(const load_options& options, const log_function& say, reader_
     const auto accepts = [&](const reader* one) { return one->probe(opened.data); };
     if (std::ranges::none_of(readers, accepts)) opened.data = archive.only_folder().string();
     try {
-        return load_opened(
+        scene loaded = load_opened(
             opened, [&](const std::string& line) { say(archive.with_archive_name(line)); }, readers);
+        if (photos::any_is_streamed(loaded.train, loaded.test))
+            throw error("the photos of " + options.data +
+                        " exceed the memory for photos: unpack the archive, so that training can read "
+                        "its files again, or raise --photo-memory");
+        return loaded;
     } catch (const error& problem) {
         throw error(archive.with_archive_name(problem.what()));
     }

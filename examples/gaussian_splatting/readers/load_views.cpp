@@ -6,15 +6,17 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <set>
 #include <tuple>
 #include <utility>
 
 #include "../core/error.hpp"
 #include "../core/parallel.hpp"
-#include "../image/mask.hpp"
+#include "../photos/packed_photo.hpp"
 #include "../scene/downsample.hpp"
 #include "fit_to_files.hpp"
+#include "photo_source.hpp"
 #include "size_text.hpp"
 
 namespace gs {
@@ -116,35 +118,6 @@ std::vector<camera> scale_to_resolution(const std::vector<camera>& full,
     return scaled;
 }
 
-image read_photo(const std::filesystem::path& file, const orientation& turn) {
-    image photo = read_image(file);
-    return turn == orientation() ? photo : turned_upright(photo, turn);
-}
-
-view load_view(const image_record& record, const fitted_photo& fitted, const camera& pinhole,
-               const camera& scaled) {
-    const lens& distortion = record.distortion;
-    image photo = read_photo(record.file, fitted.turn);
-    image mask = record.mask.empty() ? image() : read_mask(record.mask, photo);
-    depth_map depths = record.depth.empty()
-                           ? depth_map()
-                           : read_depth_map(record.depth, photo.width, photo.height, record.depth_holds);
-    if (!distortion.is_none()) {
-        photo = undistort(photo, fitted.taken_with, distortion, pinhole);
-        if (!record.mask.empty()) mask = undistort(mask, fitted.taken_with, distortion, pinhole);
-        if (depths.is_there()) depths = undistort(depths, fitted.taken_with, distortion, pinhole);
-    }
-    apply_mask(mask, photo);  // before downsampling, to keep masked pixels out of averages
-    mask_border(record.masked_border * fitted.taken_with.width / record.camera.width, photo);
-    clear_masked_depths(photo, depths);
-    photo = downsample(photo, scaled.width, scaled.height);
-    if (photo.is_all_masked())
-        throw error(record.mask.empty()
-                        ? record.file.string() + " is no larger than its masked border"
-                        : "the mask " + record.mask.string() + " leaves nothing of its photo");
-    return {record.name, scaled, std::move(photo), resized(depths, scaled.width, scaled.height)};
-}
-
 void report_count(const std::vector<image_record>& records, std::filesystem::path image_record::*file,
                   const char* one, const char* several, const log_function& log) {
     const auto count = std::ranges::count_if(records, [&](const auto& r) { return !(r.*file).empty(); });
@@ -155,15 +128,21 @@ void report_count(const std::vector<image_record>& records, std::filesystem::pat
 
 }  // namespace
 
-std::vector<view> load_views(const std::vector<image_record>& records, int resolution,
+std::vector<view> load_views(const std::vector<image_record>& records, const load_options& options,
                              const log_function& log) {
     const std::vector<fitted_photo> fitted = fit_to_files(records, log);
     require_wide_lenses(records, fitted);
     const std::vector<camera> pinholes = undistort_cameras(records, fitted, log);
-    const std::vector<camera> scaled = scale_to_resolution(pinholes, records, resolution, log);
+    const std::vector<camera> scaled = scale_to_resolution(pinholes, records, options.resolution, log);
+    std::uint64_t bytes = 0;
+    for (std::size_t i = 0; i < records.size(); ++i)
+        bytes += photos::packed_bytes(scaled[i], !records[i].depth.empty());
+    const bool streams = bytes > options.most_photo_bytes;
     std::vector<view> views(records.size());
     for_each_in_parallel(records.size(), [&](std::size_t i) {
-        views[i] = load_view(records[i], fitted[i], pinholes[i], scaled[i]);
+        photo_source source{records[i], fitted[i], pinholes[i], scaled[i]};
+        views[i] = streams ? streamed_view(std::make_shared<const photo_source>(std::move(source)))
+                           : resident_view(source);
     });
     report_count(records, &image_record::mask, " has a mask", " have masks", log);
     report_count(records, &image_record::depth, " has a depth map", " have depth maps", log);

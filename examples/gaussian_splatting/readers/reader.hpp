@@ -23,6 +23,7 @@ struct load_options {
     bool masks = true;       ///< apply the scene's masks
     bool depths = true;      ///< load the scene's depth maps
     std::uint64_t seed = 0;  ///< for readers that draw random points
+    std::uint64_t most_photo_bytes = ~std::uint64_t{0};  ///< larger photos are streamed: see `view`
 
     // Only some readers use the following options: see `reader_option`.
     std::string images = "images";  ///< the folder of the images, relative to `data`

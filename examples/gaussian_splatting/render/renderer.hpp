@@ -66,6 +66,22 @@ class renderer {
     }
     std::uint64_t reserved_instances() const { return capacity_; }
 
+    /// Returns the size of the memory for each Gaussian, each instance and each pixel of a view.
+    /// @{
+    static constexpr std::size_t bytes_per_gaussian(accumulator how) {
+        return sizeof(splat<Real>) + sizeof(tile_box) + 3 * sizeof(std::uint32_t) +
+               gradient_sums<Device, Real>::bytes_per_gaussian(how);
+    }
+    static constexpr std::size_t bytes_per_instance() {
+        return sizeof(std::uint32_t) +
+               (checkpoint_values * sizeof(Real) + sizeof(std::uint32_t)) / Cut::segment;
+    }
+    static constexpr std::size_t bytes_per_pixel() {
+        constexpr std::size_t of_tile = checkpoint_values * sizeof(Real) + sizeof(tile_range);
+        return 4 * sizeof(Real) + sizeof(std::uint32_t) + of_tile / (tile_size * tile_size);
+    }
+    /// @}
+
     /// Draws the view into `render()`, three planes. `background_image`: three planes that replace
     /// the background; they must exist until `backward`.
     void forward(const model& gaussians, std::size_t count, const camera& view, int sh_degree,

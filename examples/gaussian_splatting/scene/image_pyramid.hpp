@@ -10,9 +10,6 @@
 
 namespace gs {
 
-/// The training views at each size. The full size comes first.
-using image_pyramid = std::vector<std::span<const view>>;
-
 /// Returns the views at `downscales` smaller sizes, with sides divided by 2, 4, 8 and so on. Runs
 /// in parallel.
 inline std::vector<std::vector<view>> downsampled_levels(std::span<const view> views, int downscales) {

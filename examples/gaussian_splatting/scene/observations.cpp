@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "../core/parallel.hpp"
+#include "view_photo.hpp"
 
 namespace gs {
 namespace {
@@ -94,25 +95,34 @@ std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vec
     return seen;
 }
 
-observed_points observe_points(const scene& of) {
-    const std::size_t step = of.points.size() / most_points + 1;
-    std::vector<std::vector<std::pair<std::uint32_t, observation>>> by_view(of.train.size());
-    for_each_in_parallel(of.train.size(), [&](std::size_t v) {
-        const view& photo = of.train[v];
-        for (const place_in_photo& p : points_in_sight(photo.camera, of.points)) {
-            if (p.point % step != 0) continue;
-            std::optional<observation> o = look(photo.pixels, p);
-            if (!o) continue;
-            o->view = static_cast<std::uint32_t>(v);
-            o->direction = glm::vec3(glm::normalize(of.points[p.point].position - photo.camera.center()));
-            o->footprint = static_cast<float>(p.depth / std::sqrt(photo.camera.fx * photo.camera.fy));
-            by_view[v].emplace_back(p.point / static_cast<std::uint32_t>(step), *o);
-        }
-    });
-    std::vector<std::vector<observation>> by_point(of.points.size() / step + 1);
-    for (const auto& seen : by_view)
+point_observer::point_observer(const scene& of)
+    : scene_(of), step_(of.points.size() / most_points + 1), by_view_(of.train.size()) {}
+
+void point_observer::observe(std::size_t v, const image& photo) {
+    const camera& taken_with = scene_.train[v].camera;
+    for (const place_in_photo& p : points_in_sight(taken_with, scene_.points)) {
+        if (p.point % step_ != 0) continue;
+        std::optional<observation> o = look(photo, p);
+        if (!o) continue;
+        o->view = static_cast<std::uint32_t>(v);
+        o->direction = glm::vec3(glm::normalize(scene_.points[p.point].position - taken_with.center()));
+        o->footprint = static_cast<float>(p.depth / std::sqrt(taken_with.fx * taken_with.fy));
+        by_view_[v].emplace_back(p.point / static_cast<std::uint32_t>(step_), *o);
+    }
+}
+
+observed_points point_observer::observations() const {
+    observed_points by_point(scene_.points.size() / step_ + 1);
+    for (const auto& seen : by_view_)
         for (const auto& [point, o] : seen) by_point[point].push_back(o);
     return by_point;
+}
+
+observed_points observe_points(const scene& of) {
+    point_observer observer(of);
+    for_each_in_parallel(of.train.size(),
+                         [&](std::size_t v) { observer.observe(v, view_photo(of.train[v]).pixels()); });
+    return observer.observations();
 }
 
 }  // namespace gs

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <utility>
 #include <vector>
 
 #include "scene.hpp"
@@ -32,9 +34,25 @@ struct place_in_photo {
 /// up to a few point spacings away in the image.
 std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<colored_point>& points);
 
-/// Returns the observations of a sample of the points, at most 6000, in the training photos. Skips
+/// Collects the observations of a sample of the points, at most 6000, in the training photos. Skips
 /// observations of points that are not `points_in_sight`, and those where the photo is transparent
 /// or a color channel is saturated. Cost: projects all points into all photos.
+class point_observer {
+  public:
+    /// The scene must outlive the object.
+    explicit point_observer(const scene& of);
+    /// Observes the points in the photo of a training view, or in an image that replaces it. Several
+    /// threads may call it, for different views.
+    void observe(std::size_t view, const image& photo);
+    observed_points observations() const;
+
+  private:
+    const scene& scene_;
+    std::size_t step_;  ///< distance of two points of the sample
+    std::vector<std::vector<std::pair<std::uint32_t, observation>>> by_view_;
+};
+
+/// Returns the observations in all training photos: see `point_observer`.
 observed_points observe_points(const scene& of);
 
 }  // namespace gs

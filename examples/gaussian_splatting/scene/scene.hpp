@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -14,12 +16,26 @@
 
 namespace gs {
 
-/// One photo with its camera, both at the resolution of training.
+/// The pixels and the depth map of a view.
+struct photo {
+    image pixels;
+    depth_map depths{};  ///< has the photo's size, or is empty
+};
+
+/// One photo with its camera, both at the resolution of training. A view holds its photo, or it can
+/// decode it: see `view_photo`, which returns the photo in both cases.
 struct view {
     std::string name;  ///< path relative to the images folder, with its ending
     gs::camera camera;
-    image pixels;
-    depth_map depths{};  ///< has the photo's size, or is empty
+    image pixels;        ///< has size and flags, but no values if `is_streamed`
+    depth_map depths{};  ///< has the photo's size, or is empty; has no values if `is_streamed`
+
+    /// Decodes the photo. Empty if the view holds it. Threads may call it. Throws `error`, for
+    /// example if the file has changed since the view was made.
+    std::function<photo()> decode{};
+    std::size_t decode_bytes = 0;  ///< largest size of the images that `decode` holds at once
+
+    bool is_streamed() const { return decode != nullptr; }
 };
 
 struct colored_point {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "photo_brightness.hpp"
@@ -20,6 +21,8 @@ class scene_statistics {
     static constexpr std::size_t least_photos_of_point = 5;
 
     explicit scene_statistics(const scene& of) : scene_(of) {}
+    /// Uses these observations instead of those in the scene's photos.
+    scene_statistics(const scene& of, observed_points points) : scene_(of), points_(std::move(points)) {}
 
     const gs::scene& scene() const { return scene_; }
     /// Returns the observations of each point: see `observe_points`.

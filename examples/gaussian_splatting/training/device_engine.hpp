@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -60,12 +62,11 @@ class device_engine final : public engine, device::profiler, checkpointed {
         start({});
     }
 
-    void set_views(const std::vector<view>& train, const std::vector<view>& test, int downscales) override {
-        const auto smaller = downsampled_levels(train, downscales);
-        image_pyramid levels{train};
-        levels.insert(levels.end(), smaller.begin(), smaller.end());
-        views_.set(levels, test);
-        features_.set_views(levels);
+    void set_views(const std::vector<view>& train, const std::vector<view>& test, int downscales,
+                   const photos::photo_plan& memory) override {
+        views_.set(train, test, downscales, memory);
+        photos_ = views_.cache();
+        features_.set_views(train.size());
         set_level(0);
     }
 
@@ -106,17 +107,22 @@ class device_engine final : public engine, device::profiler, checkpointed {
 
     void step(const step_plan& plan) override {
         const photo& shot = views_.train(level_)[plan.view];
-        loss_->set_target(views_.target(shot, plan.background));
-        step_type s{plan, shot.camera, level_, renderer_, 0, setup_.facts.gradient};
+        const auto loaded = views_.load(shot);
+        const target_image target = loaded.target(plan.background);
+        loss_->set_target(target);
+        step_type s{plan, shot.camera, loaded.depths(), renderer_, 0, setup_.facts.gradient};
         s.gradient_scale = std::max(loss_->gradient_scale(), features_.gradient_scale(s));
-        device_.iteration(key_of(s), [&] { iterate(s); });
+        device_.iteration(key_of(s, target), [&] { iterate(s); });
         lists_.was_noted(plan.view, count_);
+        if (views_.cache() != nullptr) views_.cache()->upload_ahead();
     }
 
     std::uint64_t densify(int iteration) override {
         drawn_views views(*this, views_.train(level_));
+        const std::size_t most = growth_limit();
         const densify_report report =
-            strategy_->run(iteration, {in_training(), seen_.data(), gather_, views});
+            strategy_->run(iteration, {in_training(), seen_.data(), gather_, views, most});
+        lacks_memory_ = report.count >= most;
         begin_generation(report.count);
         return report.without_gradient;
     }
@@ -141,12 +147,12 @@ class device_engine final : public engine, device::profiler, checkpointed {
 
     image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
                           std::vector<float>* render) override {
-        const photo& shot = views_.held_out(test_view);
+        const photo& shot = views_.held_out()[test_view];
         draw(shot.camera, background, sh_degree_);
         const float* exposed = features_.show_held_out(test_view, renderer_.render(), shot.pixels());
         shown_.resize(3 * shot.pixels());
         device_.for_each_index(shown_.size(), clamp_render{exposed, shown_.data()});
-        comparison_.set_target(views_.target(shot, background));
+        comparison_.set_target(views_.load_in_order(views_.held_out(), test_view).target(background));
         comparison_.compare(shown_.data());
         if (render != nullptr) *render = downloaded(exposed, shot.camera);
         return comparison_.take();
@@ -185,8 +191,8 @@ class device_engine final : public engine, device::profiler, checkpointed {
         drawn_view draw(std::size_t view) override {
             const photo& shot = views_[view];
             on_.draw(shot.camera, {}, on_.sh_degree_);
-            return {on_.views_.target(shot, {}), on_.renderer_.render(), on_.renderer_.splats(),
-                    on_.renderer_.tiles_of()};
+            return {on_.views_.load_in_order(views_, view).target({}), on_.renderer_.render(),
+                    on_.renderer_.splats(), on_.renderer_.tiles_of()};
         }
         const float* sum_scores(const float* scores) override {
             on_.device_.pause_times(true);
@@ -207,8 +213,43 @@ class device_engine final : public engine, device::profiler, checkpointed {
     device::stage_times times() override { return device_.times(); }
     std::uint64_t pairs() override { return all_pairs() - drawn_pairs_; }
     std::size_t peak_device_bytes() const override { return device_.peak_bytes(); }
+    bool shares_host_memory() const override { return Device::shares_host_memory; }
+    std::size_t used_device_bytes() const override { return device_.used_bytes(); }
+    std::size_t free_device_bytes() const override { return device_.free_bytes(); }
+    device::memory_forecast forecast(std::size_t gaussians, int sh_degree) const override {
+        const double per_gaussian = static_cast<double>(renderer_.reserved_instances()) /
+                                    static_cast<double>(std::max<std::size_t>(count_, 1));
+        const auto instances = static_cast<std::uint64_t>(per_gaussian * static_cast<double>(gaussians));
+        constexpr std::size_t of_pixel = renderer_type::bytes_per_pixel() +
+                                         image_comparison<Device, float>::bytes_per_pixel() +
+                                         3 * sizeof(float);
+        return {views_.photo_bytes(), gaussians * bytes_per_gaussian(sh_degree),
+                instances * renderer_type::bytes_per_instance() + views_.most_pixels() * of_pixel};
+    }
     void wait() override { device_.wait(); }
     /// @}
+
+    /// Returns the memory of a Gaussian, without its tile lists.
+    std::size_t bytes_per_gaussian(int sh_degree) const {
+        constexpr std::size_t of_sort = 2 * sizeof(std::uint32_t), of_distribution = sizeof(std::uint64_t),
+                              of_strategy = 4 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
+        return trained_parameters<Device>::bytes_per_gaussian(sh_degree) + sizeof(raster::visibility) +
+               renderer_type::bytes_per_gaussian(setup_.facts.gradient) +
+               parameter_gather<Device>::bytes_per_gaussian(sh_degree) + of_sort + of_distribution +
+               of_strategy;
+    }
+    /// Returns the largest number of Gaussians for which the limit of memory suffices.
+    std::size_t growth_limit() const {
+        if (setup_.facts.max_device_bytes == 0) return std::numeric_limits<std::size_t>::max();
+        const std::uint64_t one = std::max<std::uint64_t>(
+            (forecast(2 * count_, sh_degree_).total() - forecast(count_, sh_degree_).total()) /
+                std::max<std::size_t>(count_, 1),
+            1);
+        const std::uint64_t in_use =
+            std::max<std::uint64_t>(device_.used_bytes(), forecast(count_, sh_degree_).total());
+        if (in_use >= setup_.facts.max_device_bytes) return count_;
+        return count_ + (setup_.facts.max_device_bytes - in_use) / one;
+    }
 
     void exchange(state_archive& archive) override {
         const state_archive::scope scope(archive, "engine");
@@ -265,6 +306,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
 
     void set_level(std::size_t level) {
         level_ = level;
+        if (views_.cache() != nullptr) views_.cache()->set_level(level);
         lists_.reset(views_.train(level).size());
     }
 
@@ -282,14 +324,14 @@ class device_engine final : public engine, device::profiler, checkpointed {
 
     /// Returns the graph key: all values that determine the launches of `iterate`, their ranges and
     /// memory.
-    device::graph_key key_of(const step_type& s) const {
+    device::graph_key key_of(const step_type& s, const target_image& target) const {
         device::graph_key key{runs_,
                               count_,
                               renderer_.reserved_instances(),
                               static_cast<std::size_t>(s.camera.width),
                               static_cast<std::size_t>(s.camera.height),
                               s.camera.fisheye ? std::size_t{1} : 0,
-                              views_.train(level_)[s.plan.view].masked ? std::size_t{1} : 0,
+                              target.masked ? std::size_t{1} : 0,
                               effects_.antialiasing ? std::size_t{1} : 0,
                               trained_.values.gaussians_with_sh(),
                               strategy_->memory_key(s.plan.iteration)};

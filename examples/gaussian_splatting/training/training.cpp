@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "../core/byte_size.hpp"
 #include "../core/error.hpp"
 #include "../core/parse_json.hpp"
 #include "../core/sanitize_for_message.hpp"
@@ -31,6 +32,7 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     setup.facts.white = scene.has_alpha && options.background.color == std::array<float, 3>{1, 1, 1};
     setup.facts.transparent = scene.has_alpha;
     setup.facts.max_gaussians = options.max_cap;
+    setup.facts.max_device_bytes = options.max_device_bytes;
     setup.facts.seed = options.seed;
     setup.facts.gradient = options.gradient;
     setup.densification = options.densification;
@@ -86,6 +88,7 @@ training::training(train::engine& engine, const gs::scene& scene, const train_op
       schedule_(options.schedule),
       budget_(options.seconds ? std::optional<time_budget>({*options.seconds, options.max_cap})
                               : std::nullopt),
+      begins_(events.begins),
       is_interrupted_(events.is_interrupted),
       clock_(events.seconds) {
     schedule_.iterations = options.schedule.iterations.first_iterations(0);
@@ -93,15 +96,30 @@ training::training(train::engine& engine, const gs::scene& scene, const train_op
     schedule_.views = static_cast<int>(scene.train.size());
     schedule_.transparent = scene.has_alpha;
     engine_.begin(setup_of(scene, options, schedule_));
-    add_step();
     add_memory();
+    add_step();
     add({phase::restructure, "densify", [this](int iteration) { return timetable().due(iteration); },
-         [this](int iteration) {
+         [this, warn = events.warn](int iteration) {
              result_.without_gradient = std::max(result_.without_gradient, engine_.densify(iteration));
+             note_limited_growth(iteration, warn);
          }});
     add({phase::upkeep, "adjust parameters", [](int) { return true; },
          [this](int iteration) { engine_.adjust(iteration); }});
     add_reports(events);
+}
+
+/// Warns once if the limit of memory stops growth.
+void training::note_limited_growth(int iteration, const std::function<void(const std::string&)>& warn) {
+    std::string& by = result_.growth_limited_by;
+    if (engine_.lacks_memory()) {
+        if (by != "max_memory")
+            warn("iteration " + std::to_string(iteration) + ": growth stops at " +
+                 std::to_string(engine_.count()) + " Gaussians, because the device's memory is limited to " +
+                 size_in_bytes(options_.max_device_bytes) + " (--max-memory)");
+        by = "max_memory";
+    } else if (by.empty() && engine_.count() >= options_.max_cap) {
+        by = "max_cap";
+    }
 }
 
 void training::add(action action) { actions_.push_back(std::move(action)); }
@@ -113,6 +131,18 @@ void training::add_step() {
         order->exchange(archive);
         exchange_random(archive, "random_colors", *colors);
     });
+    if (photo_prefetch* photos = engine_.streamed_photos(); photos != nullptr)
+        add({phase::prepare, "load photos ahead", [](int) { return true; },
+             [=, this](int iteration) {
+                 std::vector<photos::photo_request> next;
+                 for (const std::size_t view : order->upcoming(photos->look_ahead())) {
+                     const int needed_in = iteration + static_cast<int>(next.size());
+                     next.push_back({view, static_cast<std::size_t>(schedule_.downscales_at(needed_in))});
+                 }
+                 photos->expect(std::move(next));
+                 lost_photo_ = iteration < schedule_.iterations.last() ? photos->failure_ahead() : nullptr;
+                 if (lost_photo_) interrupted_ = true;
+             }});
     add({phase::step, "step", [](int) { return true; },
          [=, this](int iteration) {
              step_plan plan;
@@ -226,6 +256,7 @@ void training::exchange(state_archive& archive) {
         archive.exchange("densify_seconds", result_.densify_seconds);
         archive.exchange("skipped_steps", result_.skipped_steps);
         archive.exchange("without_gradient", result_.without_gradient);
+        archive.exchange("growth_limited_by", result_.growth_limited_by);
         exchange_reports(archive, result_.feature_reports);
         faults_.exchange(archive);
         losses_.exchange(archive);
@@ -293,6 +324,7 @@ train_result training::run() {
         level_ = schedule_.downscales_at(1);
         engine_.reserve(level_);
     }
+    begins_();
     engine_.profile().wait();
     start_ = clock_();
     begin_budget();
@@ -309,6 +341,7 @@ train_result training::run() {
         correct_plan(iteration);
     }
     engine_.profile().wait();
+    if (lost_photo_) std::rethrow_exception(lost_photo_);
     result_.iterations = finished_;
     result_.plan = schedule_.iterations;
     result_.seconds = seconds();

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chrono>
+#include <exception>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -32,7 +33,8 @@ struct train_options {
     /// If set, training lasts about this long: it corrects the plan of `schedule` while it runs.
     std::optional<double> seconds;
     strategy_settings densification;
-    std::size_t max_cap = 0;  ///< largest number of Gaussians
+    std::size_t max_cap = 0;             ///< largest number of Gaussians
+    std::uint64_t max_device_bytes = 0;  ///< see `training_facts::max_device_bytes`
     std::string loss = default_loss;
     std::uint64_t seed = 0;
     accumulator gradient = accumulator::native;
@@ -66,6 +68,7 @@ struct train_result {
     std::uint64_t left_out_gradients = 0;  ///< number of elements that were not finite
     std::uint64_t left_out_sums = 0;       ///< number of steps with a sum out of range
     std::uint64_t without_gradient = 0;    ///< largest result of `engine::densify`
+    std::string growth_limited_by;         ///< option that stopped growth, such as "max_memory", or empty
     std::map<std::string, nlohmann::ordered_json> feature_reports;  ///< parts of metrics.json
 };
 
@@ -85,6 +88,8 @@ struct train_events {
     /// Called in each iteration. If it returns true, training makes a checkpoint after the iteration
     /// and ends.
     std::function<bool()> is_interrupted = [] { return false; };
+    /// Called before the first iteration, after memory for it has been reserved.
+    std::function<void()> begins = [] {};
 };
 
 /// The mean loss over the steps of several reports of the engine.
@@ -166,6 +171,7 @@ class training {
     train_result& result() { return result_; }
 
   private:
+    void note_limited_growth(int iteration, const std::function<void(const std::string&)>& warn);
     void add_step();
     void add_memory();
     void add_reports(const train_events& events);
@@ -190,8 +196,10 @@ class training {
     std::vector<std::function<void(state_archive&)>> states_;
     std::function<void(int iteration)> save_;
     int finished_ = 0;  ///< last finished iteration
+    std::function<void()> begins_;
     std::function<bool()> is_interrupted_;
-    bool interrupted_ = false;  ///< whether training ends after this iteration
+    bool interrupted_ = false;       ///< whether training ends after this iteration
+    std::exception_ptr lost_photo_;  ///< why the photo of the next step cannot be decoded, or null
     train_result result_;
     int level_ = 0;              ///< size level: photos are halved this many times
     bool restructured_ = false;  ///< whether the phase `restructure` has acted in this iteration

@@ -40,6 +40,13 @@ class view_order {
         }
         return order_[next_++];
     }
+    /// Returns the results of the next calls of `next`.
+    std::vector<std::size_t> upcoming(std::size_t count) const {
+        view_order copy = *this;
+        std::vector<std::size_t> views(count);
+        for (std::size_t& view : views) view = copy.next();
+        return views;
+    }
     void exchange(state_archive& archive) {
         std::vector<std::size_t> views(order_.size());
         std::iota(views.begin(), views.end(), std::size_t{0});

@@ -22,7 +22,7 @@ using gs::gaussians;
 using gs::train::engine;
 using gs::train::error_score;
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 /// An iteration in which the model grows.
 constexpr int grow_at = 600;
 
@@ -79,7 +79,8 @@ TEST_CASE("error: pixels are wrong above the level, and masked pixels have no sc
                                           255, 255, 255, 0,    // masked
                                           0,   0,   0,   255,  // black
                                           0,   0,   0,   255};
-    const std::vector<float> render{0.95f, 0.8f, 0, 9, nan, 0.95f, 0.8f, 0, 0, nan, 0.95f, 0.8f, 0, 0, nan};
+    const std::vector<float> render{0.95f, 0.8f, 0, 9, not_a_number, 0.95f, 0.8f, 0, 0, not_a_number,
+                                    0.95f, 0.8f, 0, 0, not_a_number};
     std::vector<float> scores(15, 7);
     const gs::train::target_image target{.rgba = photo.data(), .width = 5, .height = 1, .masked = true};
     for (std::size_t i = 0; i < 5; ++i)
@@ -103,9 +104,9 @@ TEST_CASE("error: a Gaussian grows where its gradient is large and several views
     CHECK(decide(0.5f, steep, {1, 0.4f, 2, 0}) == stays);
     CHECK(decide(0, steep, {20, 30, 5, 2}) == goes);
     CHECK(decide(1, steep, {20, 30, 5, 2}) == grows);
-    CHECK(decide(nan, steep, {20, 30, 5, 2}) == goes);
-    CHECK(decide(0.5f, {nan, 10}, {20, 30, 5, 2}) == stays);
-    CHECK(decide(0.5f, steep, {nan, nan, 5, 2}) == stays);
+    CHECK(decide(not_a_number, steep, {20, 30, 5, 2}) == goes);
+    CHECK(decide(0.5f, {not_a_number, 10}, {20, 30, 5, 2}) == stays);
+    CHECK(decide(0.5f, steep, {not_a_number, not_a_number, 5, 2}) == stays);
 }
 
 TEST_CASE("error: sums that are not finite leave a score as it is") {
@@ -116,7 +117,7 @@ TEST_CASE("error: sums that are not finite leave a score as it is") {
     sums[gs::raster::sum_red] = 2;
     sums[gs::raster::sum_green] = 3;
     add(0);
-    sums[gs::raster::sum_red] = nan;
+    sums[gs::raster::sum_red] = not_a_number;
     add(0);
     sums[gs::raster::sum_red] = 0.25f;
     sums[gs::raster::sum_green] = 1;

@@ -44,7 +44,8 @@ class recorder final : public gs::train::engine, gs::device::profiler {
         profiler_ = this;
     }
 
-    void set_views(const std::vector<gs::view>&, const std::vector<gs::view>&, int) override {}
+    void set_views(const std::vector<gs::view>&, const std::vector<gs::view>&, int,
+                   const gs::photos::photo_plan&) override {}
     void set_model(const gs::gaussians&) override {}
     gs::gaussians get_model() override { return {}; }
     void begin(const gs::train::training_setup& setup) override {
@@ -107,6 +108,10 @@ class recorder final : public gs::train::engine, gs::device::profiler {
     gs::device::stage_times times() override { return {}; }
     std::uint64_t pairs() override { return 0; }
     std::size_t peak_device_bytes() const override { return 0; }
+    bool shares_host_memory() const override { return true; }
+    std::size_t used_device_bytes() const override { return 0; }
+    std::size_t free_device_bytes() const override { return 0; }
+    gs::device::memory_forecast forecast(std::size_t, int) const override { return {}; }
     void wait() override {}
 
     std::unique_ptr<gs::train::adaptive_schedule> schedule_;

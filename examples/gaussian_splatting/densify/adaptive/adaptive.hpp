@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "../../model/opacity.hpp"
@@ -38,7 +39,8 @@ class adaptive final : public strategy<Device> {
         if (c.count == 0) return {};
         const growth_marks marks = growth_.begin(c);
         if (schedule_.densifies(iteration)) {
-            const densify_config config = schedule_.densify_config_at(iteration, c.count);
+            densify_config config = schedule_.densify_config_at(iteration, c.count);
+            config.limits.cap = std::min(config.limits.cap, c.most);
             c.device.for_each_index(c.count,
                                     classify{c.parameters.values.read(), c.statistics, config, marks});
             const auto tally = growth_.grow(c, config.limits);

@@ -49,7 +49,8 @@ class error_driven final : public strategy<Device> {
         const growth_marks marks = growth_.begin(c);
         if (schedule_.densifies(iteration)) {
             score(iteration, static_cast<std::size_t>(config_.views), c);
-            const densify_config at = schedule_.densify_config_at(iteration, c.count);
+            densify_config at = schedule_.densify_config_at(iteration, c.count);
+            at.limits.cap = std::min(at.limits.cap, c.most);
             // Errors decide, too, so the gradient may be smaller.
             const error_limits limits{at.gradient / 2, static_cast<float>(config_.pixels), at.dense_scale,
                                       at.least_opacity};

@@ -58,7 +58,7 @@ class mcmc final : public strategy<Device> {
         std::uint64_t weight = 0;
         device_.download(&weight, weight_before_.data() + c.count, 1);
         if (weight == 0) return {c.count};  // nothing to copy
-        const std::size_t count = grown(c.count, iteration);
+        const std::size_t count = std::max(c.count, std::min(grown(c.count, iteration), c.most));
         c.gather.reserve(count);
         device_.for_each_index(count, draw_origins{c.count, dead_.data(), weight_before_.data(), facts_.seed,
                                                    static_cast<std::uint64_t>(iteration), drawn_.data(),

@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +21,7 @@
 #include <vector>
 #include <warpagg/warp/simd.hpp>
 
+#include "../../core/host_memory.hpp"
 #include "../device.hpp"
 #include "../scratch.hpp"
 #include "key_check.hpp"
@@ -41,6 +43,7 @@ inline constexpr const char* instruction_set = "";
 template <class Warp>
 class basic_cpu {
   public:
+    static constexpr bool shares_host_memory = true;
     using warp = Warp;
     /// A narrow warp, because kernels over Gaussians with 32 lanes need more values than registers
     /// exist.
@@ -52,7 +55,9 @@ class basic_cpu {
         void resize(std::size_t n) {
             if (n > capacity_) {
                 key_check::allocated();
-                memory_.reset(static_cast<T*>(::operator new[](n * sizeof(T), line)));
+                memory_.reset();
+                memory_ = {static_cast<T*>(::operator new[](n * sizeof(T), line)), release{n * sizeof(T)}};
+                used += n * sizeof(T);
                 capacity_ = n;
             }
             size_ = n;
@@ -64,10 +69,23 @@ class basic_cpu {
         static_assert(std::is_trivially_copyable_v<T>);
         static constexpr std::align_val_t line{64};  // a row of lanes lies in one cache line
         struct release {
-            void operator()(T* p) const { ::operator delete[](p, line); }
+            std::size_t bytes = 0;
+            void operator()(T* p) const {
+                ::operator delete[](p, line);
+                used -= bytes;
+            }
         };
         std::unique_ptr<T[], release> memory_;
         std::size_t size_ = 0, capacity_ = 0;
+    };
+
+    template <class T>
+    using host_buffer = buffer<T>;
+
+    /// Uploads finish at once.
+    struct transfer {
+        static bool is_done() { return true; }
+        static void wait() {}
     };
 
     basic_cpu() {
@@ -125,6 +143,12 @@ class basic_cpu {
     void download(T* to, const T* from, std::size_t n) {
         std::copy_n(from, n, to);
     }
+
+    template <class T>
+    void begin_upload(transfer&, T* to, const T* from, std::size_t n) {
+        std::copy_n(from, n, to);
+    }
+    void await(const transfer&) {}
 
     void prefix_sum(const buffer<std::uint32_t>& in, buffer<std::uint64_t>& out, std::size_t n) {
         std::uint64_t sum = 0;  // mutate: instances_counted_in_32_bits
@@ -222,9 +246,12 @@ class basic_cpu {
     const stage_times& times() { return times_; }
 
     std::size_t peak_bytes() const { return 0; }
+    std::size_t used_bytes() const { return used; }
+    std::size_t free_bytes() const { return available_host_bytes(); }
     void wait() {}
 
   private:
+    static inline std::atomic<std::size_t> used = 0;  ///< size of all buffers
     key_check key_check_;
     using clock = std::chrono::steady_clock;
 

@@ -22,6 +22,7 @@
 #include "memory.hpp"
 #include "sort.hpp"
 #include "times.hpp"
+#include "transfer.hpp"
 
 namespace gs::device {
 
@@ -79,15 +80,19 @@ __global__ void __launch_bounds__(block_size, least_blocks<F>) for_each_warp(uns
 
 }  // namespace detail
 
-/// The model of `device` for an NVIDIA GPU: the current CUDA device and one stream on it. Throws
-/// `error` if the GPU is out of memory.
+/// The model of `device` for an NVIDIA GPU: the current CUDA device, one stream on it, and a second
+/// one for `begin_upload`. Throws `error` if the GPU is out of memory.
 class cuda {
   public:
+    static constexpr bool shares_host_memory = false;
     using warp = warpagg::cuda_warp;
     using narrow_warp = warp;
 
     template <class T>
     using buffer = cuda_buffer<T>;
+    template <class T>
+    using host_buffer = page_locked_buffer<T>;
+    using transfer = cuda_transfer;
 
     cuda() : times_(stream_) {
         int processors = 0;
@@ -137,6 +142,15 @@ class cuda {
         check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToHost, stream_));
         wait();
     }
+
+    template <class T>
+    void begin_upload(transfer& upload, T* to, const T* from, std::size_t n) {
+        check(cudaEventRecord(launched_.event, stream_));
+        check(cudaStreamWaitEvent(upload_stream_, launched_.event));
+        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyHostToDevice, upload_stream_));
+        check(cudaEventRecord(upload.event, upload_stream_));
+    }
+    void await(const transfer& upload) { check(cudaStreamWaitEvent(stream_, upload.event)); }
 
     void prefix_sum(const buffer<std::uint32_t>& in, buffer<std::uint64_t>& out, std::size_t n) {
         prefix_sum_of(in.data(), out, n);
@@ -200,6 +214,8 @@ class cuda {
     const stage_times& times() { return times_.get(); }
 
     std::size_t peak_bytes() const { return pool_.peak_bytes(); }
+    std::size_t used_bytes() const { return pool_.used_bytes(); }
+    std::size_t free_bytes() const { return pool_.free_bytes(); }
     void wait() { check(cudaStreamSynchronize(stream_)); }
 
   private:
@@ -252,7 +268,8 @@ class cuda {
     }
 
     cuda_pool pool_;
-    owned_stream stream_;
+    owned_stream stream_, upload_stream_;
+    transfer launched_;  ///< marks the launches before an upload
     cuda_times times_;
     cuda_graph graph_;
     std::set<graph_key> keys_;    ///< graph keys of the iterations so far

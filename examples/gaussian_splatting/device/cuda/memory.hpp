@@ -16,7 +16,7 @@ namespace gs::device {
 
 inline void check(cudaError_t status) {
     if (status == cudaErrorMemoryAllocation)
-        throw error("the GPU is out of memory: lower --max-cap or --resolution");
+        throw error("the GPU is out of memory: lower --max-cap, --resolution or --photo-memory");
     if (status != cudaSuccess) throw std::runtime_error(std::string("CUDA: ") + cudaGetErrorString(status));
 }
 
@@ -33,6 +33,20 @@ class cuda_pool {
         std::uint64_t bytes = 0;
         check(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrUsedMemHigh, &bytes));
         return bytes;
+    }
+    /// Returns the number of bytes in use.
+    std::size_t used_bytes() const {
+        std::uint64_t bytes = 0;
+        check(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrUsedMemCurrent, &bytes));
+        return bytes;
+    }
+    /// Returns the number of bytes that the pool has released and the GPU has free.
+    std::size_t free_bytes() const {
+        std::uint64_t reserved = 0;
+        check(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrReservedMemCurrent, &reserved));
+        std::size_t unreserved = 0, all = 0;
+        check(cudaMemGetInfo(&unreserved, &all));
+        return unreserved + reserved - used_bytes();
     }
 
   private:

@@ -10,6 +10,7 @@
 
 #include "../../core/parallel.hpp"
 #include "../../scene/observations.hpp"
+#include "../../scene/view_photo.hpp"
 
 namespace gs::features {
 namespace {
@@ -36,10 +37,12 @@ std::pair<double, double> spread_of(const std::vector<depth_pair>& pairs, double
 /// values.
 std::optional<depth_line> line_of(const view& photo, const std::vector<colored_point>& points) {
     if (!photo.depths.is_there()) return std::nullopt;
+    const view_photo loaded(photo);
+    const depth_map& depths = loaded.depths();
     std::vector<depth_pair> pairs;
     for (const place_in_photo& p : points_in_sight(photo.camera, points)) {
         const auto row = static_cast<std::size_t>(p.y), column = static_cast<std::size_t>(p.x);
-        const auto value = photo.depths.values[row * static_cast<std::size_t>(photo.depths.width) + column];
+        const auto value = depths.values[row * static_cast<std::size_t>(depths.width) + column];
         if (value != 0) pairs.push_back({static_cast<double>(value), 1 / p.depth});
     }
     if (pairs.size() < least_points) return std::nullopt;

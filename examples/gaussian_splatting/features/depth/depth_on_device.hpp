@@ -23,21 +23,7 @@ class depth_on_device final : public device_feature<Renderer> {
         iterations_ = setup.facts.iterations;
         if (!setup.has("depth")) fits_.clear();
     }
-    void set_views(const image_pyramid& levels) override {
-        fits_.clear();
-        std::size_t values = 0;
-        for (const auto views : levels)
-            for (const view& v : views) values += v.depths.values.size();
-        maps_.resize(values);
-        first_.assign(levels.size(), {});
-        values = 0;
-        for (std::size_t level = 0; level < levels.size(); ++level)
-            for (const view& v : levels[level]) {
-                first_[level].push_back(v.depths.is_there() ? values : none);
-                device_.upload(maps_.data() + values, v.depths.values.data(), v.depths.values.size());
-                values += v.depths.values.size();
-            }
-    }
+    void set_views(std::size_t) override { fits_.clear(); }
 
     void set_values(const std::vector<float>& values) override {
         fits_.clear();
@@ -57,16 +43,14 @@ class depth_on_device final : public device_feature<Renderer> {
         gradient_.resize(3 * pixels);
         s.renderer.blend_depths();
         device_.for_each_index(
-            pixels, train::depth_gradient{s.renderer.render(), maps_.data() + first_[s.level][s.plan.view],
-                                          fits_[s.plan.view], pixel_weight(s), pixels, gradient_.data()});
+            pixels, train::depth_gradient{s.renderer.render(), s.depths, fits_[s.plan.view], pixel_weight(s),
+                                          pixels, gradient_.data()});
         s.renderer.backward_depths(gradient_.data(), s.gradient_scale, s.accumulate);
     }
 
   private:
-    static constexpr std::size_t none = ~std::size_t{0};
-
     bool has_target(const step& s) const {
-        return !fits_.empty() && fits_[s.plan.view].scale > 0 && first_[s.level][s.plan.view] != none;
+        return !fits_.empty() && fits_[s.plan.view].scale > 0 && s.depths != nullptr;
     }
     /// Returns the weight of the mean error of inverse depths in internal coordinates. It decays
     /// from 1 to 0.01, as in the implementation of Kerbl et al. 2024, which uses units of structure
@@ -80,10 +64,8 @@ class depth_on_device final : public device_feature<Renderer> {
     }
 
     typename Renderer::device_type& device_;
-    buffer<std::uint16_t> maps_;
     buffer<float> gradient_;
-    std::vector<std::vector<std::size_t>> first_;  ///< index in `maps_`, by level and view
-    std::vector<depth_fit> fits_;                  ///< one per training view if the feature is on
+    std::vector<depth_fit> fits_;  ///< one per training view if the feature is on
     iteration_plan iterations_;
 };
 

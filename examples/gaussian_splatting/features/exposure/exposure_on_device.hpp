@@ -24,9 +24,9 @@ class exposure_on_device final : public device_feature<Renderer> {
         learns_ = setup.has("exposure");
         reset();
     }
-    void set_views(const image_pyramid& levels) override {
+    void set_views(std::size_t training_views) override {
         learns_ = false;
-        views_ = levels[0].size();
+        views_ = training_views;
         reset();
     }
 

@@ -10,6 +10,7 @@
 #include "../../core/parallel.hpp"
 #include "../../engine/engine.hpp"
 #include "../../image/image.hpp"
+#include "../../scene/view_photo.hpp"
 #include "direction.hpp"
 
 namespace gs::features {
@@ -29,13 +30,10 @@ void leave_residual(image& photo, const std::vector<float>& render, const std::a
         }
 }
 
-/// Returns a scene with the points of `of` and with the residuals of its training photos.
-scene residual_of(const scene& of, train::engine& engine, const show_function& show,
-                  const std::array<float, 3>& background) {
-    scene residual;
-    residual.points = of.points;
-    residual.train = of.train;
-    for (view& v : residual.train) v.depths = {};
+/// Observes the scene's points in the residuals of its training photos.
+observed_points observe_residuals(const scene& of, train::engine& engine, const show_function& show,
+                                  const std::array<float, 3>& background) {
+    point_observer observer(of);
     std::vector<std::vector<float>> renders(static_cast<std::size_t>(omp_get_max_threads()));
     for (std::size_t first = 0; first < of.train.size(); first += renders.size()) {
         const std::size_t count = std::min(renders.size(), of.train.size() - first);
@@ -43,10 +41,12 @@ scene residual_of(const scene& of, train::engine& engine, const show_function& s
             renders[i] = engine.render(of.train[first + i].camera, background);
         for_each_in_parallel(count, [&](std::size_t i) {
             show(first + i, renders[i]);
-            leave_residual(residual.train[first + i].pixels, renders[i], background);
+            image residual = view_photo(of.train[first + i]).pixels();
+            leave_residual(residual, renders[i], background);
+            observer.observe(first + i, residual);
         });
     }
-    return residual;
+    return observer.observations();
 }
 
 /// Returns the root mean square by which the renders of up to eight training views change if colors
@@ -73,10 +73,8 @@ sh_review revise_sh_degree(train::engine& engine, const scene& scene, const show
                            const std::array<float, 3>& background, int sh_degree) {
     sh_review review;
     direction_statistics left;
-    if (!scene.points.empty()) {
-        const auto residual = residual_of(scene, engine, show, background);
-        left = measure_direction(scene_statistics(residual));
-    }
+    if (!scene.points.empty())
+        left = measure_direction(scene_statistics(scene, observe_residuals(scene, engine, show, background)));
     review.unexplained = left.unexplained;
     // Adds no degree if there are too few points for a decision.
     const int recommended = left.is_known() ? left.degree() : 0;

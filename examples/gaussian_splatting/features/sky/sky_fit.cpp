@@ -12,6 +12,7 @@
 #include "../../core/parallel.hpp"
 #include "../../model/gaussians.hpp"
 #include "../../model/spherical_harmonics.hpp"
+#include "../../scene/view_photo.hpp"
 
 namespace gs::features {
 namespace {
@@ -55,8 +56,7 @@ struct photo_cells {
     std::size_t all = 0;
 };
 
-photo_cells cells_of(const view& v, const std::vector<colored_point>& points) {
-    const camera& c = v.camera;
+photo_cells cells_of(const camera& c, const image& photo, const std::vector<colored_point>& points) {
     const int side = std::max(4, std::max(c.width, c.height) / cells_along);
     const int across = c.width / side, down = c.height / side;
     photo_cells found;
@@ -78,7 +78,7 @@ photo_cells cells_of(const view& v, const std::vector<colored_point>& points) {
     for (int row = 0; row < down; ++row)
         for (int column = 0; column < across; ++column) {
             if (near_points[static_cast<std::size_t>(row * across + column)] != 0) continue;
-            const auto color = smooth_color(v.pixels, column * side, row * side, side);
+            const auto color = smooth_color(photo, column * side, row * side, side);
             if (!color) continue;
             cell one;
             one.color = *color;
@@ -142,7 +142,7 @@ sky_fit fit_sky(const scene& of, const std::vector<double>& brighter) {
     found.has_points = true;
     std::vector<photo_cells> photos(of.train.size());
     for_each_in_parallel(photos.size(), [&](std::size_t v) {
-        photos[v] = cells_of(of.train[v], of.points);
+        photos[v] = cells_of(of.train[v].camera, view_photo(of.train[v]).pixels(), of.points);
         if (brighter.empty()) return;
         for (cell& c : photos[v].empty) c.color *= std::exp2(-brighter[v]);
     });

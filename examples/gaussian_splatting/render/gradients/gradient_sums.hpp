@@ -90,6 +90,12 @@ class gradient_sums {
         return sums_;
     }
 
+    /// Returns the size of the sums of a Gaussian. Accumulators other than `native` have an integer
+    /// of 64 bits for each sum.
+    static constexpr std::size_t bytes_per_gaussian(accumulator how) {
+        return record_stride * (sizeof(Real) + (how == accumulator::native ? 0 : sizeof(std::uint64_t)));
+    }
+
     /// A flag on the device: not zero after a sum did not fit into fixed point and was left out.
     std::uint32_t* fault() const { return fault_.data(); }
 

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "memory_limits.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+
+#include "../core/byte_size.hpp"
+#include "../core/host_memory.hpp"
+#include "../photos/packed_photo.hpp"
+
+namespace gs::cli {
+
+photos::photo_limits photo_limits(const settings& s, const device::profiler& device) {
+    // The Gaussians, and the program itself, need the remaining memory. Users may leave less for them.
+    const auto share = [&](std::uint64_t bytes) { return bytes / 10 * (s.photo_memory ? 9 : 6); };
+    photos::photo_limits limits;
+    limits.host = share(available_host_bytes());
+    const std::uint64_t free = device.free_device_bytes();
+    limits.device = share(std::min(free, s.max_memory.value_or(free)));
+    limits.total = device.shares_host_memory() ? limits.host : limits.host + limits.device;
+    if (s.photo_memory) limits.total = *s.photo_memory;
+    return limits;
+}
+
+std::uint64_t device_limit(const settings& s, const device::profiler& device) {
+    if (s.max_memory) return *s.max_memory;
+    if (s.deterministic) return 0;
+    return (device.used_device_bytes() + device.free_device_bytes()) / 10 * 9;
+}
+
+load_options with_limit(load_options source, const photos::photo_limits& limits) {
+    source.most_photo_bytes = photos::most_resident_bytes(limits);
+    return source;
+}
+
+photos::photo_plan photo_memory(const scene& of, const photos::photo_limits& limits) {
+    if (!photos::any_is_streamed(of.train, of.test)) return {};
+    constexpr int most_threads = 16;  // more need much memory, and decode faster than any step is
+    const auto threads = static_cast<std::size_t>(std::min(omp_get_max_threads(), most_threads));
+    return photos::plan_photos(of.train, of.test, limits, threads);
+}
+
+std::uint64_t photos_on_host(const scene& of, const photos::photo_plan& plan) {
+    if (photos::any_is_streamed(of.train, of.test)) return plan.on_host();
+    std::uint64_t bytes = 0;
+    for (const auto* views : {&of.train, &of.test})
+        for (const view& v : *views) bytes += photos::packed_bytes(v.camera, v.depths.is_there());
+    return bytes;
+}
+
+std::string expected_memory(const device::memory_forecast& forecast, std::size_t most,
+                            std::uint64_t on_host) {
+    const auto gb = [](std::uint64_t bytes) { return in_gigabytes(static_cast<double>(bytes)); };
+    return "expects " + gb(forecast.total()) + " GB of device memory (" + gb(forecast.photos) + " photos, " +
+           gb(forecast.gaussians) + " for up to " + std::to_string(most) + " Gaussians, " +
+           gb(forecast.others) + " others), and " + gb(on_host) + " GB of host memory for photos";
+}
+
+}  // namespace gs::cli

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "photo_plan.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "../core/byte_size.hpp"
+#include "../core/error.hpp"
+#include "packed_photo.hpp"
+
+namespace gs::photos {
+namespace {
+
+/// While one photo is in use, one is being uploaded, and one is ready.
+constexpr std::size_t device_slots = 3;
+
+/// Each worker decodes into its own buffer, while others are uploaded from two more.
+photo_plan with_workers(photo_plan plan, std::size_t workers) {
+    plan.workers = workers;
+    plan.staged = workers + 2;
+    return plan;
+}
+
+bool fits(const photo_plan& plan, const photo_limits& limits) {
+    return plan.on_host() <= limits.host && plan.on_device() <= limits.device &&
+           plan.on_host() + plan.on_device() <= limits.total;
+}
+
+photo_limits half(const photo_limits& limits) { return {limits.total / 2, limits.host / 2, limits.device}; }
+
+}  // namespace
+
+bool any_is_streamed(std::span<const view> train, std::span<const view> held_out) {
+    return std::ranges::any_of(train, &view::is_streamed) ||
+           std::ranges::any_of(held_out, &view::is_streamed);
+}
+
+std::uint64_t most_resident_bytes(const photo_limits& limits) {
+    // The sizes of a photo have at most 1 + 1/4 + 1/16 + ... = 4/3 times its pixels.
+    return std::min({limits.total / 7 * 3, limits.host, limits.device / 4 * 3});
+}
+
+photo_plan plan_photos(std::span<const view> train, std::span<const view> held_out,
+                       const photo_limits& limits, std::size_t threads) {
+    photo_plan plan{.slots = device_slots};
+    std::uint64_t all = 0;
+    const view* largest = nullptr;
+    for (const auto views : {train, held_out})
+        for (const view& v : views) {
+            const std::uint64_t bytes = packed_bytes(v.camera, v.depths.is_there());
+            all += bytes;
+            if (bytes > plan.photo_bytes) largest = &v;
+            plan.photo_bytes = std::max(plan.photo_bytes, bytes);
+            plan.worker_bytes = std::max<std::uint64_t>(plan.worker_bytes, v.decode_bytes);
+        }
+    plan.worker_bytes += plan.photo_bytes / 4;  // the largest of the smaller sizes
+    plan = with_workers(plan, 1);
+    if (!fits(plan, limits))
+        throw error("--photo-memory is too small for photos such as " + largest->name +
+                    ": training needs at least " + size_in_bytes(plan.on_host() + plan.on_device()));
+    while (plan.workers < threads && fits(with_workers(plan, plan.workers + 1), half(limits)))
+        plan = with_workers(plan, plan.workers + 1);
+    const std::uint64_t left = limits.total - plan.on_host() - plan.on_device();
+    plan.device_bytes = std::min({left, limits.device - plan.on_device(), all});
+    // Photos are not divided, so the last bytes on the device may stay unused.
+    plan.host_bytes = std::min(
+        {left - plan.device_bytes, limits.host - plan.on_host(), all - plan.device_bytes + plan.photo_bytes});
+    if (plan.device_bytes == all) plan.host_bytes = 0;
+    return plan;
+}
+
+}  // namespace gs::photos

@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../../support/temporary_folder.hpp"
+#include "engines.hpp"
+#include "features/depth/depth_feature.hpp"
+#include "features/exposure/exposure_feature.hpp"
+#include "photos/packed_photo.hpp"
+#include "photos/photo_plan.hpp"
+#include "training/initialize.hpp"
+#include "training/training.hpp"
+#include "training/view_order.hpp"
+
+namespace {
+
+using gs::photos::photo_limits;
+using gs_test::error_of;
+using gs_test::says;
+
+/// Masked, transparent photos with depth maps.
+constexpr const char* all_kinds = "synthetic:alpha,depths=0.02,passers=0.1";
+
+/// The same scene with photos that are decoded on request. `before_decoding` is called each time.
+gs::scene streamed(const gs::scene& of, const std::function<void(const std::string&)>& before_decoding = {}) {
+    gs::scene result = of;
+    for (auto* views : {&result.train, &result.test})
+        for (gs::view& v : *views) {
+            const auto held = std::make_shared<const gs::photo>(gs::photo{v.pixels, v.depths});
+            v.pixels.rgba.clear();
+            v.depths.values.clear();
+            v.decode_bytes = held->pixels.rgba.size();
+            v.decode = [held, before_decoding, name = v.name] {
+                if (before_decoding) before_decoding(name);
+                return *held;
+            };
+        }
+    return result;
+}
+
+std::uint64_t bytes_of(const std::vector<gs::view>& views) {
+    std::uint64_t bytes = 0;
+    for (const gs::view& v : views) bytes += gs::photos::packed_bytes(v.camera, v.depths.is_there());
+    return bytes;
+}
+
+/// A short deterministic run in which the size level, the number of Gaussians and the SH degree
+/// change, and that loses SH coefficients, for which it renders all views.
+gs::train::train_options short_run(const gs::scene& scene) {
+    gs::train::train_options o;
+    o.schedule.iterations = 60;
+    o.schedule.num_downscales = 2;
+    o.schedule.sh_degree_interval = 10;
+    auto& adaptive = o.densification.of<gs::train::adaptive_config>();
+    adaptive.densify_from_iter = 10;
+    adaptive.densification_interval = 15;
+    adaptive.densify_until_iter = 50;
+    adaptive.densify_grad_threshold = 1e-5;
+    o.max_cap = 1000;
+    o.gradient = gs::accumulator::fixed;
+    o.background.random = true;
+    o.features = gs::features::feature_set(
+        {{"direction", true, "", {1, 1}},
+         {"exposure", true, "", gs::features::exposure_feature().neutral_values(scene)},
+         {"depth", true, "", gs::features::depth_feature().neutral_values(scene)}});
+    return o;
+}
+
+struct outcome {
+    gs::gaussians model;
+    std::vector<double> held_out;
+    std::map<int, gs::state_archive> checkpoints;
+};
+
+/// Trains with at most four threads that decode.
+outcome trained(make_engine make, const gs::scene& scene, const gs::train::train_options& o,
+                const photo_limits& limits) {
+    const auto engine = make();
+    gs::photos::photo_plan plan;
+    if (gs::photos::any_is_streamed(scene.train, scene.test))
+        plan = gs::photos::plan_photos(scene.train, scene.test, limits, 4);
+    engine->set_views(scene.train, scene.test, o.schedule.num_downscales, plan);
+    engine->set_model(gs::from_points(scene.points, 1, 300, 1));
+    outcome result;
+    gs::train::train_events events{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
+    events.checkpoint = [&](int iteration, gs::state_archive& archive) {
+        result.checkpoints.insert_or_assign(iteration, gs::state_archive(archive.values(), archive.arrays()));
+    };
+    gs::train::train(*engine, scene, o, events);
+    result.model = engine->get_model();
+    for (std::size_t v = 0; v < scene.test.size(); ++v)
+        result.held_out.push_back(engine->measure(v, {}).square_error);
+    return result;
+}
+
+void check_equal(const gs::gaussians& a, const gs::gaussians& b) {
+    CHECK(a.count() == b.count());
+    CHECK(a.mean == b.mean);
+    CHECK(a.log_scale == b.log_scale);
+    CHECK(a.quaternion == b.quaternion);
+    CHECK(a.opacity == b.opacity);
+    CHECK(a.sh_constant == b.sh_constant);
+    CHECK(a.sh_rest == b.sh_rest);
+}
+
+/// The smallest limit with which the scene trains.
+std::uint64_t least_total(const gs::scene& scene) {
+    const auto plan = gs::photos::plan_photos(scene.train, scene.test, {}, 1);
+    return plan.on_host() + plan.on_device() - plan.host_bytes - plan.device_bytes;
+}
+
+}  // namespace
+
+TEST_CASE("streamed photos: training gives the same model as resident photos bit for bit") {
+    const gs::scene resident = small_scene(all_kinds, 24);
+    REQUIRE(std::ranges::any_of(resident.train, [](const gs::view& v) { return v.pixels.has_mask; }));
+    REQUIRE(resident.has_alpha);
+    REQUIRE(resident.train[0].depths.is_there());
+    const gs::scene scene = streamed(resident);
+    const std::uint64_t least = least_total(scene), all = bytes_of(scene.train) + bytes_of(scene.test);
+    REQUIRE(least < all / 2);
+    const gs::train::train_options o = short_run(resident);
+    for (const auto make : engines()) {
+        const outcome expected = trained(make, resident, o, {});
+        CHECK(expected.model.count() > 350);
+        for (const photo_limits& limits :
+             {photo_limits{.total = least}, photo_limits{.total = least + all / 3},
+              photo_limits{.total = 4 * least + 2 * all},
+              photo_limits{.total = 4 * least + 2 * all, .device = least / 2}}) {
+            CAPTURE(limits.total);
+            const outcome found = trained(make, scene, o, limits);
+            check_equal(found.model, expected.model);
+            CHECK(found.held_out == expected.held_out);
+        }
+    }
+}
+
+TEST_CASE("streamed photos: photos within the limits are decoded once per size, others once per use") {
+    const gs::scene resident = small_scene("synthetic:spheres", 24);
+    std::atomic<int> decoded = 0;
+    const gs::scene scene = streamed(resident, [&](const std::string&) { ++decoded; });
+    gs::train::train_options o;
+    o.schedule.iterations = 3 * static_cast<int>(scene.train.size());
+    o.schedule.num_downscales = 0;
+    const std::uint64_t least = least_total(scene), all = bytes_of(scene.train) + bytes_of(scene.test);
+    const auto decoded_with = [&](const photo_limits& limits) {
+        decoded = 0;
+        const auto engine = gs::train::make_cpu_engine();
+        engine->set_views(scene.train, {}, 0, gs::photos::plan_photos(scene.train, {}, limits, 1));
+        engine->set_model(gs::from_points(scene.points, 0, 50, 1));
+        gs::train::train(*engine, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
+        return decoded.load();
+    };
+    const int views = static_cast<int>(scene.train.size());
+    CHECK(decoded_with({.total = least + all}) == views);
+    // Photos that stay in host memory are not decoded again either.
+    CHECK(decoded_with({.total = 2 * least + 2 * all, .device = least / 2}) == views);
+    CHECK(decoded_with({.total = least}) >= 3 * views);
+}
+
+TEST_CASE("streamed photos: a run that continues from a checkpoint gives the same model bit for bit") {
+    const gs::scene scene = streamed(small_scene(all_kinds, 24));
+    const photo_limits limits{.total = least_total(scene) + bytes_of(scene.train) / 3};
+    gs::train::train_options o = short_run(small_scene(all_kinds, 24));
+    o.checkpoint_every = 1;
+    for (const auto make : engines()) {
+        outcome uninterrupted = trained(make, scene, o, limits);
+        for (const int iteration : {9, 31}) {
+            gs::train::train_options rest = o;
+            rest.resume_from = &uninterrupted.checkpoints.at(iteration);
+            check_equal(trained(make, scene, rest, limits).model, uninterrupted.model);
+        }
+    }
+}
+
+TEST_CASE("streamed photos: a lost photo ends training with a checkpoint and an error") {
+    const gs::scene resident = small_scene("synthetic:spheres", 24);
+    gs::train::train_options o;
+    o.schedule.iterations = 60;
+    o.gradient = gs::accumulator::fixed;
+    const gs::gaussians uninterrupted =
+        trained(gs::train::make_cpu_engine, streamed(resident), o, {.total = least_total(streamed(resident))})
+            .model;
+
+    std::atomic<int> decoded = 0;
+    const gs::scene losing = streamed(resident, [&](const std::string& name) {
+        if (++decoded > 20) throw gs::error(name + " is lost");
+    });
+    const auto engine = gs::train::make_cpu_engine();
+    engine->set_views(losing.train, {}, 1,
+                      gs::photos::plan_photos(losing.train, {}, {.total = least_total(losing)}, 1));
+    engine->set_model(gs::from_points(losing.points, 1, 300, 1));
+    gs::train::train_events events{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
+    gs::state_archive saved;
+    int saved_after = 0;
+    events.checkpoint = [&](int iteration, gs::state_archive& archive) {
+        saved = gs::state_archive(archive.values(), archive.arrays());
+        saved_after = iteration;
+    };
+    CHECK(says(error_of([&] { gs::train::train(*engine, losing, o, events); }), {"is lost"}));
+    CHECK(saved_after > 5);
+    CHECK(saved_after < 21);
+    o.resume_from = &saved;
+    check_equal(trained(gs::train::make_cpu_engine, resident, o, {}).model, uninterrupted);
+}
+
+TEST_CASE("streamed photos: the plan keeps the limits, and an error names the smallest sufficient one") {
+    const gs::scene scene = streamed(small_scene("synthetic:spheres", 48));
+    const std::uint64_t least = least_total(scene), all = bytes_of(scene.train);
+    for (const std::uint64_t total : {least, least + 1, 2 * least, 10 * least, 10 * least + all}) {
+        CAPTURE(total);
+        const auto plan = gs::photos::plan_photos(scene.train, {}, {.total = total, .device = least}, 8);
+        CHECK(plan.on_host() + plan.on_device() <= total);
+        CHECK(plan.on_device() <= least);
+        CHECK(plan.workers >= 1);
+        CHECK(plan.workers <= 8);
+        // All memory is used, unless all photos stay in memory.
+        CHECK((plan.on_host() + plan.on_device() == total || plan.host_bytes + plan.device_bytes >= all));
+    }
+    const std::string message =
+        error_of([&] { gs::photos::plan_photos(scene.train, {}, {.total = least - 1}, 8); });
+    CHECK(says(message, {"--photo-memory", "at least " + std::to_string((least + 999) / 1000) + "kB"}));
+}
+
+TEST_CASE("view_order: upcoming views are those that next returns, also across rounds") {
+    gs::train::view_order order(5, 3);
+    for (int i = 0; i < 7; ++i) order.next();
+    for (const std::size_t expected : order.upcoming(13)) CHECK(order.next() == expected);
+}
