@@ -170,7 +170,7 @@ TEST_CASE("error: a model whose Gaussians are all transparent becomes empty, and
 TEST_CASE("error: training is repeatable with fixed point, for any number of threads") {
     const gs::scene scene = small_scene();
     gs::train::train_options o;
-    o.schedule.iterations = 1400;
+    o.schedule.iterations = 2000;
     o.schedule.sh_degree = 1;
     o.densification.name = "error";
     o.max_cap = 600;
@@ -185,7 +185,7 @@ TEST_CASE("error: training is repeatable with fixed point, for any number of thr
     const int threads = omp_get_max_threads();
     for (const auto make : engines()) {
         const gaussians first = trained(*make());
-        CHECK(first.count() != 300);
+        CHECK(first.count() > 300);
         for (const int n : {1, 3}) {
             if (n > 1 && hard_cases::brief) continue;
             omp_set_num_threads(n);

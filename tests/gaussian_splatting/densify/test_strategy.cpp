@@ -179,7 +179,8 @@ TEST_CASE("a strategy that is unknown or needs unknown statistics is refused") {
     training_setup setup;
     setup.densification.name = "magic";
     CHECK_THROWS_WITH_AS(e->begin(setup),
-                         "no densification strategy is called \"magic\": choose adaptive or mcmc", gs::error);
+                         "no densification strategy is called \"magic\": choose adaptive, error or mcmc",
+                         gs::error);
     const auto make_demanding = [](cpu&, const strategy_settings&,
                                    const training_facts&) -> std::unique_ptr<strategy<cpu>> {
         return std::make_unique<demanding>();

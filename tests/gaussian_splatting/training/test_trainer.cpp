@@ -160,9 +160,9 @@ TEST_CASE(
     }
     CHECK(made->adjusted_after.size() == 21);
     for (const densify_config& c : made->densifications) {
-        CHECK(c.cap == 100);
-        CHECK(c.most_births == densify_config{}.most_births);
-        CHECK(c.revised_opacity);
+        CHECK(c.limits.cap == 100);
+        CHECK(c.limits.most_births == densify_config{}.limits.most_births);
+        CHECK(c.limits.revised_opacity);
         CHECK(c.gradient == doctest::Approx(8e-5 * std::pow(1000, 0.25)));
     }
 }
@@ -201,12 +201,12 @@ TEST_CASE("a budget is grown to evenly from where training stands, whatever is d
     CHECK(made->counts == std::vector<std::size_t>{35, 40, 45, 50, 55, 60});
     for (const densify_config& c : made->densifications) {
         CHECK(c.gradient == 0);
-        CHECK_FALSE(c.revised_opacity);
+        CHECK_FALSE(c.limits.revised_opacity);
     }
     CHECK(trained(o, 30, 5)->counts == std::vector<std::size_t>{30, 31, 34, 38, 44, 55});
     CHECK(trained(o, 70)->counts == std::vector<std::size_t>(6, 70));
     o.densification.of<adaptive_config>().budget = 120;
-    CHECK(trained(o, 30)->densifications.back().cap == 100);
+    CHECK(trained(o, 30)->densifications.back().limits.cap == 100);
 }
 
 TEST_CASE("pruning comes once the views have been round after densification") {
