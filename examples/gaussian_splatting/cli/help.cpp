@@ -18,9 +18,9 @@ constexpr std::size_t name_column = 32;  ///< columns for names in help texts
 
 /// Breaks text into lines of at most `width` characters, which begin with `indent`.
 std::string wrapped(const std::string& text, const std::string& indent, std::size_t width = line_width) {
-    std::istringstream words(text);
+    std::istringstream in(text);
     std::string all, line;
-    for (std::string word; words >> word;) {
+    for (std::string word; in >> word;) {
         if (!line.empty() && indent.size() + line.size() + 1 + word.size() > width) {
             all += indent + line + "\n";
             line.clear();

@@ -15,7 +15,7 @@
 namespace gs {
 namespace {
 
-constexpr double tolerance = 0.01;  // of the aspect ratio, because smaller copies have rounded sizes
+constexpr double ratio_tolerance = 0.01;  // of the aspect ratio, because smaller copies have rounded sizes
 
 enum class fit { neither, stored, upright, both };
 
@@ -38,7 +38,7 @@ fit fit_of(const image_record& record, const image_header& file) {
     const double stored = difference(record.camera, file.width, file.height);
     const double upright =
         file.turn.swaps_sides ? difference(record.camera, file.height, file.width) : stored;
-    if (std::min(stored, upright) > std::log1p(tolerance)) return fit::neither;
+    if (std::min(stored, upright) > std::log1p(ratio_tolerance)) return fit::neither;
     if (std::abs(stored - upright) < 1e-9) return fit::both;
     return stored < upright ? fit::stored : fit::upright;
 }
@@ -77,7 +77,7 @@ void require_one_scale(const std::vector<image_record>& records, const std::vect
                          values.end());
     for (std::size_t i = 0; i < records.size(); ++i) {
         const auto& values = scales[size(i)];
-        if (std::abs(scale(i) / values[values.size() / 2] - 1) > tolerance)
+        if (std::abs(scale(i) / values[values.size() / 2] - 1) > ratio_tolerance)
             refuse_size(records[i], headers[i]);
     }
 }

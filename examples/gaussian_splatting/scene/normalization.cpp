@@ -8,16 +8,11 @@
 #include <glm/matrix.hpp>
 #include <vector>
 
+#include "../core/median.hpp"
 #include "scene.hpp"
 
 namespace gs {
 namespace {
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-}
 
 /// Returns the median of `measure` over all `things`.
 template <class Things, class Measure>
@@ -25,7 +20,7 @@ double median_of(const Things& things, const Measure& measure) {
     std::vector<double> values;
     values.reserve(things.size());
     for (const auto& thing : things) values.push_back(measure(thing));
-    return median(std::move(values));
+    return median(values);
 }
 
 glm::dvec3 mean_of_cameras(const scene& s) {

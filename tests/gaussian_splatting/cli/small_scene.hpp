@@ -13,7 +13,7 @@
 
 namespace gs_test {
 
-inline constexpr int width = 24, height = 16;
+inline constexpr int photo_width = 24, photo_height = 16;
 
 /// A COLMAP scene with one camera and eight points; its members can make it invalid.
 struct small_scene {
@@ -31,7 +31,7 @@ struct small_scene {
         out.put(cameras);
         for (std::uint64_t i = 0; i < cameras; ++i) {
             out.put(std::uint32_t{1}).put(camera_model);
-            out.put(std::uint64_t{width}).put(std::uint64_t{height});
+            out.put(std::uint64_t{photo_width}).put(std::uint64_t{photo_height});
             for (const double parameter : {24.0, 24.0, 12.0, 8.0}) out.put(parameter);
         }
         return out.data();
@@ -68,7 +68,7 @@ struct small_scene {
         write_file(folder / "sparse/0/images.bin", images_bin());
         write_file(folder / "sparse/0/points3D.bin", points_bin());
         fs::create_directories(folder / "images");
-        for (int i = 0; i < photos; ++i) write_photo(folder / "images" / photo(i), width, height);
+        for (int i = 0; i < photos; ++i) write_photo(folder / "images" / photo(i), photo_width, photo_height);
     }
 
     static void write_photo(const fs::path& file, int w, int h) {

@@ -137,17 +137,17 @@ TEST_CASE("evaluate leaves out masked pixels, or measures them with --no-masks")
     const fs::path scene = folder / "scene", measured = folder / "measured", all = folder / "all";
     small_scene{}.write(scene);
     fs::create_directories(scene / "masks");
-    constexpr std::size_t pixels = std::size_t{width} * height;
+    constexpr std::size_t pixels = std::size_t{photo_width} * photo_height;
     std::vector<float> right_half(3 * pixels, 1.0F);
     for (std::size_t i = 0; i < right_half.size(); ++i)
-        if (i % width < width / 2) right_half[i] = 0;
+        if (i % photo_width < photo_width / 2) right_half[i] = 0;
     for (int i = 0; i < 4; ++i) {
         // The left half is bright, which no model of the gray photos explains.
         std::vector<float> photo(3 * pixels, 0.5F);
         for (std::size_t k = 0; k < photo.size(); ++k)
-            if (k % width < width / 2) photo[k] = 1;
-        gs::write_png(scene / "images" / small_scene::photo(i), width, height, photo);
-        gs::write_png(scene / "masks" / small_scene::photo(i), width, height, right_half);
+            if (k % photo_width < photo_width / 2) photo[k] = 1;
+        gs::write_png(scene / "images" / small_scene::photo(i), photo_width, photo_height, photo);
+        gs::write_png(scene / "masks" / small_scene::photo(i), photo_width, photo_height, right_half);
     }
     check_success(training(scene) + words{"-o", (folder / "trained").string(), "-q"});
     const words evaluation{"evaluate", model_of(folder / "trained", 5).string(), "-d", scene.string(), "-q",

@@ -130,7 +130,7 @@ TEST_CASE("train refuses a scene with an unreadable photo") {
     check_spoilt_scene_is_refused([&](const fs::path& data) { write_file(photo(data), ""); },
                                   {"photo_2.png"});
     check_spoilt_scene_is_refused(
-        [&](const fs::path& data) { small_scene::write_photo(photo(data), height, width); },
+        [&](const fs::path& data) { small_scene::write_photo(photo(data), photo_height, photo_width); },
         {"photo_2.png", "wrong size", "16x24", "24x16"});
     // Half of a PNG has a good header.
     check_spoilt_scene_is_refused(

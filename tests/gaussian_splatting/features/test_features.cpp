@@ -38,6 +38,7 @@ using namespace gs::features;
 gs::scene made(const char* parameters) {
     gs::load_options o;
     o.data = std::string("synthetic:") + parameters;
+    o.resolution = 2;
     return gs::load_scene(o, {});
 }
 

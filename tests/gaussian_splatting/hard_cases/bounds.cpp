@@ -76,7 +76,6 @@ void agreement::operator+=(const agreement& other) {
 }
 
 agreement compare(const std::vector<double>& got, const std::vector<double>& expected) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     if (got.size() != expected.size() || !all_finite(got)) return {infinity, -1, infinity};
     const double most = largest(expected);
     agreement a;

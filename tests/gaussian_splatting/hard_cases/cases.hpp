@@ -3,11 +3,15 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <limits>
 #include <string>
 
 #include "backend.hpp"
 
 namespace hard_cases {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Parameters are floats, as the trainer's are: every device takes the same numbers.
 

@@ -13,13 +13,6 @@
 
 using namespace hard_cases;
 
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
 TEST_CASE("case 8: far outside the image, where the Jacobian of the projection is held") {
     for (const auto& [side_x, side_y] :
          {std::pair{2.0, 0.02}, {-2.0, 0.02}, {0.05, 2.0}, {0.05, -2.0}, {2.0, -2.0}}) {

@@ -14,8 +14,6 @@ using namespace hard_cases;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// A constant image before a constant photo, which a background makes, of any brightness. A power of two
 /// goes through the photo's bytes as it is.
 compare_case flat_renders(double render, float photo, int size) {

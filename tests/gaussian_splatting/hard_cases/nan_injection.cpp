@@ -14,8 +14,6 @@ using namespace hard_cases;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double most = FLT_MAX, least = FLT_MIN, denormal = 0x1p-149;
 
 constexpr double injected_values[] = {
@@ -23,7 +21,7 @@ constexpr double injected_values[] = {
     1e30,         -1e30,    1e20,      -1e20, 1e-30, 1e-20,    -1e-20,    40,    -40,    120,  -120};
 static_assert(std::size(injected_values) == 22);
 
-constexpr std::size_t crowd = brief ? 40 : 120, victim = crowd / 2;
+constexpr std::size_t crowd_size = brief ? 40 : 120, injected_index = crowd_size / 2;
 
 /// Whether a Gaussian is none, from the definition: it has parameters that are not finite, no extent that a
 /// float could hold, or no orientation.
@@ -64,13 +62,15 @@ struct injected_crowd {
     std::size_t bad = 0, drawn = 0;
 
     injected_crowd(int width, int height, std::size_t parameters)
-        : healthy(faint_crowd(120, crowd, width, height)) {
-        for (std::size_t k = 0; k < 3; ++k) healthy.parameters[0][3 * victim + k] *= 0.1;  // in the image
-        REQUIRE(reference().project(healthy)[victim].drawn);
+        : healthy(faint_crowd(120, crowd_size, width, height)) {
+        for (std::size_t k = 0; k < 3; ++k)
+            healthy.parameters[0][3 * injected_index + k] *= 0.1;  // in the image
+        REQUIRE(reference().project(healthy)[injected_index].drawn);
         for (std::size_t p = 0; p < parameters; ++p)
             for (std::size_t k = 0; k < static_cast<std::size_t>(gs::parameter_width[p]); ++k)
                 for (const double value : injected_values) {
-                    const std::size_t element = k + victim * static_cast<std::size_t>(gs::parameter_width[p]);
+                    const std::size_t element =
+                        k + injected_index * static_cast<std::size_t>(gs::parameter_width[p]);
                     all.push_back(injected{p, element, value});
                     judge(all.back());
                 }
@@ -85,8 +85,8 @@ struct injected_crowd {
   private:
     void judge(injected& one) {
         const render_case q = with(one);
-        one.is_bad = is_bad(q, victim);
-        one.is_drawn = !one.is_bad && reference().project(q)[victim].drawn;
+        one.is_bad = is_bad(q, injected_index);
+        one.is_drawn = !one.is_bad && reference().project(q)[injected_index].drawn;
         if (one.is_drawn) one.weights = off_thresholds(q, 1e-3);
         if (one.is_drawn) one.render = reference().render(q).render;
         bad += one.is_bad ? 1 : 0;
@@ -98,9 +98,9 @@ struct injected_crowd {
 std::string wrong_projection(const std::vector<projected_splat>& found,
                              const std::vector<projected_splat>& before, const injected& one) {
     std::string said;
-    if (found[victim].drawn != one.is_drawn)
+    if (found[injected_index].drawn != one.is_drawn)
         said += one.is_drawn ? "valid, but culled; " : "to be culled, but drawn; ";
-    for (std::size_t i = 0; i < crowd; ++i)
+    for (std::size_t i = 0; i < crowd_size; ++i)
         if (i != victim && found[i] != before[i]) said += "another splat of a healthy one; ";
     return said;
 }
@@ -119,7 +119,7 @@ TEST_CASE("NaN injection: 22 values in every parameter of one Gaussian of a crow
     const injected_crowd injected(8, 4, gs::parameter_count);
     REQUIRE(injected.all.size() == 22 * 59);
     on_each_variant([&](const backend& b, accumulator how) {
-        render_case rest = without(injected.healthy, victim);
+        render_case rest = without(injected.healthy, injected_index);
         rest.how = how;
         const render_result alone = b.render(rest);
         const std::vector<projected_splat> before = b.project(injected.healthy);
@@ -129,7 +129,7 @@ TEST_CASE("NaN injection: 22 values in every parameter of one Gaussian of a crow
             std::string said = wrong_projection(b.project(q), before, one);
             const render_result a = b.render(q);
             if (!all_finite(a)) said += "not finite; ";
-            if (!one.is_drawn) said += harm(a, alone, victim, is_loose(b, how));
+            if (!one.is_drawn) said += harm(a, alone, injected_index, is_loose(b, how));
             if (one.is_drawn && !alike(a.render, one)) said += "another image than in double; ";
             check_nothing(said, one);
         }
@@ -138,15 +138,16 @@ TEST_CASE("NaN injection: 22 values in every parameter of one Gaussian of a crow
     // Both kinds are many.
     CHECK(injected.bad * 10 > injected.all.size());
     CHECK(injected.drawn * 2 > injected.all.size());
-    remark("a crowd of " + std::to_string(crowd) + "; " + std::to_string(injected.all.size()) + " cases: " +
-           std::to_string(injected.bad) + " of no Gaussian, " + std::to_string(injected.drawn) + " drawn");
+    remark("a crowd of " + std::to_string(crowd_size) + "; " + std::to_string(injected.all.size()) +
+           " cases: " + std::to_string(injected.bad) + " of no Gaussian, " + std::to_string(injected.drawn) +
+           " drawn");
 }
 
 TEST_CASE("NaN injection: 22 values in place, shape and opacity, in an image of six tiles") {
     const injected_crowd injected(40, 24, 4);
     REQUIRE(injected.all.size() == 22 * 11);
     on_each_backend([&](const backend& b) {
-        const render_result alone = b.render(without(injected.healthy, victim));
+        const render_result alone = b.render(without(injected.healthy, injected_index));
         const std::vector<projected_splat> before = b.project(injected.healthy);
         for (const auto& one : injected.all) {
             const render_case q = injected.with(one);

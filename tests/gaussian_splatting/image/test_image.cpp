@@ -16,22 +16,19 @@
 #include "image/depth_map.hpp"
 #include "image/image.hpp"
 #include "make_images.hpp"
+#include "pixel_at.hpp"
 #include "write_jpeg.hpp"
 
 namespace {
 
 using gs::image;
 using gs_test::error_of;
+using gs_test::pixel;
+using gs_test::pixel_at;
 using gs_test::says;
 using gs_test::smooth_samples;
 using gs_test::temporary_folder;
 using gs_test::write_jpeg;
-using pixel = std::array<std::uint8_t, 4>;
-
-pixel pixel_at(const image& from, int x, int y) {
-    const auto i = 4 * static_cast<std::size_t>(y * from.width + x);
-    return {from.rgba[i], from.rgba[i + 1], from.rgba[i + 2], from.rgba[i + 3]};
-}
 
 // ---------------------------------------------------------------------------------------- PNGs of any kind
 

@@ -9,17 +9,14 @@
 
 #include "image/image.hpp"
 #include "image/mask.hpp"
+#include "pixel_at.hpp"
 #include "scene/downsample.hpp"
 
 namespace {
 
 using gs::image;
-using pixel = std::array<std::uint8_t, 4>;
-
-pixel pixel_at(const image& from, int x, int y) {
-    const auto i = 4 * static_cast<std::size_t>(y * from.width + x);
-    return {from.rgba[i], from.rgba[i + 1], from.rgba[i + 2], from.rgba[i + 3]};
-}
+using gs_test::pixel;
+using gs_test::pixel_at;
 
 image random_image(int width, int height, unsigned seed) {
     std::mt19937 random(seed);

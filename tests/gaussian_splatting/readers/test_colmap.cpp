@@ -24,6 +24,7 @@ namespace {
 
 using gs_test::bytes;
 using gs_test::error_of;
+using gs_test::options_for;
 using gs_test::says;
 using gs_test::temporary_folder;
 using gs_test::write_file;
@@ -189,12 +190,6 @@ void write_photos(const std::filesystem::path& folder, const model_record& model
 void write_scene(const std::filesystem::path& folder) {
     write_binary(folder / "sparse/0", plain_model());
     write_photos(folder / "images", plain_model(), 40, 30);
-}
-
-gs::load_options options_for(const std::filesystem::path& folder) {
-    gs::load_options options;
-    options.data = folder.string();
-    return options;
 }
 
 void ignore(const std::string&) {}

@@ -8,11 +8,13 @@
 #include <vector>
 
 #include "../../support/temporary_folder.hpp"
+#include "known_scene.hpp"
 #include "readers/load_scene.hpp"
 
 namespace {
 
 using gs_test::error_of;
+using gs_test::options_for;
 using gs_test::says;
 using gs_test::temporary_folder;
 using gs_test::write_file;
@@ -55,12 +57,6 @@ const gs::reader greedy{
 constexpr const gs::reader* made_up_first[] = {&made_up, &greedy};
 constexpr const gs::reader* greedy_first[] = {&greedy, &made_up};
 constexpr const gs::reader* only_made_up[] = {&made_up};
-
-gs::load_options options_for(const std::string& data) {
-    gs::load_options options;
-    options.data = data;
-    return options;
-}
 
 std::string error_of_loading(const gs::load_options& options, std::span<const gs::reader* const> readers) {
     return error_of([&] { gs::load_scene(options, {}, readers); });

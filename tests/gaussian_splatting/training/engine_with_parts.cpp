@@ -4,6 +4,11 @@
 
 #include "training/device_engine.hpp"
 
+#if !defined(WARPAGG_CPU_LEVELS)
+// The library contains it. If it is compiled for several instruction sets, this file must compile one more.
+extern template class gs::train::device_engine<gs::device::cpu>;
+#endif
+
 std::unique_ptr<gs::train::engine> make_engine_with(gs::train::engine_parts<gs::device::cpu> parts) {
     return std::make_unique<gs::train::device_engine<gs::device::cpu>>(parts);
 }

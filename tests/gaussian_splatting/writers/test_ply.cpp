@@ -17,27 +17,13 @@
 
 #include "../../../examples/gaussian_splatting/core/error.hpp"
 #include "../../../examples/gaussian_splatting/writers/ply/ply.hpp"
+#include "../../support/temporary_folder.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own, gone with the object.
-struct temporary_folder {
-    fs::path path;
-
-    temporary_folder() {
-        std::string name = (fs::temp_directory_path() / "warpagg_test_ply_XXXXXX").string();
-        REQUIRE(mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-    temporary_folder(const temporary_folder&) = delete;
-    temporary_folder& operator=(const temporary_folder&) = delete;
-    ~temporary_folder() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-};
+using gs_test::temporary_folder;
 
 void write_text(const fs::path& file, const std::string& bytes) {
     std::ofstream out(file, std::ios::binary);
@@ -58,7 +44,7 @@ std::string bytes_of(T value) {
 }
 
 /// All values differ and some are awkward, so that rounding or swapping becomes visible.
-gs::gaussians sample_model(int degree, std::size_t count) {
+gs::gaussians awkward_model(int degree, std::size_t count) {
     gs::gaussians model;
     model.sh_degree = degree;
     std::uint32_t state = 1;
@@ -113,7 +99,7 @@ std::string message_of_reading(const fs::path& file) {
 
 void check_refused(const std::string& bytes, std::initializer_list<const char*> key_words) {
     const temporary_folder folder;
-    const fs::path file = folder.path / "broken.ply";
+    const fs::path file = folder / "broken.ply";
     write_text(file, bytes);
     const std::string message = message_of_reading(file);
     CAPTURE(message);
@@ -161,29 +147,29 @@ TEST_CASE("ply: a round trip keeps every bit at each SH degree") {
         for (const std::size_t count : {0UL, 1UL, 3UL, 3000UL}) {
             CAPTURE(degree);
             CAPTURE(count);
-            const gs::gaussians model = sample_model(degree, count);
-            gs::write_ply(folder.path / "model.ply", model);
-            check_same(gs::read_ply(folder.path / "model.ply"), model);
+            const gs::gaussians model = awkward_model(degree, count);
+            gs::write_ply(folder / "model.ply", model);
+            check_same(gs::read_ply(folder / "model.ply"), model);
         }
     }
 }
 
 TEST_CASE("ply: coefficients above the largest SH degree are dropped, and the others kept") {
     const temporary_folder folder;
-    const gs::gaussians model = sample_model(3, 4);
-    gs::write_ply(folder.path / "model.ply", model, {.max_sh_degree = 1});
+    const gs::gaussians model = awkward_model(3, 4);
+    gs::write_ply(folder / "model.ply", model, {.max_sh_degree = 1});
     gs::gaussians expected = model;
     expected.sh_degree = 1;
     expected.sh_rest.clear();
     for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t k = 0; k < 9; ++k) expected.sh_rest.push_back(model.sh_rest[45 * i + k]);
-    check_same(gs::read_ply(folder.path / "model.ply"), expected);
+    check_same(gs::read_ply(folder / "model.ply"), expected);
 }
 
 TEST_CASE("ply: the bytes are those of the reference implementation") {
     const temporary_folder folder;
-    const gs::gaussians model = sample_model(1, 1);
-    gs::write_ply(folder.path / "model.ply", model);
+    const gs::gaussians model = awkward_model(1, 1);
+    gs::write_ply(folder / "model.ply", model);
 
     std::string expected =
         "ply\n"
@@ -224,30 +210,30 @@ TEST_CASE("ply: the bytes are those of the reference implementation") {
     expected += bytes_of(model.opacity[0]);
     for (const float v : model.log_scale) expected += bytes_of(v);
     for (const float v : model.quaternion) expected += bytes_of(v);
-    CHECK((read_text(folder.path / "model.ply") == expected));
+    CHECK((read_text(folder / "model.ply") == expected));
 }
 
 TEST_CASE("ply: that Gaussians are antialiased is a comment, as Brush writes it") {
     const temporary_folder folder;
-    gs::gaussians model = sample_model(0, 2);
+    gs::gaussians model = awkward_model(0, 2);
     for (const bool antialiased : {false, true}) {
         model.antialiased = antialiased;
-        gs::write_ply(folder.path / "model.ply", model);
-        CHECK(gs::read_ply(folder.path / "model.ply").antialiased == antialiased);
-        CHECK((read_text(folder.path / "model.ply").find("\ncomment SplatRenderMode: mip\nelement vertex") !=
+        gs::write_ply(folder / "model.ply", model);
+        CHECK(gs::read_ply(folder / "model.ply").antialiased == antialiased);
+        CHECK((read_text(folder / "model.ply").find("\ncomment SplatRenderMode: mip\nelement vertex") !=
                std::string::npos) == antialiased);
     }
-    const std::string text = read_text(folder.path / "model.ply");
+    const std::string text = read_text(folder / "model.ply");
     for (const char* other : {"comment SplatRenderMode: default", "comment mip SplatRenderMode:"}) {
-        write_text(folder.path / "other.ply", with_replaced(text, "comment SplatRenderMode: mip", other));
-        CHECK_FALSE(gs::read_ply(folder.path / "other.ply").antialiased);
+        write_text(folder / "other.ply", with_replaced(text, "comment SplatRenderMode: mip", other));
+        CHECK_FALSE(gs::read_ply(folder / "other.ply").antialiased);
     }
 }
 
 TEST_CASE("ply: a sky is a comment") {
     const temporary_folder folder;
-    const auto file = folder.path / "model.ply";
-    gs::gaussians model = sample_model(1, 2);
+    const auto file = folder / "model.ply";
+    gs::gaussians model = awkward_model(1, 2);
     gs::write_ply(file, model);
     CHECK(gs::read_ply(file).sky.empty());
     CHECK(read_text(file).find("Sky") == std::string::npos);
@@ -300,9 +286,9 @@ TEST_CASE("ply: shuffled and further properties of any type, comments and Window
             text.insert(at, "\r");
         }
     }
-    write_text(folder.path / "other.ply", text + row + row);
+    write_text(folder / "other.ply", text + row + row);
 
-    const gs::gaussians model = gs::read_ply(folder.path / "other.ply");
+    const gs::gaussians model = gs::read_ply(folder / "other.ply");
     CHECK(model.count() == 2);
     CHECK(model.sh_degree == 0);
     CHECK(model.mean == std::vector<float>{-1, 2, 3.25F, -1, 2, 3.25F});
@@ -364,8 +350,8 @@ TEST_CASE("ply: a header that goes on and on is refused") {
     const std::string text = header("1", needed_properties());
     const std::string comment = "comment " + std::string(60000, 'a') + "\n";
     const temporary_folder folder;
-    write_text(folder.path / "long.ply", with_replaced(text, "element", comment + "element") + floats(14));
-    CHECK(gs::read_ply(folder.path / "long.ply").count() == 1);
+    write_text(folder / "long.ply", with_replaced(text, "element", comment + "element") + floats(14));
+    CHECK(gs::read_ply(folder / "long.ply").count() == 1);
     check_refused(with_replaced(text, "element", comment + comment + "element") + floats(14),
                   {"no end_header", "65536"});
     check_refused(with_replaced(text, "float y", "float " + std::string(5000, 'y') + " y"),
@@ -409,45 +395,45 @@ TEST_CASE("ply: values that are not finite are refused with their place") {
 
 TEST_CASE("ply: a file that is not there, and a folder, are refused") {
     const temporary_folder folder;
-    CHECK(message_of_reading(folder.path / "none.ply").find("cannot read") != std::string::npos);
-    CHECK(message_of_reading(folder.path).find("cannot read") != std::string::npos);
+    CHECK(message_of_reading(folder / "none.ply").find("cannot read") != std::string::npos);
+    CHECK(message_of_reading(folder.path()).find("cannot read") != std::string::npos);
 }
 
 TEST_CASE("ply: a failing write names the file and leaves the existing one as it was") {
     const temporary_folder folder;
-    const fs::path file = folder.path / "model.ply";
-    const gs::gaussians good = sample_model(0, 3);
+    const fs::path file = folder / "model.ply";
+    const gs::gaussians good = awkward_model(0, 3);
     gs::write_ply(file, good);
     // A folder in the place of the temporary file: fails for root, too, whom no permission stops.
-    fs::create_directories(folder.path / "model.ply.part" / "occupied");
-    CHECK_THROWS_WITH_AS(gs::write_ply(file, sample_model(1, 5)), doctest::Contains(file.string().c_str()),
+    fs::create_directories(folder / "model.ply.part" / "occupied");
+    CHECK_THROWS_WITH_AS(gs::write_ply(file, awkward_model(1, 5)), doctest::Contains(file.string().c_str()),
                          gs::error);
     check_same(gs::read_ply(file), good);
 
-    CHECK_THROWS_AS(gs::write_ply(folder.path / "no such folder" / "model.ply", good), gs::error);
+    CHECK_THROWS_AS(gs::write_ply(folder / "no such folder" / "model.ply", good), gs::error);
 }
 
 TEST_CASE("ply: an unwritable folder leaves the existing file as it was") {
     const temporary_folder folder;
-    const fs::path file = folder.path / "model.ply";
-    const gs::gaussians good = sample_model(0, 3);
+    const fs::path file = folder / "model.ply";
+    const gs::gaussians good = awkward_model(0, 3);
     gs::write_ply(file, good);
-    fs::permissions(folder.path, fs::perms::owner_read | fs::perms::owner_exec);
-    const bool permissions_bind = !std::ofstream(folder.path / "probe").is_open();
-    if (permissions_bind) CHECK_THROWS_AS(gs::write_ply(file, sample_model(1, 5)), gs::error);
+    fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
+    const bool permissions_bind = !std::ofstream(folder / "probe").is_open();
+    if (permissions_bind) CHECK_THROWS_AS(gs::write_ply(file, awkward_model(1, 5)), gs::error);
     check_same(gs::read_ply(file), good);
-    fs::permissions(folder.path, fs::perms::owner_all);
+    fs::permissions(folder.path(), fs::perms::owner_all);
 }
 
 TEST_CASE("ply: what is not finite never replaces a good file") {
     const temporary_folder folder;
-    const fs::path file = folder.path / "model.ply";
-    const gs::gaussians good = sample_model(1, 3);
+    const fs::path file = folder / "model.ply";
+    const gs::gaussians good = awkward_model(1, 3);
     gs::write_ply(file, good);
     gs::gaussians poisoned = good;
     poisoned.log_scale[3 * 2 + 1] = std::numeric_limits<float>::quiet_NaN();
     CHECK_THROWS_WITH_AS(gs::write_ply(file, poisoned),
                          doctest::Contains("'scale_1' of vertex 2 is not finite"), gs::error);
     check_same(gs::read_ply(file), good);
-    CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+    CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 1);
 }

@@ -22,7 +22,7 @@ std::vector<image_record> test_records(const std::filesystem::path& data, const 
     return {};
 }
 
-scene_description describe(const load_options& options, const log_function&) {
+scene_description describe_blender(const load_options& options, const log_function&) {
     const std::filesystem::path data = options.data;
     const transforms training = read_transforms(data / training_file);
     scene_description result;
@@ -40,6 +40,6 @@ constinit const reader blender_reader{
     [](const std::string& data) {
         return std::filesystem::exists(std::filesystem::path(data) / training_file);
     },
-    describe};
+    describe_blender};
 
 }  // namespace gs

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* transforms_file = "transforms.json";
 
-scene_description describe(const load_options& options, const log_function& log) {
+scene_description describe_nerfstudio(const load_options& options, const log_function& log) {
     const std::filesystem::path data = options.data;
     const transforms all = read_transforms(data / transforms_file);
     scene_description result;
@@ -30,6 +30,6 @@ constinit const reader nerfstudio_reader{
     [](const std::string& data) {
         return std::filesystem::exists(std::filesystem::path(data) / transforms_file);
     },
-    describe, used_options};
+    describe_nerfstudio, used_options};
 
 }  // namespace gs
