@@ -24,10 +24,10 @@ void write_scene(const fs::path& folder) {
     scene.photos = photos;
     scene.write(folder);
     for (int i = 0; i < photos; ++i) {
-        std::vector<float> planes(static_cast<std::size_t>(3 * width * height));
+        std::vector<float> planes(static_cast<std::size_t>(3 * photo_width * photo_height));
         for (std::size_t k = 0; k < planes.size(); ++k)
             planes[k] = 0.5F + 0.4F * std::sin(0.1F * static_cast<float>(k) + static_cast<float>(i));
-        gs::write_png(folder / "images" / small_scene::photo(i), width, height, planes);
+        gs::write_png(folder / "images" / small_scene::photo(i), photo_width, photo_height, planes);
     }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../../support/temporary_folder.hpp"
+#include "check_equal.hpp"
 #include "engines.hpp"
 #include "features/depth/depth_feature.hpp"
 #include "features/exposure/exposure_feature.hpp"
@@ -55,17 +56,6 @@ gs::gaussians trained(make_engine make, const gs::scene& scene, gs::train::train
     };
     gs::train::train(*engine, scene, o, events);
     return engine->get_model();
-}
-
-void check_equal(const gs::gaussians& a, const gs::gaussians& b) {
-    CHECK(a.count() == b.count());
-    CHECK(a.mean == b.mean);
-    CHECK(a.log_scale == b.log_scale);
-    CHECK(a.quaternion == b.quaternion);
-    CHECK(a.opacity == b.opacity);
-    CHECK(a.sh_constant == b.sh_constant);
-    CHECK(a.sh_rest == b.sh_rest);
-    CHECK(a.sky == b.sky);
 }
 
 }  // namespace

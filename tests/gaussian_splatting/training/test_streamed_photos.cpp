@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../../support/temporary_folder.hpp"
+#include "check_equal.hpp"
 #include "engines.hpp"
 #include "features/depth/depth_feature.hpp"
 #include "features/exposure/exposure_feature.hpp"
@@ -73,22 +74,22 @@ gs::train::train_options short_run(const gs::scene& scene) {
     return o;
 }
 
-struct outcome {
+struct streamed_outcome {
     gs::gaussians model;
     std::vector<double> held_out;
     std::map<int, gs::state_archive> checkpoints;
 };
 
 /// Trains with at most four threads that decode.
-outcome trained(make_engine make, const gs::scene& scene, const gs::train::train_options& o,
-                const photo_limits& limits) {
+streamed_outcome trained(make_engine make, const gs::scene& scene, const gs::train::train_options& o,
+                         const photo_limits& limits) {
     const auto engine = make();
     gs::photos::photo_plan plan;
     if (gs::photos::any_is_streamed(scene.train, scene.test))
         plan = gs::photos::plan_photos(scene.train, scene.test, limits, 4);
     engine->set_views(scene.train, scene.test, o.schedule.num_downscales, plan);
     engine->set_model(gs::from_points(scene.points, 1, 300, 1));
-    outcome result;
+    streamed_outcome result;
     gs::train::train_events events{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};
     events.checkpoint = [&](int iteration, gs::state_archive& archive) {
         result.checkpoints.insert_or_assign(iteration, gs::state_archive(archive.values(), archive.arrays()));
@@ -98,16 +99,6 @@ outcome trained(make_engine make, const gs::scene& scene, const gs::train::train
     for (std::size_t v = 0; v < scene.test.size(); ++v)
         result.held_out.push_back(engine->measure(v, {}).square_error);
     return result;
-}
-
-void check_equal(const gs::gaussians& a, const gs::gaussians& b) {
-    CHECK(a.count() == b.count());
-    CHECK(a.mean == b.mean);
-    CHECK(a.log_scale == b.log_scale);
-    CHECK(a.quaternion == b.quaternion);
-    CHECK(a.opacity == b.opacity);
-    CHECK(a.sh_constant == b.sh_constant);
-    CHECK(a.sh_rest == b.sh_rest);
 }
 
 /// The smallest limit with which the scene trains.
@@ -128,14 +119,14 @@ TEST_CASE("streamed photos: training gives the same model as resident photos bit
     REQUIRE(least < all / 2);
     const gs::train::train_options o = short_run(resident);
     for (const auto make : engines()) {
-        const outcome expected = trained(make, resident, o, {});
+        const streamed_outcome expected = trained(make, resident, o, {});
         CHECK(expected.model.count() > 350);
         for (const photo_limits& limits :
              {photo_limits{.total = least}, photo_limits{.total = least + all / 3},
               photo_limits{.total = 4 * least + 2 * all},
               photo_limits{.total = 4 * least + 2 * all, .device = least / 2}}) {
             CAPTURE(limits.total);
-            const outcome found = trained(make, scene, o, limits);
+            const streamed_outcome found = trained(make, scene, o, limits);
             check_equal(found.model, expected.model);
             CHECK(found.held_out == expected.held_out);
         }
@@ -171,7 +162,7 @@ TEST_CASE("streamed photos: a run that continues from a checkpoint gives the sam
     gs::train::train_options o = short_run(small_scene(all_kinds, 24));
     o.checkpoint_every = 1;
     for (const auto make : engines()) {
-        outcome uninterrupted = trained(make, scene, o, limits);
+        streamed_outcome uninterrupted = trained(make, scene, o, limits);
         for (const int iteration : {9, 31}) {
             gs::train::train_options rest = o;
             rest.resume_from = &uninterrupted.checkpoints.at(iteration);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../../support/temporary_folder.hpp"
+#include "check_equal.hpp"
 #include "engines.hpp"
 #include "training/initialize.hpp"
 #include "training/training.hpp"
@@ -31,13 +32,13 @@ struct machine {
     double first_step = 0;        ///< additional seconds
 };
 
-struct outcome {
+struct budget_outcome {
     double seconds = 0;
     iteration_plan plan;
 };
 
 /// Runs a training loop without a model on `m`.
-outcome run_for(double seconds, const machine& m, int downscales = 1) {
+budget_outcome run_for(double seconds, const machine& m, int downscales = 1) {
     gs::train::schedule schedule;
     schedule.num_downscales = downscales;
     gs::train::time_budget budget(seconds, 10'000'000);
@@ -82,7 +83,7 @@ TEST_CASE("time budget: the run ends within 3 percent of its time") {
                 CAPTURE(name);
                 CAPTURE(seconds);
                 CAPTURE(downscales);
-                const outcome o = run_for(seconds, machine, downscales);
+                const budget_outcome o = run_for(seconds, machine, downscales);
                 CAPTURE(o.plan.text());
                 CHECK(std::abs(o.seconds - seconds) < 0.03 * seconds);
             }
@@ -93,18 +94,18 @@ TEST_CASE("time budget: the run ends in time on a machine that becomes slower ha
         for (const double share : {0.1, 0.5, 0.9}) {
             CAPTURE(seconds);
             CAPTURE(share);
-            const outcome o = run_for(seconds, {.noise = 0.1, .slower_after = share * seconds});
+            const budget_outcome o = run_for(seconds, {.noise = 0.1, .slower_after = share * seconds});
             CHECK(std::abs(o.seconds - seconds) < 0.03 * seconds);
         }
     // The last correction precedes the change.
-    const outcome late = run_for(60, {.slower_after = 59.5});
+    const budget_outcome late = run_for(60, {.slower_after = 59.5});
     CHECK(late.seconds < 1.03 * 60);
 }
 
 TEST_CASE("time budget: a time shorter than a few steps ends after a few steps") {
     for (const double seconds : {1e-6, 1e-3, 0.02}) {
         CAPTURE(seconds);
-        const outcome o = run_for(seconds, {.first_step = 0.5});
+        const budget_outcome o = run_for(seconds, {.first_step = 0.5});
         CHECK(o.plan.last() <= 3);
     }
     CHECK(run_for(0.5, {}).plan.last() < gs::train::time_budget::first_plan_after);
@@ -112,9 +113,9 @@ TEST_CASE("time budget: a time shorter than a few steps ends after a few steps")
 }
 
 TEST_CASE("time budget: plans have few corrections, and none if the default number is right") {
-    const outcome o = run_for(600, {.noise = 0.1});
+    const budget_outcome o = run_for(600, {.noise = 0.1});
     CHECK(o.plan.text().size() < 400);
-    const outcome constant = run_for(7000 * 1e-3, {.by_pixels = 0, .by_gaussians = 0, .growth = 1}, 0);
+    const budget_outcome constant = run_for(7000 * 1e-3, {.by_pixels = 0, .by_gaussians = 0, .growth = 1}, 0);
     CHECK(constant.seconds == doctest::Approx(7).epsilon(0.03));
 }
 
@@ -163,13 +164,6 @@ trained_run trained(const gs::scene& scene, gs::train::train_options o) {
     run.result = gs::train::train(*engine, scene, o, events);
     run.model = engine->get_model();
     return run;
-}
-
-void check_equal(const gs::gaussians& a, const gs::gaussians& b) {
-    CHECK(a.mean == b.mean);
-    CHECK(a.log_scale == b.log_scale);
-    CHECK(a.opacity == b.opacity);
-    CHECK(a.sh_rest == b.sh_rest);
 }
 
 }  // namespace
