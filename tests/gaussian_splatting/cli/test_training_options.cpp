@@ -190,25 +190,11 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
     check_refusal_without_trace(train_spheres + words{"--effects", "glare"}, {"'glare'", "antialiasing"});
 }
 
-TEST_CASE("large photos are halved more often at first, unless --num-downscales says otherwise") {
-    const temporary_folder folder;
-    const auto halvings = [&](const char* name, const words& options) {
-        check_success(words{"train", "-d", "synthetic:spheres", "--device", "cpu", "-q", "-o",
-                            (folder / name).string(), "--max-cap", "200"} +
-                      options);
-        return read_json(folder / name / "settings.json").at("num_downscales");
-    };
-    CHECK(halvings("small", {"-r", "32", "-i", "5"}) == 1);
-    CHECK(halvings("large", {"-r", "1000", "-i", "12"}) == 2);
-    CHECK(halvings("short", {"-r", "1000", "-i", "2"}) == 1);
-    CHECK(halvings("given", {"-r", "1000", "-i", "5", "--num-downscales", "0"}) == 0);
-}
-
 TEST_CASE("the options of --strategy error change the model") {
     const temporary_folder folder;
     const auto model = [&](const char* name, const words& options) {
-        check_success(small_training(folder / name) +
-                      words{"-q", "--deterministic", "--strategy", "error", "-i", "1300"} + options);
+        check_success(words{"train", "-i", "1300", "-o", (folder / name).string()} + small_spheres +
+                      words{"-q", "--deterministic", "--strategy", "error"} + options);
         return read_file(model_of(folder / name, 1300));
     };
     const std::string usual = model("usual", {});

@@ -101,7 +101,7 @@ std::string wrong_projection(const std::vector<projected_splat>& found,
     if (found[injected_index].drawn != one.is_drawn)
         said += one.is_drawn ? "valid, but culled; " : "to be culled, but drawn; ";
     for (std::size_t i = 0; i < crowd_size; ++i)
-        if (i != victim && found[i] != before[i]) said += "another splat of a healthy one; ";
+        if (i != injected_index && found[i] != before[i]) said += "another splat of a healthy one; ";
     return said;
 }
 

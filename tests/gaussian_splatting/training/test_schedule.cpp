@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "training/schedule.hpp"
+#include "training/training.hpp"
 
 using gs::train::schedule;
 
@@ -94,6 +95,25 @@ TEST_CASE("photos are whole before growth ends, however long training is") {
     s.transparent = true;  // growth ends at 15000
     CHECK(s.downscales_at(6000) == 1);
     CHECK(s.downscales_at(6001) == 0);
+}
+
+TEST_CASE("large photos are halved more often, if enough iterations follow") {
+    const auto halvings = [](int width, int height, int iterations) {
+        gs::scene scene;
+        scene.train.resize(2);
+        scene.train[0].camera.width = scene.train[0].camera.height = 10;
+        scene.train[1].camera.width = width;
+        scene.train[1].camera.height = height;
+        schedule s;
+        s.iterations = iterations;
+        return gs::train::default_downscales(scene, s);
+    };
+    CHECK(halvings(1, 1, 7000) == 1);
+    CHECK(halvings(894, 894, 7000) == 1);
+    CHECK(halvings(895, 895, 7000) == 2);
+    CHECK(halvings(4000, 3000, 7000) == 3);
+    CHECK(halvings(4000, 3000, 1) == 3);  // too few to begin with smaller photos
+    CHECK(halvings(100000, 100000, 7000) == 8);
 }
 
 TEST_CASE("colors that depend on direction can learn more rarely") {
