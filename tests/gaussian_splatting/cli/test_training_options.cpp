@@ -193,14 +193,16 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
 TEST_CASE("the options of --strategy error change the model") {
     const temporary_folder folder;
     const auto model = [&](const char* name, const words& options) {
-        check_success(words{"train", "-i", "1300", "-o", (folder / name).string()} + small_spheres +
-                      words{"-q", "--deterministic", "--strategy", "error"} + options);
-        return read_file(model_of(folder / name, 1300));
+        check_success(words{"train", "-i", "1250", "-d", "synthetic:spheres,views=8,points=200", "-r", "32",
+                            "--device", "cpu", "-q", "--deterministic", "--effects", "none", "-o",
+                            (folder / name).string(), "--strategy", "error"} +
+                      options);
+        return read_file(model_of(folder / name, 1250));
     };
     const std::string usual = model("usual", {});
-    CHECK(model("views", {"--error-views", "1"}) != usual);
-    CHECK(model("level", {"--error-level", "0.5"}) != usual);
-    CHECK(model("pixels", {"--error-pixels", "50"}) != usual);
+    CHECK((model("views", {"--error-views", "2"}) != usual));
+    CHECK((model("level", {"--error-level", "0.005"}) != usual));
+    CHECK((model("pixels", {"--error-pixels", "0.1"}) != usual));
 }
 
 TEST_CASE("the options of --strategy mcmc change the model") {
