@@ -255,13 +255,15 @@ rows length_options(settings& s) {
           .commands = {train},
           .value = whole(s.num_downscales, 0, 8),
           .help = "Number of times that the photos are halved at the start of training",
-          .default_text = "as often as photos of 200000 pixels need, at least once"},
+          .default_text = "as often as photos of 200000 pixels need, from once to three times"},
          {.names = "--resolution-schedule",
           .commands = {train},
           .value = whole(s.schedule.resolution_schedule, 1, most_iterations),
           .help = "Iterations until the photos are halved once less",
           .unit = "iterations",
-          .default_text = "a fifth of the iterations; for --num-downscales N above 1, one part in N + 4",
+          .default_text = "two fifths of the default of --densify-until-iter; for --num-downscales N above "
+                          "1, two parts in "
+                          "N + 4",
           .is_rare = true}});
 }
 

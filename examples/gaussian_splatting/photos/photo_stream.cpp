@@ -3,6 +3,7 @@
 #include "photo_stream.hpp"
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 #include "../scene/downsample.hpp"
@@ -19,7 +20,11 @@ photo_stream::photo_stream(std::vector<view> views, std::size_t workers,
         buffers_.back().photo.bytes = bytes;
         buffers_.back().photo.number = buffers_.size() - 1;
     }
-    for (std::size_t i = 0; i < workers; ++i) workers_.emplace_back([this] { work(); });
+    try {
+        for (std::size_t i = 0; i < workers; ++i) workers_.emplace_back([this] { work(); });
+    } catch (const std::system_error&) {  // the system allows no more threads
+        if (workers_.empty()) throw;
+    }
 }
 
 photo_stream::~photo_stream() {

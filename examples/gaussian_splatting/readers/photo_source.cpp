@@ -97,8 +97,9 @@ view resident_view(const photo_source& source) {
 view streamed_view(std::shared_ptr<const photo_source> source) {
     std::vector<file_stamp> stamps = stamps_of(source->record);
     view result = resident_view(*source);
-    result.pixels.rgba = {};
-    result.depths.values = {};
+    // Assigning {} would keep the memory.
+    result.pixels.rgba = std::vector<std::uint8_t>();
+    result.depths.values = std::vector<std::uint16_t>();
     result.decode_bytes = load_bytes(*source);
     result.decode = [source = std::move(source), stamps = std::move(stamps)] {
         for (const file_stamp& stamp : stamps) stamp.check();

@@ -36,7 +36,8 @@ class device_views {
             return static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
         }
     };
-    /// A photo in device memory, which is valid up to the second next call of `load`.
+    /// A photo in device memory, which is valid up to the next call of `load` or
+    /// `upload_ahead`.
     struct loaded_photo {
         const photo& of;
         cached_photo packed;

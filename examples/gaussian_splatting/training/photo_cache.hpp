@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "../core/error.hpp"
 #include "../device/device.hpp"
 #include "../engine/photo_prefetch.hpp"
 #include "../photos/packed_photo.hpp"
@@ -55,8 +56,11 @@ class photo_cache final : public photo_prefetch {
         set_level(0);
     }
     ~photo_cache() override {
-        device_.wait();
-        release_uploaded(true);
+        try {  // the error that ends training has been thrown
+            device_.wait();
+            release_uploaded(true);
+        } catch (const error&) {
+        }
     }
     photo_cache(const photo_cache&) = delete;
     photo_cache& operator=(const photo_cache&) = delete;
@@ -97,8 +101,8 @@ class photo_cache final : public photo_prefetch {
         stream_->expect(std::move(missing));
     }
 
-    /// Returns a photo. Waits until it is decoded. Launches that follow may use it, up to the second
-    /// next call. Throws the error of a photo that cannot be decoded.
+    /// Returns a photo. Waits until it is decoded. Launches that follow may use it, up to the next
+    /// call of `get` or `upload_ahead`. Throws the error of a photo that cannot be decoded.
     cached_photo get(std::size_t view, std::size_t level) {
         const request r{view, level};
         if (!find(r)) {

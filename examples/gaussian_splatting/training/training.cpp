@@ -376,7 +376,8 @@ int default_downscales(const scene& scene, const schedule& schedule) {
         return downscales * with.resolution_interval() < schedule.iterations.last();
     };
     int downscales = 1;
-    while ((pixels >> (2 * downscales)) > 200000 && leaves_whole_photos(downscales + 1)) ++downscales;
+    while (downscales < 3 && (pixels >> (2 * downscales)) > 200000 && leaves_whole_photos(downscales + 1))
+        ++downscales;
     return downscales;
 }
 

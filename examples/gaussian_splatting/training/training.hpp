@@ -220,8 +220,8 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
 std::size_t default_cap(const scene& scene);
 
 /// Returns the default of `schedule::num_downscales`: how often the largest training view must be
-/// halved to have at most 200,000 pixels, at least once, but not so often that training ends before
-/// the photos are whole.
+/// halved to have at most 200,000 pixels, at least once, at most three times, and not so often that
+/// training ends before the photos are whole.
 int default_downscales(const scene& scene, const schedule& schedule);
 
 }  // namespace gs::train

@@ -5,8 +5,10 @@
 #include <cuda_runtime.h>
 
 #include <cstddef>
+#include <string>
 #include <utility>
 
+#include "../../core/error.hpp"
 #include "memory.hpp"
 
 namespace gs::device {
@@ -28,7 +30,11 @@ class page_locked_buffer {
         if (n > capacity_) {
             cudaFreeHost(std::exchange(memory_, nullptr));
             size_ = capacity_ = 0;
-            check(cudaMallocHost(&memory_, n * sizeof(T)));
+            if (cudaMallocHost(&memory_, n * sizeof(T)) != cudaSuccess) {
+                cudaGetLastError();
+                throw error("the system refuses " + std::to_string(n * sizeof(T)) +
+                            " bytes of page-locked memory for photos: lower --photo-memory");
+            }
             capacity_ = n;
         }
         size_ = n;
@@ -58,7 +64,10 @@ struct cuda_transfer {
 
     bool is_done() const {
         const cudaError_t status = cudaEventQuery(event);
-        if (status == cudaErrorNotReady) return false;
+        if (status == cudaErrorNotReady) {
+            cudaGetLastError();  // otherwise the next call of another library reports it
+            return false;
+        }
         check(status);
         return true;
     }
