@@ -167,12 +167,13 @@ TEST_CASE("error: a model whose Gaussians are all transparent becomes empty, and
     }
 }
 
-TEST_CASE("error: training is repeatable with fixed point, for any number of threads") {
-    const gs::scene scene = small_scene();
+TEST_CASE("long: error: training is repeatable with fixed point, for any number of threads") {
+    const gs::scene scene = small_scene("synthetic:spheres,views=6", 24);
     gs::train::train_options o;
-    o.schedule.iterations = 2000;
+    o.schedule.iterations = 1500;
     o.schedule.sh_degree = 1;
     o.densification.name = "error";
+    o.densification.of<gs::train::error_config>() = {.level = 0.005, .pixels = 0.1};
     o.max_cap = 600;
     o.gradient = gs::accumulator::fixed;
     const gaussians model = gs::from_points(scene.points, 1, 300, 1);
@@ -185,7 +186,7 @@ TEST_CASE("error: training is repeatable with fixed point, for any number of thr
     const int threads = omp_get_max_threads();
     for (const auto make : engines()) {
         const gaussians first = trained(*make());
-        CHECK(first.count() > 300);
+        CHECK(first.count() > 240);  // a fifth of the Gaussians goes at the end
         for (const int n : {1, 3}) {
             if (n > 1 && hard_cases::brief) continue;
             omp_set_num_threads(n);

@@ -414,7 +414,7 @@ TEST_CASE("mcmc: extreme Gaussians stay finite") {
     }
 }
 
-TEST_CASE("mcmc: training is repeatable with fixed point, for any number of threads") {
+TEST_CASE("long: mcmc: training is repeatable with fixed point, for any number of threads") {
     const gs::scene scene = small_scene();
     gs::train::train_options o;
     o.schedule.iterations = 900;

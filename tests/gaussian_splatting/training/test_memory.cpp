@@ -75,7 +75,7 @@ TEST_CASE("memory: the forecast before training is near the memory that training
     }
 }
 
-TEST_CASE("memory: growth stops near the limit, with one warning") {
+TEST_CASE("long: memory: growth stops near the limit, with one warning") {
     const gs::scene scene = scene_with_points();
     for (const auto make : engines())
         for (const std::string strategy : {"adaptive", "mcmc"}) {
