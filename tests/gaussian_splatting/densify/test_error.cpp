@@ -50,7 +50,7 @@ std::size_t count_after(engine& e, const gs::scene& scene, const gaussians& mode
     return e.count();
 }
 
-/// What `classify_by_error` decides for one Gaussian.
+/// The decision of `classify_by_error` about one Gaussian.
 struct decision {
     bool stays, grows;
     bool operator==(const decision&) const = default;
