@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "../hard_cases/budget.hpp"
 #include "../training/engines.hpp"
+#include "check_repeatable.hpp"
 #include "densify/error/error_config.hpp"
 #include "densify/error/error_kernels.hpp"
 #include "model/opacity.hpp"
@@ -176,25 +175,5 @@ TEST_CASE("long: error: training is repeatable with fixed point, for any number 
     o.densification.of<gs::train::error_config>() = {.level = 0.005, .pixels = 0.1};
     o.max_cap = 600;
     o.gradient = gs::accumulator::fixed;
-    const gaussians model = gs::from_points(scene.points, 1, 300, 1);
-    const auto trained = [&](engine& e) {
-        e.set_views(scene.train, {}, o.schedule.num_downscales);
-        e.set_model(model);
-        gs::train::train(e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
-        return e.get_model();
-    };
-    const int threads = omp_get_max_threads();
-    for (const auto make : engines()) {
-        const gaussians first = trained(*make());
-        CHECK(first.count() > 240);  // a fifth of the Gaussians goes at the end
-        for (const int n : {1, 3}) {
-            if (n > 1 && hard_cases::brief) continue;
-            omp_set_num_threads(n);
-            const gaussians again = trained(*make());
-            CHECK(again.mean == first.mean);
-            CHECK(again.opacity == first.opacity);
-            CHECK(again.sh_rest == first.sh_rest);
-        }
-        omp_set_num_threads(threads);
-    }
+    CHECK(check_repeatable(scene, o) > 240);  // a fifth of the Gaussians goes at the end
 }

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +9,8 @@
 #include <map>
 #include <vector>
 
-#include "../hard_cases/budget.hpp"
 #include "../training/engines.hpp"
+#include "check_repeatable.hpp"
 #include "densify/mcmc/mcmc_config.hpp"
 #include "densify/mcmc/mcmc_kernels.hpp"
 #include "model/opacity.hpp"
@@ -422,22 +421,5 @@ TEST_CASE("long: mcmc: training is repeatable with fixed point, for any number o
     o.densification.name = "mcmc";
     o.max_cap = 600;
     o.gradient = gs::accumulator::fixed;
-    const gaussians model = gs::from_points(scene.points, 1, 300, 1);
-    const auto trained = [&](engine& e) {
-        e.set_views(scene.train, {}, o.schedule.num_downscales);
-        e.set_model(model);
-        gs::train::train(e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
-        return e.get_model();
-    };
-    const int threads = omp_get_max_threads();
-    for (const auto make : engines()) {
-        const gaussians first = trained(*make());
-        CHECK(first.count() == 600);
-        for (const int n : {1, 3}) {
-            if (n > 1 && hard_cases::brief) continue;
-            omp_set_num_threads(n);
-            CHECK(are_equal(trained(*make()), first));
-        }
-        omp_set_num_threads(threads);
-    }
+    CHECK(check_repeatable(scene, o) == 600);
 }
