@@ -9,7 +9,8 @@ set -euo pipefail
 
 distribution=$(. /etc/os-release 2>/dev/null && echo "${ID:-unknown}" || echo unknown)
 packages=(cmake ninja-build g++ git libglm-dev libcli11-dev nlohmann-json3-dev doctest-dev
-    libpng-dev libjpeg-dev libwebp-dev libheif-dev libexif-dev pkg-config libnanoflann-dev libzip-dev "$@")
+    libpng-dev libjpeg-dev libwebp-dev libheif-dev libexif-dev pkg-config libnanoflann-dev libzip-dev libzstd-dev
+    libcpp-httplib-dev "$@")
 # Debian's libheif contains its codecs; Ubuntu's loads them from packages of their own.
 [[ $distribution != ubuntu ]] ||
     packages+=(libheif-plugin-{aomdec,aomenc,libde265,x265})
