@@ -21,6 +21,7 @@ import sys
 import tempfile
 
 HEIGHT, RADIUS = 4.0, 6.0
+BAND = 32  # rows of a photo that are computed at once, so that they stay in the cache
 
 
 def colors(x, y):
@@ -62,11 +63,15 @@ def write_photo(job):
     from PIL import Image
     file, index, count, width, height = job
     rotation, center = camera(index, count)
-    u, v = np.meshgrid((np.arange(width, dtype=np.float32) + 0.5 - width / 2) / width,
-                       (np.arange(height, dtype=np.float32) + 0.5 - height / 2) / width)
-    ray = [(rotation[0, k] * u + rotation[1, k] * v + rotation[2, k]).astype(np.float32) for k in range(3)]
-    far = center[2] / np.maximum(-ray[2], 1e-3)
-    Image.fromarray(colors(center[0] + far * ray[0], center[1] + far * ray[1])).save(file, quality=90)
+    pixels = np.empty((height, width, 3), np.uint8)
+    for top in range(0, height, BAND):
+        rows = np.arange(top, min(top + BAND, height), dtype=np.float32)
+        u, v = np.meshgrid((np.arange(width, dtype=np.float32) + 0.5 - width / 2) / width,
+                           (rows + 0.5 - height / 2) / width)
+        ray = [(rotation[0, k] * u + rotation[1, k] * v + rotation[2, k]).astype(np.float32) for k in range(3)]
+        far = center[2] / np.maximum(-ray[2], 1e-3)
+        pixels[top:top + len(rows)] = colors(center[0] + far * ray[0], center[1] + far * ray[1])
+    Image.fromarray(pixels).save(file, quality=90)
 
 
 def make(args):
