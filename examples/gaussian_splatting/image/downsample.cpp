@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "image.hpp"
 
@@ -28,13 +30,14 @@ std::vector<coverage> coverages(std::size_t input, std::size_t output) {
     return all;
 }
 
-void average_row(const std::uint8_t* row, const std::vector<coverage>& columns,
-                 std::vector<std::uint32_t>& sums) {
+/// Sums the rows that one output row covers. The sums are at most 255 * input, which fits.
+void sum_rows(const image& source, const coverage& line, std::vector<std::uint32_t>& sums) {
     std::fill(sums.begin(), sums.end(), 0U);
-    for (std::size_t x = 0; x < columns.size(); ++x)
-        for (std::size_t i = 0; i < columns[x].lengths.size(); ++i)
-            for (std::size_t channel = 0; channel < 4; ++channel)
-                sums[4 * x + channel] += columns[x].lengths[i] * row[4 * (columns[x].first + i) + channel];
+    for (std::size_t i = 0; i < line.lengths.size(); ++i) {
+        const std::uint8_t* row = source.rgba.data() + sums.size() * (line.first + i);
+        const std::uint32_t length = line.lengths[i];
+        for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += length * row[k];
+    }
 }
 
 image average(const image& source, int width, int height) {
@@ -44,20 +47,19 @@ image average(const image& source, int width, int height) {
     const auto lines = coverages(source_height, static_cast<std::size_t>(height));
     const std::uint64_t area = std::uint64_t{source_width} * source_height;
 
-    image result;
-    result.width = width;
-    result.height = height;
-    result.rgba.reserve(4 * columns.size() * lines.size());
-    std::vector<std::uint32_t> row(4 * columns.size());
-    std::vector<std::uint64_t> sums(row.size());
+    image result{width, height, std::vector<std::uint8_t>(4 * columns.size() * lines.size())};
+    std::uint8_t* to = result.rgba.data();
+    std::vector<std::uint32_t> rows(4 * source_width);
     for (const coverage& line : lines) {
-        std::fill(sums.begin(), sums.end(), 0U);
-        for (std::size_t i = 0; i < line.lengths.size(); ++i) {
-            average_row(source.rgba.data() + 4 * source_width * (line.first + i), columns, row);
-            for (std::size_t k = 0; k < row.size(); ++k) sums[k] += std::uint64_t{row[k]} * line.lengths[i];
+        sum_rows(source, line, rows);
+        for (const coverage& column : columns) {
+            std::array<std::uint64_t, 4> sums{};
+            for (std::size_t i = 0; i < column.lengths.size(); ++i)
+                for (std::size_t channel = 0; channel < 4; ++channel)
+                    sums[channel] +=
+                        std::uint64_t{column.lengths[i]} * rows[4 * (column.first + i) + channel];
+            for (const std::uint64_t sum : sums) *to++ = static_cast<std::uint8_t>((sum + area / 2) / area);
         }
-        for (const std::uint64_t sum : sums)
-            result.rgba.push_back(static_cast<std::uint8_t>((sum + area / 2) / area));
     }
     return result;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "codecs/codec.hpp"
 
@@ -19,17 +20,20 @@ image_size checked_size(const image_file& file, const image_codec& codec) {
 
 }  // namespace
 
-image read_image(const std::filesystem::path& path) {
+image read_image(const std::filesystem::path& file) {
+    image pixels;
+    read_image(file, pixels);
+    return pixels;
+}
+
+void read_image(const std::filesystem::path& path, image& pixels) {
     const image_file file(path);
     const image_codec& codec = codec_of(file);
     const image_size size = checked_size(file, codec);
     file.check_density(size);
-    image pixels;
-    pixels.width = static_cast<int>(size.width);
-    pixels.height = static_cast<int>(size.height);
+    pixels = {static_cast<int>(size.width), static_cast<int>(size.height), std::move(pixels.rgba)};
     pixels.rgba.resize(4 * size.width * size.height);
     codec.read(file, pixels);
-    return pixels;
 }
 
 image_header read_image_header(const std::filesystem::path& path) {

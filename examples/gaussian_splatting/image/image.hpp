@@ -57,6 +57,8 @@ struct image_header {
 /// pixels per side, 2 GiB of pixels, or 100 scans. Allocates at most 10 bytes per pixel, or about 20
 /// for HEIF, whose decoders trust the size of the coded image before it is compared with the header.
 image read_image(const std::filesystem::path& file);
+/// Like the function above, but reuses the memory of `pixels`, whose content is lost also on errors.
+void read_image(const std::filesystem::path& file, image& pixels);
 
 /// Reads a PNG with one channel, row by row from the top. Scales values of fewer than 16 bits to 16
 /// bits. Throws `error` like `read_image`, and if the file has more channels.

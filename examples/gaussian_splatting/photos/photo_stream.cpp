@@ -111,6 +111,7 @@ photo_stream::buffer& photo_stream::wait_for(lock& locked, const photo_request& 
 }
 
 void photo_stream::work() {
+    photo scratch;
     lock locked(mutex_);
     while (true) {
         buffer* empty = nullptr;
@@ -128,7 +129,7 @@ void photo_stream::work() {
         std::shared_ptr<const kept_photo> kept = found == kept_.end() ? nullptr : found->second;
         if (kept != nullptr && kept->level != empty->photo.of.level) kept = nullptr;
         locked.unlock();
-        kept = fill(*empty, std::move(kept));
+        kept = fill(*empty, std::move(kept), scratch);
         locked.lock();
         if (kept != nullptr && kept->level == kept_level_) kept_[empty->photo.of.view] = std::move(kept);
         empty->state = is_expected(empty->photo.of) ? state::ready : state::empty;
@@ -136,32 +137,37 @@ void photo_stream::work() {
     }
 }
 
-/// Copies a kept photo to the buffer, or decodes it. Returns the kept photo, or a new one if the
-/// request asks to keep it. Runs without the lock.
+/// Copies a kept photo to the buffer, or decodes it. Returns the decoded photo if the request asks to
+/// keep it. Reuses the memory of `scratch`, because fresh memory costs as much time
+/// as decoding. Runs without the lock.
 std::shared_ptr<const photo_stream::kept_photo> photo_stream::fill(buffer& b,
-                                                                   std::shared_ptr<const kept_photo> kept) {
+                                                                   std::shared_ptr<const kept_photo> kept,
+                                                                   photo& scratch) {
     const photo_request& request = b.photo.of;
+    photo small;
     if (kept == nullptr) try {
-            kept = decode(request);
+            decode(request, scratch, small);
         } catch (...) {
             b.failure = std::current_exception();
             return nullptr;
         }
-    pack(kept->pixels, kept->depths, b.photo.bytes);
-    b.photo.has_mask = kept->pixels.has_mask;
-    b.photo.has_depths = kept->depths.is_there();
-    return request.keep ? kept : nullptr;
+    photo& decoded = request.level > 0 ? small : scratch;
+    const photo& found = kept != nullptr ? static_cast<const photo&>(*kept) : decoded;
+    pack(found.pixels, found.depths, b.photo.bytes);
+    b.photo.has_mask = found.pixels.has_mask;
+    b.photo.has_depths = found.depths.is_there();
+    if (!request.keep || kept != nullptr) return nullptr;
+    return std::make_shared<const kept_photo>(kept_photo{std::move(decoded), request.level});
 }
 
-std::shared_ptr<const photo_stream::kept_photo> photo_stream::decode(const photo_request& request) const {
+/// Decodes a photo into `full`, and into `small` if the request asks for a smaller size.
+void photo_stream::decode(const photo_request& request, photo& full, photo& small) const {
     const view& of = views_[request.view];
-    photo full = decoded(of);
-    if (request.level > 0) {
-        const camera small = downsampled(of.camera, 1 << request.level);
-        full.pixels = downsample(full.pixels, small.width, small.height);
-        full.depths = resized(full.depths, small.width, small.height);
-    }
-    return std::make_shared<const kept_photo>(kept_photo{std::move(full), request.level});
+    gs::decode(of, full);
+    if (request.level == 0) return;
+    const camera size = downsampled(of.camera, 1 << request.level);
+    small.pixels = downsample(full.pixels, size.width, size.height);
+    small.depths = resized(full.depths, size.width, size.height);
 }
 
 photo_stream::buffer* photo_stream::find(const photo_request& request) {

@@ -75,8 +75,8 @@ class photo_stream {
     using lock = std::unique_lock<std::mutex>;
 
     void work();
-    std::shared_ptr<const kept_photo> fill(buffer& b, std::shared_ptr<const kept_photo> kept);
-    std::shared_ptr<const kept_photo> decode(const photo_request& request) const;
+    std::shared_ptr<const kept_photo> fill(buffer& b, std::shared_ptr<const kept_photo> kept, photo& scratch);
+    void decode(const photo_request& request, photo& full, photo& small) const;
     buffer* find(const photo_request& request);
     buffer* find_empty();
     const photo_request* next_request();

@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-image read_photo(const fs::path& file, const orientation& turn) {
-    image photo = read_image(file);
-    return turn == orientation() ? photo : turned_upright(photo, turn);
+void read_photo(const fs::path& file, const orientation& turn, image& photo) {
+    read_image(file, photo);
+    if (turn != orientation()) photo = turned_upright(photo, turn);
 }
 
 /// The size and the time of a file, which reveal that it has been replaced.
@@ -67,8 +67,15 @@ std::size_t load_bytes(const photo_source& source) {
 }  // namespace
 
 photo photo_source::load() const {
+    photo result;
+    load(result);
+    return result;
+}
+
+void photo_source::load(gs::photo& result) const {
     const lens& distortion = record.distortion;
-    image photo = read_photo(record.file, fitted.turn);
+    image& photo = result.pixels;
+    read_photo(record.file, fitted.turn, photo);
     image mask = record.mask.empty() ? image() : read_mask(record.mask, photo);
     depth_map depths = record.depth.empty()
                            ? depth_map()
@@ -81,12 +88,13 @@ photo photo_source::load() const {
     apply_mask(mask, photo);  // before downsampling, to keep masked pixels out of averages
     mask_border(record.masked_border * fitted.taken_with.width / record.camera.width, photo);
     clear_masked_depths(photo, depths);
-    photo = downsample(photo, scaled.width, scaled.height);
+    if (scaled.width != photo.width || scaled.height != photo.height)
+        photo = downsample(photo, scaled.width, scaled.height);
     if (photo.is_all_masked())
         throw error(record.mask.empty()
                         ? record.file.string() + " is no larger than its masked border"
                         : "the mask " + record.mask.string() + " leaves nothing of its photo");
-    return {std::move(photo), resized(depths, scaled.width, scaled.height)};
+    result.depths = resized(depths, scaled.width, scaled.height);
 }
 
 view resident_view(const photo_source& source) {
@@ -101,9 +109,9 @@ view streamed_view(std::shared_ptr<const photo_source> source) {
     result.pixels.rgba = std::vector<std::uint8_t>();
     result.depths.values = std::vector<std::uint16_t>();
     result.decode_bytes = load_bytes(*source);
-    result.decode = [source = std::move(source), stamps = std::move(stamps)] {
+    result.decode = [source = std::move(source), stamps = std::move(stamps)](photo& into) {
         for (const file_stamp& stamp : stamps) stamp.check();
-        return source->load();
+        source->load(into);
     };
     return result;
 }

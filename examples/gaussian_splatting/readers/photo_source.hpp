@@ -21,6 +21,8 @@ struct photo_source {
     /// Reads the files, removes lens distortion, applies the mask, and downsamples. Throws `error`
     /// with the name of a file that cannot be used.
     photo load() const;
+    /// Like the function above, but replaces `result` and reuses its memory.
+    void load(photo& result) const;
 };
 
 /// Returns the view with its photo.

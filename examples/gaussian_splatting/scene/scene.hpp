@@ -30,9 +30,10 @@ struct view {
     image pixels;        ///< has size and flags, but no values if `is_streamed`
     depth_map depths{};  ///< has the photo's size, or is empty; has no values if `is_streamed`
 
-    /// Decodes the photo. Empty if the view holds it. Threads may call it. Throws `error`, for
-    /// example if the file has changed since the view was made.
-    std::function<photo()> decode{};
+    /// Decodes the photo, and replaces the argument, whose memory it reuses. Empty if the view holds
+    /// the photo. Threads may call it. Throws `error`, for example if the file has changed since the
+    /// view was made.
+    std::function<void(photo&)> decode{};
     std::size_t decode_bytes = 0;  ///< largest size of the images that `decode` holds at once
 
     bool is_streamed() const { return decode != nullptr; }

@@ -6,12 +6,11 @@
 
 namespace gs {
 
-/// Decodes the photo of a streamed view. Leaves out a depth map that the view does not have anymore,
-/// because training does not use it.
-inline photo decoded(const view& of) {
-    photo result = of.decode();
+/// Decodes the photo of a streamed view, and replaces `result`, whose memory it reuses. Leaves out a
+/// depth map that the view does not have anymore, because training does not use it.
+inline void decode(const view& of, photo& result) {
+    of.decode(result);
     if (!of.depths.is_there()) result.depths = {};
-    return result;
 }
 
 /// The photo of a view. It refers to the photo that the view holds, or decodes the photo of a
@@ -19,7 +18,7 @@ inline photo decoded(const view& of) {
 class view_photo {
   public:
     explicit view_photo(const view& of) : view_(of) {
-        if (of.is_streamed()) decoded_ = decoded(of);
+        if (of.is_streamed()) decode(of, decoded_);
     }
     view_photo(const view_photo&) = delete;
     view_photo& operator=(const view_photo&) = delete;

@@ -38,9 +38,9 @@ gs::scene streamed(const gs::scene& of, const std::function<void(const std::stri
             v.pixels.rgba.clear();
             v.depths.values.clear();
             v.decode_bytes = held->pixels.rgba.size();
-            v.decode = [held, before_decoding, name = v.name] {
+            v.decode = [held, before_decoding, name = v.name](gs::photo& into) {
                 if (before_decoding) before_decoding(name);
-                return *held;
+                into = *held;
             };
         }
     return result;
