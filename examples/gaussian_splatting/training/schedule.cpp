@@ -23,11 +23,19 @@ int schedule::resolution_interval() const {
     return resolution_schedule.value_or(2 * growth_end / (4 + std::max(1, num_downscales)));
 }
 
+double schedule::position_progress(int iteration) const {
+    const double progress = iterations.progress(iteration);
+    const int growth_end = default_growth_end(iterations, views, transparent);
+    if (growth_end == iterations.milestone(0.5)) return progress;
+    return std::max(progress, std::min(1.0, iteration / (2.0 * growth_end)));
+}
+
 std::array<float, 8> schedule::rates_at(int iteration) const {
-    const double t = iterations.progress(iteration);
-    const double mean =
-        extent * std::exp(std::log(position_rate_init()) * (1 - t) + std::log(position_rate_final()) * t);
-    const double rest = std::pow(0.1, std::max(0.0, 5 * t - 4)), sh = feature_lr, band = sh_rate();
+    const double moved = position_progress(iteration);
+    const double mean = extent * std::exp(std::log(position_rate_init()) * (1 - moved) +
+                                          std::log(position_rate_final()) * moved);
+    const double rest = std::pow(0.1, std::max(0.0, 5 * iterations.progress(iteration) - 4)), sh = feature_lr,
+                 band = sh_rate();
     std::array<double, 8> all{mean, scaling_lr, rotation_lr, opacity_lr, sh, band, band, band};
     for (std::size_t p = 1; p < all.size(); ++p) all[p] *= rest;
     std::array<float, 8> rates{};

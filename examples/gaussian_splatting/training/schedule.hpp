@@ -25,7 +25,7 @@ struct schedule {
     bool transparent = false;
 
     /// Learning rates of Adam. Rates of positions are relative to the extent and decay
-    /// exponentially from `init` to `final`: see `position_rate_init` and `position_rate_final`.
+    /// exponentially from `init` to `final`: see `position_rate_init` and `position_progress`.
     std::optional<double> position_lr_init, position_lr_final;
     double feature_lr = 2.5e-3;   ///< learning rate of SH degree 0
     std::optional<double> sh_lr;  ///< learning rate of SH degrees 1 to 3; see `sh_rate`
@@ -57,6 +57,10 @@ struct schedule {
     double position_rate_init() const { return position_lr_init.value_or(transparent ? 3.2e-4 : 1.6e-4); }
     double position_rate_final() const { return position_lr_final.value_or(transparent ? 8e-6 : 1.6e-6); }
     /// @}
+    /// Returns how far the rate of positions has fallen, from 0 to 1. This is the progress of the
+    /// run, but 1 at twice `default_growth_end` if that comes first: Gaussians that still move
+    /// much while their number grows become more, and fit single photos.
+    double position_progress(int iteration) const;
     /// Returns the learning rate of SH degrees 1 to 3: `sh_lr`, or if it is unset, a tenth of
     /// `feature_lr`, or a fifth for `transparent` photos.
     double sh_rate() const { return sh_lr.value_or(feature_lr / (transparent ? 5 : 10)); }

@@ -13,10 +13,23 @@ TEST_CASE("rates of the positions fall a hundredfold, by the scene's extent") {
     schedule s;
     s.extent = 2;
     s.iterations = 30000;
+    s.views = 1000;
     CHECK(s.rates_at(0)[0] == doctest::Approx(3.2e-4));
     CHECK(s.rates_at(15000)[0] == doctest::Approx(3.2e-5));
     CHECK(s.rates_at(30000)[0] == doctest::Approx(3.2e-6));
     CHECK(s.rates_at(1)[5] == doctest::Approx(s.rates_at(1)[4] / 10));
+}
+
+TEST_CASE("rates of the positions fall until twice the end of growth, if training lasts longer") {
+    schedule s;
+    s.iterations = 30000;
+    s.views = 100;  // growth ends after 4,000 iterations
+    CHECK(s.rates_at(4000)[0] == doctest::Approx(1.6e-5));
+    CHECK(s.rates_at(8000)[0] == doctest::Approx(1.6e-6));
+    CHECK(s.rates_at(29999)[0] == doctest::Approx(1.6e-6));
+    s.iterations = 6000;  // growth ends after 3,000 iterations
+    CHECK(s.rates_at(3000)[0] == doctest::Approx(1.6e-5));
+    CHECK(s.rates_at(6000)[0] == doctest::Approx(1.6e-6));
 }
 
 TEST_CASE("the other rates fall to a tenth in the last fifth of the iterations") {
@@ -136,6 +149,7 @@ TEST_CASE("rates and intervals are the reference implementation's, and can be ot
     CHECK(s.rates_at(0)[3] == 2.5e-2f);  // opacity
     CHECK(s.rates_at(0)[4] == 2.5e-3f);  // color
 
+    s.views = 1000;
     s.position_lr_init = 1e-2;
     s.position_lr_final = 1e-4;
     s.scaling_lr = 1;
