@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
+#include "compressed_ply/compressed_ply.hpp"
 #include "ply/ply.hpp"
 #include "splat/splat.hpp"
 #include "writer.hpp"
@@ -9,6 +10,7 @@ namespace gs {
 std::span<const writer* const> all_writers() {
     static constexpr const writer* table[] = {
         &ply_writer,
+        &compressed_ply_writer,
         &splat_writer,
     };
     return table;

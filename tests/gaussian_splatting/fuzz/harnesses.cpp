@@ -22,7 +22,8 @@ std::vector<harness> make_harnesses() {
     for (const gs::writer* one : gs::all_writers()) {
         if (!one->read) continue;
         std::string name(one->name);
-        std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+        std::ranges::transform(name, name.begin(),
+                               [](unsigned char c) { return c == ' ' ? '_' : std::tolower(c); });
         all.push_back({name, [read = one->read](std::string_view input) {
                            return load_within_budget(
                                input, [read](const std::filesystem::path& file) { read(file); });
