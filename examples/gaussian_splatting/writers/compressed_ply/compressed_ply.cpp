@@ -307,13 +307,9 @@ class compressed_input {
     gaussians model_;
 };
 
-void write_compressed_ply(const std::filesystem::path& file, const gaussians& model,
-                          const write_options& options) {
-    const int sh_degree = std::min(model.sh_degree, options.max_sh_degree);
-    require_writable(file, model, sh_degree);
-    require_finite_sky(file, model);
-    const compressed_output output(model, sh_degree);
-    atomic_file_write(file, [&](std::ostream& out) { output.write(out); });
+void write_compressed_ply_file(const std::filesystem::path& file, const gaussians& model,
+                               const write_options& options) {
+    atomic_file_write(file, [&](std::ostream& out) { write_compressed_ply(out, file, model, options); });
 }
 
 gaussians read_compressed_ply(const std::filesystem::path& file) { return compressed_input(file).read(); }
@@ -322,7 +318,15 @@ constexpr std::string_view endings[] = {".compressed.ply"};
 
 }  // namespace
 
-constinit const writer compressed_ply_writer{"compressed PLY", endings, write_compressed_ply,
+void write_compressed_ply(std::ostream& out, const std::filesystem::path& file, const gaussians& model,
+                          const write_options& options) {
+    const int sh_degree = std::min(model.sh_degree, options.max_sh_degree);
+    require_writable(file, model, sh_degree);
+    require_finite_sky(file, model);
+    compressed_output(model, sh_degree).write(out);
+}
+
+constinit const writer compressed_ply_writer{"compressed PLY", endings, write_compressed_ply_file,
                                              read_compressed_ply};
 
 }  // namespace gs

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <filesystem>
+#include <ostream>
+
 #include "../writer.hpp"
 
 namespace gs {
@@ -26,5 +29,10 @@ namespace gs {
 /// file, a range that is not finite. It allocates at most four times the size of the file, plus 64
 /// KiB.
 extern const writer compressed_ply_writer;
+
+/// Writes the bytes of such a file to a stream, row by row. Throws `error` with the name `file` and
+/// the Gaussian for values that are not finite, before it writes.
+void write_compressed_ply(std::ostream& out, const std::filesystem::path& file, const gaussians& model,
+                          const write_options& options);
 
 }  // namespace gs
