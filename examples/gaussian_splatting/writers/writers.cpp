@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include "compressed_ply/compressed_ply.hpp"
+#include "html/html.hpp"
 #include "ply/ply.hpp"
 #include "splat/splat.hpp"
 #include "writer.hpp"
@@ -12,6 +13,7 @@ std::span<const writer* const> all_writers() {
         &ply_writer,
         &compressed_ply_writer,
         &splat_writer,
+        &html_writer,
     };
     return table;
 }
