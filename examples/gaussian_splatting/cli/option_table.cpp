@@ -61,6 +61,15 @@ option_value planned_iterations(iteration_plan& member) {
                 }};
 }
 
+/// Words that name folders.
+option_value folders(std::vector<std::string>& member) {
+    return {.type = "FOLDER...",
+            .range = "",
+            .read = [&member](const std::string& word) { member.push_back(word); },
+            .json = [&member] { return nlohmann::ordered_json(member); },
+            .is_list = true};
+}
+
 rows grouped(const std::string& heading, rows all) {
     for (option& row : all) row.group = heading;
     return all;
@@ -74,6 +83,11 @@ rows scene_options(settings& s) {
           .value = text(s.ply, "FILE"),
           .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
           .required = {evaluate, render}},
+         {.names = "runs",
+          .commands = {compare},
+          .value = folders(s.runs),
+          .help = "Output folders of train to compare, at least two",
+          .required = {compare}},
          {.names = "-d,--data,-s,--source-path",
           .commands = {train, evaluate, render, inspect},
           .value = text(s.scene.data, "SCENE"),
@@ -193,6 +207,25 @@ rows output_options(settings& s) {
                                        "options of the command line override it",
                                .default_text = "none",
                                .is_recorded = false}});
+}
+
+rows page_options(settings& s) {
+    return grouped("Output", {{.names = "-o,--output",
+                               .commands = {compare},
+                               .value = text(s.output, "FILE"),
+                               .help = "Web page to write",
+                               .default_text = "compare.html"},
+                              {.names = "--no-viewer",
+                               .commands = {train},
+                               .value = flag(s.no_viewer),
+                               .help = "Leaves out viewer.html, the page that shows the model in a browser"},
+                              {.names = "--viewer-size",
+                               .commands = {train},
+                               .value = byte_size(s.viewer_size),
+                               .help = "Largest size of viewer.html; a larger model is shown without its "
+                                       "least important Gaussians",
+                               .default_text = "64MB",
+                               .excludes = {"--no-viewer"}}});
 }
 
 rows memory_options(settings& s) {
@@ -426,9 +459,9 @@ rows evaluation_options(settings& s) {
 std::vector<option> option_table(settings& s) {
     rows table;
     for (auto& group :
-         {scene_options(s), pose_options(s), output_options(s), checkpoint_options(s), length_options(s),
-          effect_options(s), learning_rate_options(s), densification_options(s), strategy_options(s),
-          memory_options(s), evaluation_options(s), run_options(s)})
+         {scene_options(s), pose_options(s), output_options(s), page_options(s), checkpoint_options(s),
+          length_options(s), effect_options(s), learning_rate_options(s), densification_options(s),
+          strategy_options(s), memory_options(s), evaluation_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }
@@ -448,6 +481,8 @@ std::string purpose_of(command c) {
             return "Measures a saved model on the held-out views of a scene, or without --eval on all views";
         case render:
             return "Draws a saved model from the cameras of a scene or from an orbit";
+        case compare:
+            return "Writes a web page that compares several runs of train";
         case inspect:
             return "Reports which effects the photos of a scene need";
         case doctor:

@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "../densify/strategy_settings.hpp"
 #include "../features/resolve.hpp"
@@ -50,6 +51,7 @@ struct settings {
     std::optional<int> video_frames;
     std::string output;
     std::string ply;
+    std::vector<std::string> runs;  ///< folders of the runs that compare reads
     device_kind device = device_kind::automatic;
     background_kind background = background_kind::automatic;
     std::uint64_t seed = 0;
@@ -78,6 +80,9 @@ struct settings {
     bool resume = false;
     bool overwrite = false;
     std::set<int> test_iterations;
+
+    bool no_viewer = false;                                 ///< whether train leaves out viewer.html
+    std::optional<std::uint64_t> viewer_size = 64'000'000;  ///< largest size of viewer.html in bytes
 
     int orbit_views = 8;
 };
