@@ -3,6 +3,7 @@
 #include "compressed_ply/compressed_ply.hpp"
 #include "ply/ply.hpp"
 #include "splat/splat.hpp"
+#include "spz/spz.hpp"
 #include "writer.hpp"
 
 namespace gs {
@@ -12,6 +13,7 @@ std::span<const writer* const> all_writers() {
         &ply_writer,
         &compressed_ply_writer,
         &splat_writer,
+        &spz_writer,
     };
     return table;
 }
