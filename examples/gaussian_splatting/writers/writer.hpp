@@ -14,6 +14,7 @@ namespace gs {
 /// Options of writing a model. A format ignores options that it cannot express.
 struct write_options {
     int max_sh_degree = 3;  ///< 0 to 3; coefficients of higher degrees are dropped
+    int spz_version = 4;    ///< 3 or 4: see `spz_writer`
 };
 
 /// A file format for Gaussians. To add one, write its folder and add a row to the table in

@@ -4,6 +4,7 @@
 #include "html/html.hpp"
 #include "ply/ply.hpp"
 #include "splat/splat.hpp"
+#include "spz/spz.hpp"
 #include "writer.hpp"
 
 namespace gs {
@@ -14,6 +15,7 @@ std::span<const writer* const> all_writers() {
         &compressed_ply_writer,
         &splat_writer,
         &html_writer,
+        &spz_writer,
     };
     return table;
 }

@@ -15,6 +15,7 @@
 #include "writers/compressed_ply/compressed_ply.hpp"
 #include "writers/ply/ply.hpp"
 #include "writers/splat/splat.hpp"
+#include "writers/spz/spz.hpp"
 
 namespace {
 
@@ -41,6 +42,9 @@ std::vector<format_precision> formats() {
         {gs::compressed_ply_writer,
          {2.0 / 1023 + 1e-6, 2.5 / 1023 + 1e-6, 0.0021, 0.5 * byte_step + 1e-6, 0.5 * byte_step / 0.28,
           1.0 / 64 + 1e-6}},
+        {gs::spz_writer,
+         {0.5 / 4096 + 1e-6, 0.5 / 16 + 1e-6, 0.0021, 0.5 * byte_step + 1e-6, 0.5 * byte_step / 0.15 + 1e-6,
+          8.0 / 128 + 1e-6}},
     };
 }
 
