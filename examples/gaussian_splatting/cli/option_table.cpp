@@ -225,7 +225,8 @@ rows page_options(settings& s) {
                                .help = "Largest size of viewer.html; a larger model is shown without its "
                                        "least important Gaussians",
                                .default_text = "64MB",
-                               .excludes = {"--no-viewer"}}});
+                               .excludes = {"--no-viewer"},
+                               .is_rare = true}});
 }
 
 rows memory_options(settings& s) {

@@ -49,6 +49,11 @@ std::string config_with_seed_7() {
 /// Indexed by name, without second names of the same option.
 const std::map<std::string, option_case> cases{
     {"ply", {{"a.ply"}, [](const settings& s) { return s.ply == "a.ply"; }}},
+    {"runs",
+     {{"a", "b"},
+      [](const settings& s) {
+          return s.runs == words{"a", "b"};
+      }}},
     {"--data", {{"a scene"}, [](const settings& s) { return s.scene.data == "a scene"; }}},
     {"--images", {{"photos"}, [](const settings& s) { return s.scene.images == "photos"; }}},
     {"--poses", {{"auto"}, [](const settings& s) { return s.poses == pose_source::automatic; }}},
@@ -74,6 +79,8 @@ const std::map<std::string, option_case> cases{
           return s.checkpoint_iterations == std::set{10, 30};
       }}},
     {"--keep-checkpoints", {{"3"}, [](const settings& s) { return s.keep_checkpoints == 3; }}},
+    {"--no-viewer", {{}, [](const settings& s) { return s.no_viewer; }}},
+    {"--viewer-size", {{"5MB"}, [](const settings& s) { return s.viewer_size == 5'000'000U; }}},
     {"--orbit-views", {{"3"}, [](const settings& s) { return s.orbit_views == 3; }}},
     {"--quiet", {{}, [](const settings& s) { return s.log_level == log_level::error; }}},
     {"--log-level", {{"warning"}, [](const settings& s) { return s.log_level == log_level::warning; }}},

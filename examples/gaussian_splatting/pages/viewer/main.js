@@ -128,7 +128,8 @@ function start() {
   gl.canvas.addEventListener('webglcontextlost',
                              () => show('The graphics device was lost. Reload the page to continue.'));
   const scene = JSON.parse(byId('scene').textContent), splat = parsePly(embeddedBytes());
-  connectPage(new Viewer(scene, splat, gl), scene, splat);
+  globalThis.viewer = new Viewer(scene, splat, gl);  // tests and embedding pages use it
+  connectPage(viewer, scene, splat);
   show('');
 }
 

@@ -32,9 +32,9 @@ glm::dvec3 up_direction(const std::vector<view>& views) {
         across += glm::outerProduct(right, right);
     }
     across /= static_cast<double>(views.size());
-    // The power method finds the largest eigenvector of this matrix. Its last term decides between
-    // equal eigenvectors, which a single camera has.
-    const glm::dmat3 level = glm::dmat3(1) - across + 0.05 * glm::outerProduct(mean, mean);
+    // The power method finds the largest eigenvector of this matrix. Of nearly equal eigenvectors,
+    // which few cameras have, it stays near the mean.
+    const glm::dmat3 level = glm::dmat3(1) - across;
     glm::dvec3 up = mean;
     for (int i = 0; i < 200; ++i) up = glm::normalize(level * up);
     return glm::dot(up, mean) < 0 ? -up : up;
