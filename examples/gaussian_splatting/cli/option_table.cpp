@@ -251,7 +251,7 @@ rows run_options(settings& s) {
         {{.names = "--device",
           .commands = {train, evaluate, render},
           .value = choice(s.device),
-          .help = "Device to compute on; auto takes a GPU if one can be used"},
+          .help = "Device; auto takes a GPU if there is one"},
          {.names = "--seed",
           .commands = {train, evaluate, render},
           .value = whole(s.seed, 0, std::numeric_limits<std::uint64_t>::max()),
@@ -449,9 +449,8 @@ rows evaluation_options(settings& s) {
                       "left halves"});
     of_views({.names = "--lpips",
               .value = text(s.lpips, "FILE"),
-              .help = "Computes LPIPS with the weights in this file, which "
-                      "scripts/convert_lpips_weights.py creates",
-              .default_text = "none; LPIPS is not computed"});
+              .help = "Computes LPIPS with weights of scripts/convert_lpips_weights.py",
+              .default_text = "none"});
     return grouped("Evaluation", table);
 }
 
