@@ -67,26 +67,30 @@ rows grouped(const std::string& heading, rows all) {
     return all;
 }
 
+rows model_options(settings& s) {
+    return grouped(
+        "Model", {{.names = "ply",
+                   .commands = {evaluate, render},
+                   .value = text(s.ply, "FILE"),
+                   .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
+                   .required = {evaluate, render}},
+                  {.names = "input",
+                   .commands = {convert},
+                   .value = text(s.ply, "IN"),
+                   .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
+                   .required = {convert}},
+                  {.names = "output",
+                   .commands = {convert},
+                   .value = text(s.output, "OUT"),
+                   .help = "Model to write or to replace: a file with the ending " +
+                           writable_endings(all_writers(), " or "),
+                   .required = {convert}}});
+}
+
 rows scene_options(settings& s) {
     return grouped(
         "Scene",
-        {{.names = "ply",
-          .commands = {evaluate, render},
-          .value = text(s.ply, "FILE"),
-          .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
-          .required = {evaluate, render}},
-         {.names = "input",
-          .commands = {convert},
-          .value = text(s.ply, "IN"),
-          .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
-          .required = {convert}},
-         {.names = "output",
-          .commands = {convert},
-          .value = text(s.output, "OUT"),
-          .help = "Model to write or to replace: a file with the ending " +
-                  writable_endings(all_writers(), " or "),
-          .required = {convert}},
-         {.names = "-d,--data,-s,--source-path",
+        {{.names = "-d,--data,-s,--source-path",
           .commands = {train, evaluate, render, inspect},
           .value = text(s.scene.data, "SCENE"),
           .help = "Scene to read: " + accepted_scenes() + "; train also takes photos, see --poses",
@@ -444,9 +448,9 @@ rows evaluation_options(settings& s) {
 std::vector<option> option_table(settings& s) {
     rows table;
     for (auto& group :
-         {scene_options(s), pose_options(s), output_options(s), checkpoint_options(s), length_options(s),
-          effect_options(s), learning_rate_options(s), densification_options(s), strategy_options(s),
-          memory_options(s), evaluation_options(s), convert_options(s), run_options(s)})
+         {model_options(s), scene_options(s), pose_options(s), output_options(s), checkpoint_options(s),
+          length_options(s), effect_options(s), learning_rate_options(s), densification_options(s),
+          strategy_options(s), memory_options(s), evaluation_options(s), convert_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include "compressed_ply/compressed_ply.hpp"
+#include "gltf/gltf.hpp"
 #include "ply/ply.hpp"
 #include "splat/splat.hpp"
 #include "spz/spz.hpp"
@@ -14,6 +15,7 @@ std::span<const writer* const> all_writers() {
         &compressed_ply_writer,
         &splat_writer,
         &spz_writer,
+        &gltf_writer,
     };
     return table;
 }
