@@ -43,6 +43,9 @@ int main(int argc, char** argv) {
             case gs::cli::command::compare:
                 gs::cli::compare(settings);
                 break;
+            case gs::cli::command::convert:
+                gs::cli::convert(settings);
+                break;
             case gs::cli::command::inspect:
                 gs::cli::inspect(settings);
                 break;

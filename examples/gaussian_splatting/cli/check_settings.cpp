@@ -68,8 +68,9 @@ void set_dependent_values(settings& s) {
         s.scene.masks = s.effects.allows("masks");
         s.scene.depths = s.effects.allows("depth");
     }
-    if (s.command == command::render) s.scene.masks = false;  // renders do not need masks
-    if (s.command == command::render || s.command == command::evaluate) s.scene.depths = false;
+    const bool needs_cameras_only = s.command == command::render || s.command == command::convert;
+    if (needs_cameras_only) s.scene.masks = false;
+    if (needs_cameras_only || s.command == command::evaluate) s.scene.depths = false;
 }
 
 void check_settings(const settings& s) {

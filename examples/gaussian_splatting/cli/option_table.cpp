@@ -9,6 +9,7 @@
 #include "../losses/loss_names.hpp"
 #include "../poses/video_frames.hpp"
 #include "../writers/writer.hpp"
+#include "convert_options.hpp"
 
 // The table of all options, group by group. An option is one row here and one member of `settings`.
 // The table is the source of the command line with its checks and help, of settings.json, and of
@@ -75,15 +76,30 @@ rows grouped(const std::string& heading, rows all) {
     return all;
 }
 
+rows model_options(settings& s) {
+    return grouped(
+        "Model", {{.names = "ply",
+                   .commands = {evaluate, render},
+                   .value = text(s.ply, "FILE"),
+                   .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
+                   .required = {evaluate, render}},
+                  {.names = "input",
+                   .commands = {convert},
+                   .value = text(s.ply, "IN"),
+                   .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
+                   .required = {convert}},
+                  {.names = "output",
+                   .commands = {convert},
+                   .value = text(s.output, "OUT"),
+                   .help = "Model to write or to replace: a file with the ending " +
+                           writable_endings(all_writers(), " or "),
+                   .required = {convert}}});
+}
+
 rows scene_options(settings& s) {
     return grouped(
         "Scene",
-        {{.names = "ply",
-          .commands = {evaluate, render},
-          .value = text(s.ply, "FILE"),
-          .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
-          .required = {evaluate, render}},
-         {.names = "runs",
+        {{.names = "runs",
           .commands = {compare},
           .value = folders(s.runs),
           .help = "Output folders of train to compare, at least two",
@@ -94,8 +110,14 @@ rows scene_options(settings& s) {
           .help = "Scene to read: " + accepted_scenes() + "; train also takes photos, see --poses",
           .default_text = "none; render then draws an orbit around the model",
           .required = {train, evaluate, inspect}},
+         {.names = "-d,--data,-s,--source-path",
+          .commands = {convert},
+          .value = text(s.scene.data, "SCENE"),
+          .help = "Scene whose cameras --remove-floaters uses: " + accepted_scenes(),
+          .default_text = "none",
+          .needs = {"--remove-floaters"}},
          {.names = "--images",
-          .commands = {train, evaluate, render, inspect},
+          .commands = {train, evaluate, render, convert, inspect},
           .value = text(s.scene.images, "FOLDER"),
           .help = "Folder of the photos inside the scene's folder (for " + readers_with("--images") + ")",
           .needs = {"--data"}},
@@ -191,11 +213,11 @@ rows output_options(settings& s) {
                                .unit = "images",
                                .excludes = {"--data"}},
                               {.names = "--log-level",
-                               .commands = {train, evaluate, render},
+                               .commands = {train, evaluate, render, convert},
                                .value = choice(s.log_level),
                                .help = "Least important messages to print"},
                               {.names = "-q,--quiet",
-                               .commands = {train, evaluate, render},
+                               .commands = {train, evaluate, render, convert},
                                .value = shorthand(s.log_level, log_level::error),
                                .help = "Short for --log-level error",
                                .excludes = {"--log-level"},
@@ -458,10 +480,10 @@ rows evaluation_options(settings& s) {
 
 std::vector<option> option_table(settings& s) {
     rows table;
-    for (auto& group :
-         {scene_options(s), pose_options(s), output_options(s), page_options(s), checkpoint_options(s),
-          length_options(s), effect_options(s), learning_rate_options(s), densification_options(s),
-          strategy_options(s), memory_options(s), evaluation_options(s), run_options(s)})
+    for (auto& group : {model_options(s), scene_options(s), pose_options(s), output_options(s),
+                        page_options(s), checkpoint_options(s), length_options(s), effect_options(s),
+                        learning_rate_options(s), densification_options(s), strategy_options(s),
+                        memory_options(s), evaluation_options(s), convert_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }
@@ -481,6 +503,8 @@ std::string purpose_of(command c) {
             return "Measures a saved model on the held-out views of a scene, or without --eval on all views";
         case render:
             return "Draws a saved model from the cameras of a scene or from an orbit";
+        case convert:
+            return "Converts a saved model to another format, and can crop, thin out or turn it";
         case compare:
             return "Writes a web page that compares several runs of train";
         case inspect:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <glm/geometric.hpp>
 #include <numeric>
 
@@ -100,6 +101,17 @@ gaussians decimate(const gaussians& model, std::size_t count) {
     order.erase(end, order.end());
     std::ranges::sort(order);
     return select(model, order);
+}
+
+std::size_t share::of(std::size_t gaussians) const {
+    if (percent == 0) return count;
+    return static_cast<std::size_t>(std::ceil(static_cast<double>(gaussians) * percent / 100));
+}
+
+std::string share::text() const {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%g%%", percent);
+    return percent == 0 ? std::to_string(count) : digits;
 }
 
 gaussians remove_floaters(const gaussians& model, std::span<const camera> cameras) {

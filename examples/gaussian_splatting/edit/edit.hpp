@@ -6,6 +6,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "../model/gaussians.hpp"
@@ -29,6 +30,17 @@ gaussians crop(const gaussians& model, const box& kept);
 /// a Gaussian can cover. Returns the whole model if it has no more Gaussians. Of equally important
 /// Gaussians, the first ones stay. Takes linear time.
 gaussians decimate(const gaussians& model, std::size_t count);
+
+/// A number of Gaussians, or a share of them.
+struct share {
+    std::size_t count = 0;  ///< used if `percent` is 0
+    double percent = 0;     ///< 0 to 100
+
+    /// Returns the number for a model, rounded up.
+    std::size_t of(std::size_t gaussians) const;
+    /// Returns "100000" or "25%".
+    std::string text() const;
+};
 
 /// Removes Gaussians that contribute nothing but artifacts:
 /// - opacity below `least_floater_opacity`;

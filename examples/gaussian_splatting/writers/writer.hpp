@@ -48,6 +48,13 @@ std::span<const writer* const> all_writers();
 /// `last_separator` is " or ".
 std::string readable_endings(std::span<const writer* const> writers, const char* last_separator);
 
+/// Returns the endings of all formats, for messages.
+std::string writable_endings(std::span<const writer* const> writers, const char* last_separator);
+
+/// Throws `error`, which lists the known endings, if no format has the ending of the file.
+void require_known_ending(const std::filesystem::path& file,
+                          std::span<const writer* const> writers = all_writers());
+
 /// Writes a model in the format of the file's ending, in upper or lower case. Throws `error`, which
 /// lists the known endings, for other endings. Passes on the errors of `writer::write`.
 void write_model(const std::filesystem::path& file, const gaussians& model, const write_options& options = {},

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include "compressed_ply/compressed_ply.hpp"
+#include "gltf/gltf.hpp"
 #include "html/html.hpp"
 #include "ply/ply.hpp"
 #include "splat/splat.hpp"
@@ -16,6 +17,7 @@ std::span<const writer* const> all_writers() {
         &splat_writer,
         &html_writer,
         &spz_writer,
+        &gltf_writer,
     };
     return table;
 }

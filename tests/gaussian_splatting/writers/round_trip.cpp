@@ -79,6 +79,7 @@ gs::gaussians random_model(std::size_t count, int sh_degree, unsigned seed) {
 
 void check_same_gaussians(const gs::gaussians& expected, const gs::gaussians& found, const precision& bound) {
     REQUIRE(found.count() == expected.count());
+    if (expected.count() == 0) return;  // glTF does not keep the SH degree of an empty model
     REQUIRE(found.sh_degree == expected.sh_degree);
     const auto width = static_cast<std::size_t>(expected.rest_width());
     std::vector<bool> seen(found.count());

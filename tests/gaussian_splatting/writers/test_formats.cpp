@@ -13,6 +13,7 @@
 #include "../../support/temporary_folder.hpp"
 #include "round_trip.hpp"
 #include "writers/compressed_ply/compressed_ply.hpp"
+#include "writers/gltf/gltf.hpp"
 #include "writers/ply/ply.hpp"
 #include "writers/splat/splat.hpp"
 #include "writers/spz/spz.hpp"
@@ -45,6 +46,7 @@ std::vector<format_precision> formats() {
         {gs::spz_writer,
          {0.5 / 4096 + 1e-6, 0.5 / 16 + 1e-6, 0.0021, 0.5 * byte_step + 1e-6, 0.5 * byte_step / 0.15 + 1e-6,
           8.0 / 128 + 1e-6}},
+        {gs::gltf_writer, {0, 1e-6, 1e-6, 1.1e-7, 0, 0}},
     };
 }
 
