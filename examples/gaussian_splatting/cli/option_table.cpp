@@ -10,6 +10,7 @@
 #include "../poses/video_frames.hpp"
 #include "../writers/writer.hpp"
 #include "convert_options.hpp"
+#include "page_options.hpp"
 
 // The table of all options, group by group. An option is one row here and one member of `settings`.
 // The table is the source of the command line with its checks and help, of settings.json, and of
@@ -62,15 +63,6 @@ option_value planned_iterations(iteration_plan& member) {
                 }};
 }
 
-/// Words that name folders.
-option_value folders(std::vector<std::string>& member) {
-    return {.type = "FOLDER...",
-            .range = "",
-            .read = [&member](const std::string& word) { member.push_back(word); },
-            .json = [&member] { return nlohmann::ordered_json(member); },
-            .is_list = true};
-}
-
 rows grouped(const std::string& heading, rows all) {
     for (option& row : all) row.group = heading;
     return all;
@@ -99,12 +91,7 @@ rows model_options(settings& s) {
 rows scene_options(settings& s) {
     return grouped(
         "Scene",
-        {{.names = "runs",
-          .commands = {compare},
-          .value = folders(s.runs),
-          .help = "Output folders of train to compare, at least two",
-          .required = {compare}},
-         {.names = "-d,--data,-s,--source-path",
+        {{.names = "-d,--data,-s,--source-path",
           .commands = {train, evaluate, render, inspect},
           .value = text(s.scene.data, "SCENE"),
           .help = "Scene to read: " + accepted_scenes() + "; train also takes photos, see --poses",
@@ -229,26 +216,6 @@ rows output_options(settings& s) {
                                        "options of the command line override it",
                                .default_text = "none",
                                .is_recorded = false}});
-}
-
-rows page_options(settings& s) {
-    return grouped("Output", {{.names = "-o,--output",
-                               .commands = {compare},
-                               .value = text(s.output, "FILE"),
-                               .help = "Web page to write",
-                               .default_text = "compare.html"},
-                              {.names = "--no-viewer",
-                               .commands = {train},
-                               .value = flag(s.no_viewer),
-                               .help = "Leaves out viewer.html, the page that shows the model in a browser"},
-                              {.names = "--viewer-size",
-                               .commands = {train},
-                               .value = byte_size(s.viewer_size),
-                               .help = "Largest size of viewer.html; a larger model is shown without its "
-                                       "least important Gaussians",
-                               .default_text = "64MB",
-                               .excludes = {"--no-viewer"},
-                               .is_rare = true}});
 }
 
 rows memory_options(settings& s) {
