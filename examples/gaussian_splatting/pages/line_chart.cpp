@@ -91,6 +91,8 @@ class chart_drawing {
             if ((i % stride != 0 && !is_last) || !std::isfinite(x) || !std::isfinite(y)) continue;
             points += (points.empty() ? "" : " ") + px(x) + "," + py(y);
         }
+        // A single point is a line without length, whose round ends make a dot.
+        if (!points.empty() && points.find(' ') == points.npos) points += " " + points;
         return "<polyline class=\"curve" + std::to_string(which % colors) + "\" points=\"" + points +
                "\"><title>" + html_escaped(drawn.label) + "</title></polyline>";
     }

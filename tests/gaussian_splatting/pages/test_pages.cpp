@@ -104,6 +104,11 @@ TEST_CASE("pages: a chart shows its points, from zero to round numbers") {
     CHECK(svg_of({"Empty", "iterations", {{"a", {}}}}).empty());
 }
 
+TEST_CASE("pages: a single point in a chart is a line without length") {
+    const std::string svg = svg_of({"PSNR", "iterations", {{"a", {{100, 4}}}}, true});
+    CHECK(svg.find("points=\"408.0,28.0 408.0,28.0\"") != svg.npos);
+}
+
 TEST_CASE("pages: a chart of several runs has a legend") {
     const std::string svg = svg_of({"PSNR", "s", {{"one", {{0, 1}, {1, 2}}}, {"two", {{0, 1}, {1, 3}}}}});
     CHECK(says(svg, {"curve0", "curve1", "key1\">two</span>"}));

@@ -51,7 +51,8 @@ std::pair<double, double> quartiles(const gaussians& model, std::size_t axis) {
     return {low, at(count - 1 - count / 4)};
 }
 
-/// Returns a view of the middle half of the Gaussians, from outside and slightly from above.
+/// Returns a view of the middle half of the Gaussians, from outside and slightly from above. As in
+/// other viewers, -y is up.
 pages::viewer_scene framing_scene(const gaussians& model) {
     pages::viewer_scene scene;
     glm::dvec3 spread(1);
@@ -61,12 +62,9 @@ pages::viewer_scene framing_scene(const gaussians& model) {
             scene.pivot[axis] = (low + high) / 2;
             spread[axis] = high - low;
         }
-    // Scenes are flat. Most programs have y downward, so z upward is assumed only for a flat z.
-    const bool is_z_up = spread.z < spread.x && spread.z < spread.y;
-    scene.up = is_z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, -1, 0);
     scene.radius = 2.5 * std::max(glm::length(spread), 1e-6);
     scene.near_plane = 0.001 * scene.radius;
-    const glm::dvec3 back = is_z_up ? glm::dvec3(0, -1, 0) : glm::dvec3(0, 0, -1);
+    const glm::dvec3 back(0, 0, -1);
     const glm::dvec3 from = scene.pivot + scene.radius * glm::normalize(back + 0.3 * scene.up);
     constexpr int size = 1000;
     scene.views = {look_at(from, scene.pivot, scene.up, size, 1.2 * size)};
