@@ -43,17 +43,18 @@ std::vector<pages::run_record> records_of(const std::vector<std::string>& folder
     return runs;
 }
 
-/// Reads the images of a view of the first run. Returns nothing if another run lacks the view, or has it
-/// in another size.
+/// Reads the images of a view of the first run. Returns nothing if the files of a run no longer
+/// exist, or another run lacks the view or has it in another size.
 std::optional<pages::compared_view> view_of_all(const std::vector<held_out_images>& runs, std::size_t view,
                                                 const char* label) {
     const std::string& name = runs.front().names[view];
+    if (!fs::exists(runs.front().photo(view))) return {};
     pages::compared_view compared{name, label, read_image(runs.front().photo(view)), {}};
     for (const held_out_images& run : runs) {
         const auto found = std::ranges::find(run.names, name);
-        if (found == run.names.end()) return {};
-        const image& render = compared.renders.emplace_back(
-            read_image(run.render(static_cast<std::size_t>(found - run.names.begin()))));
+        const auto at = static_cast<std::size_t>(found - run.names.begin());
+        if (found == run.names.end() || !fs::exists(run.render(at))) return {};
+        const image& render = compared.renders.emplace_back(read_image(run.render(at)));
         if (render.width != compared.photo.width || render.height != compared.photo.height) return {};
     }
     return compared;

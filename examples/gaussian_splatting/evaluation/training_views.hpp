@@ -15,8 +15,9 @@ namespace gs::evaluate {
 /// of the render are those of the target.
 struct training_view_images {
     std::vector<float> render, target;
+    std::size_t masked = 0;  ///< number of masked pixels
 
-    /// Returns the PSNR in dB; infinite for equal images.
+    /// Returns the PSNR of the other pixels in dB; infinite if they are equal.
     double psnr() const;
 };
 

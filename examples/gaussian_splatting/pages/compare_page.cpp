@@ -42,13 +42,13 @@ std::string metric_row(const std::vector<run_record>& runs, const metric& m) {
     return text + "</tr>";
 }
 
-std::string metrics_text(const std::vector<run_record>& runs) {
+std::string compared_metrics(const std::vector<run_record>& runs) {
     std::string text = "<div class=\"wide\"><table class=\"numbers\">" + heading_row(runs);
     for (const metric& m : reported_metrics()) text += metric_row(runs, m);
     return text + "</table></div>";
 }
 
-std::string charts_text(const std::vector<run_record>& runs) {
+std::string compared_charts(const std::vector<run_record>& runs) {
     std::string text;
     for (const line_chart& chart : charts_of(runs)) text += svg_of(chart);
     return text.empty() ? "<p>No run has curves.</p>" : text;
@@ -59,7 +59,7 @@ std::string value_in(const run_record& run, const std::string& key) {
 }
 
 /// Returns a table of all settings. Rows that differ come first and are marked.
-std::string settings_text(const std::vector<run_record>& runs) {
+std::string compared_settings(const std::vector<run_record>& runs) {
     std::vector<std::string> keys;
     std::set<std::string> seen{"given", "output", "save_iterations", "log_level"};
     for (const run_record& run : runs)
@@ -92,7 +92,7 @@ void write_choice(std::ostream& out, const char* side, std::size_t selected,
     out << "</select></label>";
 }
 
-void write_view(std::ostream& out, const compared_view& view, const std::vector<run_record>& runs) {
+void write_compared_view(std::ostream& out, const compared_view& view, const std::vector<run_record>& runs) {
     out << "<figure class=\"choice\"><figcaption><b>" << html_escaped(view.label) << "</b> "
         << html_escaped(view.name) << "</figcaption><div class=\"pair\"><img alt=\"Left image\" src=\""
         << data_url(view.renders.front()) << "\"><img class=\"over\" alt=\"Right image\" src=\""
@@ -117,14 +117,14 @@ void write_compare_page(std::ostream& out, const std::vector<run_record>& runs,
                   {{"title", text_part("Comparison of " + std::to_string(runs.size()) + " runs")},
                    {"style", text_part(std::string(embedded::report_style))},
                    {"slider", text_part(std::string(embedded::report_slider))},
-                   {"metrics", text_part(metrics_text(runs))},
+                   {"metrics", text_part(compared_metrics(runs))},
                    {"views_note", text_part(note)},
                    {"views",
                     [&](std::ostream& to) {
-                        for (const compared_view& view : views) write_view(to, view, runs);
+                        for (const compared_view& view : views) write_compared_view(to, view, runs);
                     }},
-                   {"charts", text_part(charts_text(runs))},
-                   {"settings", text_part(settings_text(runs))}});
+                   {"charts", text_part(compared_charts(runs))},
+                   {"settings", text_part(compared_settings(runs))}});
 }
 
 }  // namespace gs::pages

@@ -65,7 +65,8 @@ class Controls {
     this.changed();
   }
   key(event, isDown) {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches?.('input, button')) return;
+    const isForSlider = event.code.startsWith('Arrow') && event.target.matches?.('input');
+    if (event.ctrlKey || event.metaKey || event.altKey || isForSlider) return;
     this.isFast = event.shiftKey;
     if (!(event.code in Controls.directions)) return;
     event.preventDefault();

@@ -11,6 +11,7 @@ class Renderer {
     this.program = this.makeProgram(vertexShader, fragmentShader);
     if (scene.sky.length) this.sky = this.makeProgram(skyVertexShader, skyFragmentShader);
     this.makeTextures();
+    this.splat = { degree: splat.degree, perChunk: splat.perChunk };  // the device has the rest
     this.vertices = gl.createVertexArray();
     gl.bindVertexArray(this.vertices);
     this.order = gl.createBuffer();
