@@ -22,7 +22,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from browser import Browser  # noqa: E402
 
 SCENE = ["-d", "synthetic:spheres,views=9", "-r", "96"]
+EFFECTS_SCENE = ["-d", "synthetic:spheres,sky=0.7,scales=4,views=9", "-r", "64"]
 SIZES = {"desktop": (1280, 800, 1, False), "phone": (390, 844, 2, True)}
+# Software draws many frames of moving cameras, so their windows are small.
+SMALL, SMALL_TOUCH = (320, 240, 1, False), (240, 320, 1, True)
 COMPLETE = "document.documentElement.dataset.state === 'complete'"
 
 
@@ -71,6 +74,8 @@ class Pages(unittest.TestCase):
         cls.folder = pathlib.Path(folder.name)
         cls.shots = os.environ.get("WARPAGG_SCREENSHOTS")
         cls.run_program("train", "-i", "200", "--device", "cpu", "-o", cls.folder / "run", *SCENE)
+        cls.run_program("train", "-i", "60", "--device", "cpu", "--effects", "sky,antialiasing,direction",
+                        "--sh-degree-interval", "10", "-o", cls.folder / "effects", *EFFECTS_SCENE)
         cls.run_program("train", "-i", "100", "--device", "cpu", "--eval", "-o", cls.folder / "held_out", *SCENE)
         cls.run_program("train", "-i", "120", "--device", "cpu", "--eval", "-o", cls.folder / "longer", *SCENE)
         cls.run_program("compare", cls.folder / "held_out", cls.folder / "longer", "-o", cls.folder / "compare.html")
@@ -94,27 +99,40 @@ class Pages(unittest.TestCase):
         if self.shots:
             self.browser.screenshot(pathlib.Path(self.shots) / (name + ".png"), whole=True)
 
-    def renders_of_viewer_model(self):
+    def renders_of_viewer_model(self, run, scene):
         """The program's renders of the model in the page, from all training views."""
-        page = (self.folder / "run/viewer.html").read_text()
+        page = (self.folder / run / "viewer.html").read_text()
         model = self.folder / "embedded.compressed.ply"
         model.write_bytes(b"".join(base64.b64decode(part)
                                    for part in re.findall(r'class="splat">([^<]*)<', page)))
-        self.run_program("render", model, "-o", self.folder / "renders", "--device", "cpu", *SCENE)
-        return sorted((self.folder / "renders").iterdir())
+        self.run_program("render", model, "-o", self.folder / run / "renders", "--device", "cpu", *scene)
+        return sorted((self.folder / run / "renders").iterdir())
+
+    def check_view(self, run, view, expected):
+        """Compares a view of the viewer with a render, and returns the image of the viewer."""
+        self.browser.call("Page.navigate", url="about:blank")
+        self.open(run + "/viewer.html", (*expected[:2], 1, False), f"#view={view}&ui=0")
+        self.browser.wait(COMPLETE)
+        self.browser.screenshot(self.folder / "view.png")
+        found = read_png(self.folder / "view.png")
+        self.assertGreater(psnr(expected, found), 35)
+        return found
 
     def test_the_viewer_draws_what_the_program_draws(self):
-        renders = self.renders_of_viewer_model()
+        renders = self.renders_of_viewer_model("run", SCENE)
         for view in (0, 5):
             expected = read_png(renders[view])
-            self.browser.call("Page.navigate", url="about:blank")
-            self.open("run/viewer.html", (*expected[:2], 1, False), f"#view={view}&ui=0")
-            self.browser.wait(COMPLETE)
-            self.browser.screenshot(self.folder / "view.png")
-            found = read_png(self.folder / "view.png")
-            self.assertGreater(psnr(expected, found), 35)
-            # The scene is asymmetric: a mirrored or turned image is far from it.
+            found = self.check_view("run", view, expected)
+            # The scene is asymmetric: a turned image is far from it.
             self.assertLess(psnr(expected, (*found[:2], found[2][::-1])), 25)
+        self.check_quiet()
+
+    def test_the_viewer_draws_sky_and_antialiasing_and_view_dependent_colors(self):
+        scene = json.loads(re.search('id="scene">(.*?)</script>', (self.folder / "effects/viewer.html").read_text())[1])
+        self.assertTrue(scene["antialiased"])
+        self.assertEqual(len(scene["sky"]), 48)
+        renders = self.renders_of_viewer_model("effects", EFFECTS_SCENE)
+        self.check_view("effects", 3, read_png(renders[3]))
         self.check_quiet()
 
     def test_the_viewer_works_on_each_size_of_screen(self):
@@ -136,16 +154,16 @@ class Pages(unittest.TestCase):
             "JSON.stringify([viewer.camera.position, viewer.camera.distance, viewer.camera.axes])"))
 
     def test_the_mouse_and_keys_move_the_camera(self):
-        self.open("run/viewer.html", SIZES["desktop"])
+        self.open("run/viewer.html", SMALL)
         self.browser.wait(COMPLETE)
         position, distance, axes = self.state()
-        self.mouse("mousePressed", 600, 400, buttons=1, clickCount=1)
-        self.mouse("mouseMoved", 500, 350, buttons=1)
-        self.mouse("mouseReleased", 500, 350, clickCount=1)
+        self.mouse("mousePressed", 150, 120, buttons=1, clickCount=1)
+        self.mouse("mouseMoved", 120, 105, buttons=1)
+        self.mouse("mouseReleased", 120, 105, clickCount=1)
         orbited = self.state()
         self.assertNotAlmostEqual(position[0], orbited[0][0], 3)
         self.assertAlmostEqual(distance, orbited[1])
-        self.browser.call("Input.dispatchMouseEvent", type="mouseWheel", x=600, y=400, deltaX=0, deltaY=-200)
+        self.browser.call("Input.dispatchMouseEvent", type="mouseWheel", x=150, y=120, deltaX=0, deltaY=-200)
         self.browser.wait(f"viewer.camera.distance < {distance}")
         zoomed = self.state()
         self.browser.call("Input.dispatchKeyEvent", type="keyDown", code="KeyW", key="w")
@@ -154,8 +172,8 @@ class Pages(unittest.TestCase):
         self.browser.evaluate("document.getElementById('reset').click()")
         self.assertEqual(self.state(), [position, distance, axes])
         for clicks in (1, 2):
-            self.mouse("mousePressed", 640, 400, buttons=1, clickCount=clicks)
-            self.mouse("mouseReleased", 640, 400, clickCount=clicks)
+            self.mouse("mousePressed", 160, 120, buttons=1, clickCount=clicks)
+            self.mouse("mouseReleased", 160, 120, clickCount=clicks)
         self.assertNotEqual(self.state()[1], distance)
         self.browser.wait(COMPLETE)
         self.keep_screenshot("viewer_pivot")
@@ -166,16 +184,16 @@ class Pages(unittest.TestCase):
             {"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
 
     def test_fingers_turn_and_zoom(self):
-        self.open("run/viewer.html", SIZES["phone"])
+        self.open("run/viewer.html", SMALL_TOUCH)
         self.browser.wait(COMPLETE)
         position, distance, _ = self.state()
-        self.touch("touchStart", (200, 400))
-        self.touch("touchMove", (260, 400))
+        self.touch("touchStart", (120, 150))
+        self.touch("touchMove", (160, 150))
         self.touch("touchEnd")
         self.browser.wait(f"viewer.camera.position[0] !== {position[0]}")
         self.assertAlmostEqual(self.state()[1], distance)
-        self.touch("touchStart", (150, 400), (250, 400))
-        self.touch("touchMove", (100, 400), (300, 400))
+        self.touch("touchStart", (90, 150), (150, 150))
+        self.touch("touchMove", (60, 150), (180, 150))
         self.touch("touchEnd")
         self.browser.wait(f"viewer.camera.distance < {0.7 * distance}")
         self.check_quiet()

@@ -21,7 +21,6 @@ using gs_test::error_of;
 using gs_test::read_file;
 using gs_test::says;
 using gs_test::temporary_folder;
-using nlohmann::json;
 
 /// Returns the texts between two marks.
 std::vector<std::string> texts_between(const std::string& text, const std::string& before,
@@ -47,8 +46,8 @@ std::string bytes_of_base64(const std::string& text) {
     return bytes;
 }
 
-json scene_in(const std::string& page) {
-    return json::parse(texts_between(page, "id=\"scene\">", "</script>").at(0));
+nlohmann::json scene_in(const std::string& page) {
+    return nlohmann::json::parse(texts_between(page, "id=\"scene\">", "</script>").at(0));
 }
 
 /// Returns the model that a page shows.
@@ -81,7 +80,7 @@ TEST_CASE("writers: a page contains the compressed model") {
     CHECK(shown.mean == expected.mean);
     CHECK(shown.sh_rest == expected.sh_rest);
     CHECK(shown.opacity == expected.opacity);
-    const json scene = scene_in(page);
+    const nlohmann::json scene = scene_in(page);
     CHECK(scene["antialiased"] == true);
     CHECK(scene["sky"].size() == gs::sky_width);
     CHECK(scene["gaussians"] == 700);
@@ -103,9 +102,9 @@ TEST_CASE("writers: a page of several parts of base64 contains the whole model")
 TEST_CASE("writers: the first view of a page without cameras sees the model from outside") {
     const temporary_folder folder;
     gs::write_model(folder / "a.html", gs_test::random_model(500, 0));
-    const json scene = scene_in(read_file(folder / "a.html"));
+    const nlohmann::json scene = scene_in(read_file(folder / "a.html"));
     REQUIRE(scene["views"].size() == 1);
-    const json& view = scene["views"][0];
+    const nlohmann::json& view = scene["views"][0];
     double ahead = 0, distance = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const double to_pivot = scene["pivot"][k].get<double>() - view["position"][k].get<double>();

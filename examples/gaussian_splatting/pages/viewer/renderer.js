@@ -42,7 +42,7 @@ class Renderer {
   }
   /** Makes a texture of texels in a row, which it continues in the next row. */
   makeTexture(unit, format, layout, type, values, channels) {
-    const gl = this.gl, width = this.textureWidth, rows = Math.ceil(values.length / channels / width);
+    const gl = this.gl, width = this.textureWidth, rows = Math.ceil(values.length / channels / width) || 1;
     if (rows > gl.getParameter(gl.MAX_TEXTURE_SIZE)) throw new Error('the scene is too large for this device');
     const padded = new values.constructor(rows * width * channels);
     padded.set(values);
