@@ -34,10 +34,13 @@ TEST_CASE("--no-viewer leaves out the viewer, and --viewer-size limits it") {
     check_success(small_training(folder / "none") + words{"-q", "--no-viewer"});
     CHECK(!fs::exists(folder / "none/viewer.html"));
     CHECK(fs::exists(folder / "none/report.html"));
-    const outcome o = run(small_training(folder / "small") + words{"--viewer-size", "90kB"});
+    const outcome o = run({"train", "-i", "10", "-o", folder / "small", "-d", "synthetic:spheres,points=9000",
+                           "-r", "32", "--device", "cpu", "--viewer-size", "200kB"});
     CHECK(o.code == 0);
-    CHECK(says(o.out, {"viewer.html shows the", "most important of", "at most 90kB"}));
-    CHECK(fs::file_size(folder / "small/viewer.html") <= 90000);
+    CHECK(says(o.out, {"viewer.html shows the", "most important of 9000", "at most 200kB"}));
+    CHECK(fs::file_size(folder / "small/viewer.html") <= 200000);
+    check_refusal(small_training(folder / "tiny") + words{"--viewer-size", "1kB"},
+                  {"--viewer-size 1kB", "at least 200kB", "--no-viewer"});
 }
 
 TEST_CASE("--overwrite without a viewer leaves none of the earlier run") {
