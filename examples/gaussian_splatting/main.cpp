@@ -40,6 +40,12 @@ int main(int argc, char** argv) {
             case gs::cli::command::render:
                 gs::cli::render(settings);
                 break;
+            case gs::cli::command::compare:
+                gs::cli::compare(settings);
+                break;
+            case gs::cli::command::convert:
+                gs::cli::convert(settings);
+                break;
             case gs::cli::command::inspect:
                 gs::cli::inspect(settings);
                 break;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "check_settings.hpp"
 
+#include "../core/byte_size.hpp"
 #include "../core/error.hpp"
 
 namespace gs::cli {
@@ -49,6 +50,14 @@ void check_background(const settings& s) {
         throw error("--background random is for train: give " + name_of(s.command) + " white or black");
 }
 
+void check_viewer_size(const settings& s) {
+    constexpr std::uint64_t least = 200'000;  // the page with camera poses, and a small model
+    if (*s.viewer_size < least)
+        throw error("--viewer-size " + size_in_bytes(*s.viewer_size) +
+                    " is too small for the page itself: give at least " + size_in_bytes(least) +
+                    " or --no-viewer");
+}
+
 void check_video_frames(const settings& s) {
     if (s.video_frames && s.poses == pose_source::given)
         throw error("--video-frames needs --poses auto: add it or leave out --video-frames");
@@ -68,8 +77,9 @@ void set_dependent_values(settings& s) {
         s.scene.masks = s.effects.allows("masks");
         s.scene.depths = s.effects.allows("depth");
     }
-    if (s.command == command::render) s.scene.masks = false;  // renders do not need masks
-    if (s.command == command::render || s.command == command::evaluate) s.scene.depths = false;
+    const bool needs_cameras_only = s.command == command::render || s.command == command::convert;
+    if (needs_cameras_only) s.scene.masks = false;
+    if (needs_cameras_only || s.command == command::evaluate) s.scene.depths = false;
 }
 
 void check_settings(const settings& s) {
@@ -81,6 +91,7 @@ void check_settings(const settings& s) {
                            .seed = s.seed});
     check_background(s);
     check_video_frames(s);
+    check_viewer_size(s);
 }
 
 }  // namespace gs::cli

@@ -17,6 +17,8 @@ void train(const settings& s);
 void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient);
 void evaluate(const settings& s);
 void render(const settings& s);
+void compare(const settings& s);
+void convert(const settings& s);
 void inspect(const settings& s);
 void doctor();
 /// @}

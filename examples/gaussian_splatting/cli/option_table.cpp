@@ -9,6 +9,8 @@
 #include "../losses/loss_names.hpp"
 #include "../poses/video_frames.hpp"
 #include "../writers/writer.hpp"
+#include "convert_options.hpp"
+#include "page_options.hpp"
 
 // The table of all options, group by group. An option is one row here and one member of `settings`.
 // The table is the source of the command line with its checks and help, of settings.json, and of
@@ -66,22 +68,43 @@ rows grouped(const std::string& heading, rows all) {
     return all;
 }
 
+rows model_options(settings& s) {
+    return grouped(
+        "Model", {{.names = "ply",
+                   .commands = {evaluate, render},
+                   .value = text(s.ply, "FILE"),
+                   .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
+                   .required = {evaluate, render}},
+                  {.names = "input",
+                   .commands = {convert},
+                   .value = text(s.ply, "IN"),
+                   .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
+                   .required = {convert}},
+                  {.names = "output",
+                   .commands = {convert},
+                   .value = text(s.output, "OUT"),
+                   .help = "Model to write or to replace: a file with the ending " +
+                           writable_endings(all_writers(), " or "),
+                   .required = {convert}}});
+}
+
 rows scene_options(settings& s) {
     return grouped(
         "Scene",
-        {{.names = "ply",
-          .commands = {evaluate, render},
-          .value = text(s.ply, "FILE"),
-          .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
-          .required = {evaluate, render}},
-         {.names = "-d,--data,-s,--source-path",
+        {{.names = "-d,--data,-s,--source-path",
           .commands = {train, evaluate, render, inspect},
           .value = text(s.scene.data, "SCENE"),
           .help = "Scene to read: " + accepted_scenes() + "; train also takes photos, see --poses",
           .default_text = "none; render then draws an orbit around the model",
           .required = {train, evaluate, inspect}},
+         {.names = "-d,--data,-s,--source-path",
+          .commands = {convert},
+          .value = text(s.scene.data, "SCENE"),
+          .help = "Scene whose cameras --remove-floaters uses: " + accepted_scenes(),
+          .default_text = "none",
+          .needs = {"--remove-floaters"}},
          {.names = "--images",
-          .commands = {train, evaluate, render, inspect},
+          .commands = {train, evaluate, render, convert, inspect},
           .value = text(s.scene.images, "FOLDER"),
           .help = "Folder of the photos inside the scene's folder (for " + readers_with("--images") + ")",
           .needs = {"--data"}},
@@ -177,11 +200,11 @@ rows output_options(settings& s) {
                                .unit = "images",
                                .excludes = {"--data"}},
                               {.names = "--log-level",
-                               .commands = {train, evaluate, render},
+                               .commands = {train, evaluate, render, convert},
                                .value = choice(s.log_level),
                                .help = "Least important messages to print"},
                               {.names = "-q,--quiet",
-                               .commands = {train, evaluate, render},
+                               .commands = {train, evaluate, render, convert},
                                .value = shorthand(s.log_level, log_level::error),
                                .help = "Short for --log-level error",
                                .excludes = {"--log-level"},
@@ -217,7 +240,7 @@ rows run_options(settings& s) {
         {{.names = "--device",
           .commands = {train, evaluate, render},
           .value = choice(s.device),
-          .help = "Device to compute on; auto takes a GPU if one can be used"},
+          .help = "Device; auto takes a GPU if there is one"},
          {.names = "--seed",
           .commands = {train, evaluate, render},
           .value = whole(s.seed, 0, std::numeric_limits<std::uint64_t>::max()),
@@ -415,9 +438,8 @@ rows evaluation_options(settings& s) {
                       "left halves"});
     of_views({.names = "--lpips",
               .value = text(s.lpips, "FILE"),
-              .help = "Computes LPIPS with the weights in this file, which "
-                      "scripts/convert_lpips_weights.py creates",
-              .default_text = "none; LPIPS is not computed"});
+              .help = "Computes LPIPS with weights of scripts/convert_lpips_weights.py",
+              .default_text = "none"});
     return grouped("Evaluation", table);
 }
 
@@ -425,10 +447,10 @@ rows evaluation_options(settings& s) {
 
 std::vector<option> option_table(settings& s) {
     rows table;
-    for (auto& group :
-         {scene_options(s), pose_options(s), output_options(s), checkpoint_options(s), length_options(s),
-          effect_options(s), learning_rate_options(s), densification_options(s), strategy_options(s),
-          memory_options(s), evaluation_options(s), run_options(s)})
+    for (auto& group : {model_options(s), scene_options(s), pose_options(s), output_options(s),
+                        page_options(s), checkpoint_options(s), length_options(s), effect_options(s),
+                        learning_rate_options(s), densification_options(s), strategy_options(s),
+                        memory_options(s), evaluation_options(s), convert_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }
@@ -448,6 +470,10 @@ std::string purpose_of(command c) {
             return "Measures a saved model on the held-out views of a scene, or without --eval on all views";
         case render:
             return "Draws a saved model from the cameras of a scene or from an orbit";
+        case convert:
+            return "Converts a saved model to another format, and can crop, thin out or turn it";
+        case compare:
+            return "Writes a web page that compares several runs of train";
         case inspect:
             return "Reports which effects the photos of a scene need";
         case doctor:

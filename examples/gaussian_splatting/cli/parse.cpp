@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <utility>
 
 #include "../core/error.hpp"
 #include "apply_quality_preset.hpp"
@@ -95,17 +96,21 @@ class command_options {
   private:
     /// Checks names before CLI11 does, whose message would not name the nearest known option.
     void check_names(const words& given) const {
+        bool is_value = false;  // of the option before it, such as "-y" in "--up -y"
         for (const std::string& word : given) {
             const bool is_long = word.starts_with("--");
             const bool is_short = !is_long && word.size() > 1 && word[0] == '-' &&
                                   std::isalpha(static_cast<unsigned char>(word[1])) != 0;
-            if (word == "--" || (!is_long && !is_short)) continue;
+            if (std::exchange(is_value, false) || word == "--" || (!is_long && !is_short)) continue;
             const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
             const auto row =
                 std::ranges::find_if(rows_, [&](const option& o) { return contains(o.all_names(), name); });
             if (row == rows_.end()) refuse_unknown(name);
             if (row->value.is_flag() && name != word && is_long)
                 throw error(name + " takes no value: write " + name + " instead of " + word);
+            is_value = name == word && std::ranges::any_of(row->value.suggestions, [](const std::string& s) {
+                           return s.starts_with('-');
+                       });
         }
     }
 
@@ -122,13 +127,16 @@ class command_options {
         CLI::App app;
         app.set_help_flag();
         app.allow_extras();
+        const auto positional = std::ranges::count_if(rows_, &option::is_positional);
         for (const option& row : rows_) {
             if (row.value.is_flag()) {
                 app.add_flag(row.names);
                 continue;
             }
             CLI::Option* added = app.add_option(row.names);
-            added->expected(1, CLI::detail::expected_max_vector_size);
+            // Several positional options share the words; one gets all, so that a second is noticed.
+            const bool gets_one = row.is_positional() && positional > 1;
+            added->expected(1, gets_one ? 1 : CLI::detail::expected_max_vector_size);
             added->allow_extra_args(row.value.is_list);
         }
         try {

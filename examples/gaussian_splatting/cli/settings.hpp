@@ -10,14 +10,17 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "../densify/strategy_settings.hpp"
+#include "../edit/edit.hpp"
 #include "../features/resolve.hpp"
 #include "../losses/loss.hpp"
 #include "../options/command.hpp"
 #include "../options/enum_names.hpp"
 #include "../readers/load_scene.hpp"
 #include "../training/schedule.hpp"
+#include "../writers/writer.hpp"
 
 namespace gs::cli {
 
@@ -30,6 +33,7 @@ enum class background_kind { automatic, white, black, random };
 enum class pose_source { given, automatic };
 enum class quality_preset { fast, balanced, best };
 enum class log_level { error, warning, info };
+enum class up_axis { x, minus_x, y, minus_y, z, minus_z };
 
 /// Returns the words of the command line for an enumeration, in the order of its values.
 /// @{
@@ -40,6 +44,7 @@ constexpr std::array<std::string_view, 4> names_of(background_kind) {
 constexpr std::array<std::string_view, 2> names_of(pose_source) { return {"given", "auto"}; }
 constexpr std::array<std::string_view, 3> names_of(quality_preset) { return {"fast", "balanced", "best"}; }
 constexpr std::array<std::string_view, 3> names_of(log_level) { return {"error", "warning", "info"}; }
+constexpr std::array<std::string_view, 6> names_of(up_axis) { return {"x", "-x", "y", "-y", "z", "-z"}; }
 /// @}
 
 /// The values of all options. The table in option_table.cpp sets them from the command line.
@@ -50,6 +55,7 @@ struct settings {
     std::optional<int> video_frames;
     std::string output;
     std::string ply;
+    std::vector<std::string> runs;  ///< folders of the runs that compare reads
     device_kind device = device_kind::automatic;
     background_kind background = background_kind::automatic;
     std::uint64_t seed = 0;
@@ -79,7 +85,16 @@ struct settings {
     bool overwrite = false;
     std::set<int> test_iterations;
 
+    bool no_viewer = false;                                 ///< whether train leaves out viewer.html
+    std::optional<std::uint64_t> viewer_size = 64'000'000;  ///< largest size of viewer.html in bytes
+
     int orbit_views = 8;
+
+    write_options export_options;   ///< of `convert`
+    std::optional<edit::box> crop;  ///< in the coordinates of the model
+    std::optional<edit::share> decimate;
+    bool remove_floaters = false;
+    std::optional<up_axis> up;
 };
 
 }  // namespace gs::cli

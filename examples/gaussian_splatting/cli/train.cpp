@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/atomic_file_write.hpp"
 #include "../core/error.hpp"
 #include "../core/parse_json.hpp"
 #include "../features/sh_degree/sh_degree_feature.hpp"
+#include "../pages/report_page.hpp"
 #include "../training/initialize.hpp"
+#include "../writers/html/html.hpp"
 #include "../writers/writer.hpp"
 #include "command_context.hpp"
 #include "commands.hpp"
@@ -14,6 +17,7 @@
 #include "memory_limits.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
+#include "run_images.hpp"
 #include "scene_with_poses.hpp"
 #include "stop_signals.hpp"
 #include "training_effects.hpp"
@@ -74,6 +78,8 @@ class training_run {
     /// Measures the model on the held-out views and writes their renders.
     void measure();
     void write_reports();
+    /// Writes the pages for a browser.
+    void write_pages();
     void print_summary() const;
 
   private:
@@ -108,6 +114,7 @@ class training_run {
     bool replaces_ = s_.overwrite;  ///< whether an earlier run is still to be set aside
     progress_bar bar_;
     training_measures measures_;
+    nlohmann::ordered_json metrics_;  ///< content of metrics.json
 };
 
 training_run::training_run(const settings& s, const load_options& source,
@@ -146,6 +153,7 @@ void training_run::resume() {
     archive.exchange("settings", settings_text);
     archive.exchange("tests", tests);
     archive.exchange("training_psnr", measures_.last.psnr);
+    exchange_history(archive, measures_.history);
     measures_.tests = parse_json(tests, "the value of tests in " + checkpoint_->file.string());
     options_.resume_from = &archive;
     context_.say("continuing after iteration " + std::to_string(checkpoint_->iteration) + ", from " +
@@ -165,6 +173,7 @@ train::train_events training_run::events() {
         .report =
             [this](const train::progress& p) {
                 measures_.last = p;
+                measures_.history.push_back(p);
                 bar_.show(p);
             },
         .save = [this](int iteration) { save(iteration); },
@@ -197,6 +206,7 @@ void training_run::save_checkpoint(int iteration, state_archive& archive) {
     archive.exchange("settings", settings_text);
     archive.exchange("tests", tests);
     archive.exchange("training_psnr", measures_.last.psnr);
+    exchange_history(archive, measures_.history);
     try {
         replace_earlier_run();
         checkpoints_in(s_.output).write(iteration, archive, s_.keep_checkpoints);
@@ -278,12 +288,27 @@ void training_run::measure() {
 }
 
 void training_run::write_reports() {
-    nlohmann::ordered_json metrics = metrics_json(s_, measures_);
-    metrics["effects"] = effects_json(s_, scene_, options_, measures_.result);
+    metrics_ = metrics_json(s_, measures_);
+    metrics_["effects"] = effects_json(s_, scene_, options_, measures_.result);
     write_json(output_.path() / "settings.json", resolved_settings());
     options_.features.write_results(*engine_, scene_, output_.path());
-    write_metrics(output_.path(), metrics, measures_.held_out);
+    write_metrics(output_.path(), metrics_, measures_.held_out);
     remove_replaced_run(output_.path());
+}
+
+void training_run::write_pages() {
+    const std::string name = last_part(s_.scene.data);
+    const std::array<float, 3>& background = options_.background.color;
+    pages::report report{{name, metrics_, resolved_settings()}, {}, !scene_.test.empty()};
+    report.views = report.are_held_out
+                       ? typical_held_out_views(held_out_images_of(output_.path(), metrics_))
+                       : typical_training_views(*engine_, scene_, options_.features, background);
+    atomic_file_write(output_.path() / "report.html",
+                      [&](std::ostream& out) { pages::write_report_page(out, report); });
+    if (!s_.no_viewer)
+        write_viewer(output_.path() / "viewer.html", to_world(scene_.normalization, engine_->get_model()),
+                     viewer_scene_of(scene_, name, background), *s_.viewer_size,
+                     [this](const std::string& line) { context_.say(line); });
 }
 
 void training_run::print_summary() const {
@@ -308,6 +333,8 @@ void training_run::print_summary() const {
                      (views > 1 ? " and " + std::to_string(views - 1) + " more" : ""));
     }
     context_.say("model     " + model_file(measures_.result.iterations).string());
+    context_.say("report    " + (output_.path() / "report.html").string());
+    if (!s_.no_viewer) context_.say("viewer    " + (output_.path() / "viewer.html").string());
     context_.say("metrics   " + (output_.path() / "metrics.json").string());
 }
 
@@ -331,6 +358,7 @@ void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator
     run.train();
     run.measure();
     run.write_reports();
+    run.write_pages();
     run.print_summary();
 }
 

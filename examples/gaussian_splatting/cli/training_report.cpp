@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <type_traits>
 
 #include "../features/sh_degree/sh_degree_feature.hpp"
 #include "config_file.hpp"
@@ -33,6 +34,20 @@ std::size_t peak_host_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Returns the reports as columns.
+ordered_json history_json(const std::vector<train::progress>& history) {
+    const auto column = [&](const auto& value_of) {
+        ordered_json values = ordered_json::array();
+        for (const train::progress& p : history) values.push_back(value_of(p));
+        return values;
+    };
+    return {{"iteration", column([](const train::progress& p) { return p.iteration; })},
+            {"seconds", column([](const train::progress& p) { return p.seconds; })},
+            {"loss", column([](const train::progress& p) { return p.loss; })},
+            {"psnr", column([](const train::progress& p) { return p.psnr; })},
+            {"gaussians", column([](const train::progress& p) { return p.gaussians; })}};
 }
 
 }  // namespace
@@ -81,6 +96,7 @@ ordered_json metrics_json(const settings& s, const training_measures& measures) 
     metrics.update(
         {{"training_psnr", measures.last.psnr},
          {"tests", measures.tests},
+         {"history", history_json(measures.history)},
          {"iterations", iterations},
          {"gaussians", measures.gaussians},
          {"seconds",
@@ -104,6 +120,23 @@ ordered_json metrics_json(const settings& s, const training_measures& measures) 
          {"deterministic", s.deterministic},
          {"seed", s.seed}});
     return metrics;
+}
+
+void exchange_history(state_archive& archive, std::vector<train::progress>& history) {
+    const state_archive::scope scope(archive, "history");
+    const auto exchange = [&](const char* name, auto member) {
+        using value = std::remove_reference_t<decltype(history.front().*member)>;
+        std::vector<value> column;
+        for (const train::progress& p : history) column.push_back(p.*member);
+        archive.exchange(name, column);
+        history.resize(column.size());
+        for (std::size_t i = 0; i < column.size(); ++i) history[i].*member = column[i];
+    };
+    exchange("iteration", &train::progress::iteration);
+    exchange("seconds", &train::progress::seconds);
+    exchange("loss", &train::progress::loss);
+    exchange("psnr", &train::progress::psnr);
+    exchange("gaussians", &train::progress::gaussians);
 }
 
 }  // namespace gs::cli

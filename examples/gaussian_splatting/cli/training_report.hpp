@@ -3,7 +3,9 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
+#include "../checkpoint/state_archive.hpp"
 #include "../device/stages.hpp"
 #include "../evaluation/held_out_views.hpp"
 #include "../training/training.hpp"
@@ -14,6 +16,7 @@ namespace gs::cli {
 /// The measurements of a training run.
 struct training_measures {
     double load_seconds = 0, evaluate_seconds = 0;
+    std::vector<train::progress> history;                            ///< all reports of training
     train::progress last;                                            ///< after the last iteration
     nlohmann::ordered_json tests = nlohmann::ordered_json::array();  ///< of --test-iterations
     train::train_result result;
@@ -35,5 +38,8 @@ nlohmann::ordered_json settings_json(settings s);
 
 /// Returns the content of metrics.json without the effects.
 nlohmann::ordered_json metrics_json(const settings& s, const training_measures& measures);
+
+/// Saves or loads the reports of training for checkpoints.
+void exchange_history(state_archive& archive, std::vector<train::progress>& history);
 
 }  // namespace gs::cli

@@ -135,16 +135,27 @@ option_value share(Member& member) {
 /// A size in bytes, such as 16GB.
 option_value byte_size(std::optional<std::uint64_t>& member);
 
-/// One of the words in `names_of(Enum)`.
+template <class Enum>
+nlohmann::ordered_json json_of_choice(Enum member) {
+    return name_of(member);
+}
+template <class Enum>
+nlohmann::ordered_json json_of_choice(std::optional<Enum> member) {
+    return member ? nlohmann::ordered_json(name_of(*member)) : nlohmann::ordered_json(nullptr);
+}
+
+/// One of the words in `names_of(Enum)`. The member may be optional.
 template <class Enum>
 option_value choice(Enum& member) {
-    const auto known = names_of(member);
+    const auto known = names_of(value_type<Enum>{});
     const std::vector<std::string> names(known.begin(), known.end());
     return {.type = "WORD",
             .range = alternatives(names),
-            .read = [=, &member](
-                        const std::string& word) { member = static_cast<Enum>(read_choice(word, names)); },
-            .json = [&member] { return nlohmann::ordered_json(name_of(member)); },
+            .read =
+                [=, &member](const std::string& word) {
+                    member = static_cast<value_type<Enum>>(read_choice(word, names));
+                },
+            .json = [&member] { return json_of_choice(member); },
             .suggestions = names};
 }
 /// @}

@@ -40,9 +40,24 @@ std::vector<std::string_view> endings_of(writer_table writers, bool readable) {
     return all;
 }
 
-std::string writable_endings(writer_table writers) { return enumerated(endings_of(writers, false), " and "); }
+const writer& known_writer_of(const std::filesystem::path& file, writer_table writers) {
+    const writer* found = writer_of(file, writers);
+    if (!found)
+        throw error("cannot write " + file.string() +
+                    ": its ending names no known format; known endings are " +
+                    writable_endings(writers, " and "));
+    return *found;
+}
 
 }  // namespace
+
+std::string writable_endings(writer_table writers, const char* last_separator) {
+    return enumerated(endings_of(writers, false), last_separator);
+}
+
+void require_known_ending(const std::filesystem::path& file, writer_table writers) {
+    known_writer_of(file, writers);
+}
 
 std::string readable_endings(writer_table writers, const char* last_separator) {
     return enumerated(endings_of(writers, true), last_separator);
@@ -50,11 +65,7 @@ std::string readable_endings(writer_table writers, const char* last_separator) {
 
 void write_model(const std::filesystem::path& file, const gaussians& model, const write_options& options,
                  writer_table writers) {
-    const writer* found = writer_of(file, writers);
-    if (!found)
-        throw error("cannot write " + file.string() +
-                    ": its ending names no known format; known endings are " + writable_endings(writers));
-    found->write(file, model, options);
+    known_writer_of(file, writers).write(file, model, options);
 }
 
 gaussians read_model(const std::filesystem::path& file, writer_table writers) {

@@ -14,6 +14,7 @@ namespace gs {
 /// Options of writing a model. A format ignores options that it cannot express.
 struct write_options {
     int max_sh_degree = 3;  ///< 0 to 3; coefficients of higher degrees are dropped
+    int spz_version = 4;    ///< 3 or 4: see `spz_writer`
 };
 
 /// A file format for Gaussians. To add one, write its folder and add a row to the table in
@@ -46,6 +47,13 @@ std::span<const writer* const> all_writers();
 /// Returns the endings of formats that can be read, for messages: ".a, .b or .c" if
 /// `last_separator` is " or ".
 std::string readable_endings(std::span<const writer* const> writers, const char* last_separator);
+
+/// Returns the endings of all formats, for messages.
+std::string writable_endings(std::span<const writer* const> writers, const char* last_separator);
+
+/// Throws `error`, which lists the known endings, if no format has the ending of the file.
+void require_known_ending(const std::filesystem::path& file,
+                          std::span<const writer* const> writers = all_writers());
 
 /// Writes a model in the format of the file's ending, in upper or lower case. Throws `error`, which
 /// lists the known endings, for other endings. Passes on the errors of `writer::write`.

@@ -49,6 +49,11 @@ std::string config_with_seed_7() {
 /// Indexed by name, without second names of the same option.
 const std::map<std::string, option_case> cases{
     {"ply", {{"a.ply"}, [](const settings& s) { return s.ply == "a.ply"; }}},
+    {"runs",
+     {{"a", "b"},
+      [](const settings& s) {
+          return s.runs == words{"a", "b"};
+      }}},
     {"--data", {{"a scene"}, [](const settings& s) { return s.scene.data == "a scene"; }}},
     {"--images", {{"photos"}, [](const settings& s) { return s.scene.images == "photos"; }}},
     {"--poses", {{"auto"}, [](const settings& s) { return s.poses == pose_source::automatic; }}},
@@ -74,6 +79,20 @@ const std::map<std::string, option_case> cases{
           return s.checkpoint_iterations == std::set{10, 30};
       }}},
     {"--keep-checkpoints", {{"3"}, [](const settings& s) { return s.keep_checkpoints == 3; }}},
+    {"--no-viewer", {{}, [](const settings& s) { return s.no_viewer; }}},
+    {"--viewer-size", {{"5MB"}, [](const settings& s) { return s.viewer_size == 5'000'000U; }}},
+    {"input", {{"a.ply"}, [](const settings& s) { return s.ply == "a.ply"; }}},
+    {"output", {{"b.spz"}, [](const settings& s) { return s.output == "b.spz"; }}},
+    {"--crop",
+     {{"3,2,1,-1,-2,-3"},
+      [](const settings& s) {
+          return s.crop && s.crop->least == glm::dvec3(-1, -2, -3) && s.crop->most == glm::dvec3(3, 2, 1);
+      }}},
+    {"--remove-floaters", {{}, [](const settings& s) { return s.remove_floaters; }}},
+    {"--decimate", {{"12.5%"}, [](const settings& s) { return s.decimate && s.decimate->of(100) == 13; }}},
+    {"--max-sh-degree", {{"1"}, [](const settings& s) { return s.export_options.max_sh_degree == 1; }}},
+    {"--up", {{"-z"}, [](const settings& s) { return s.up == up_axis::minus_z; }}},
+    {"--spz-version", {{"3"}, [](const settings& s) { return s.export_options.spz_version == 3; }}},
     {"--orbit-views", {{"3"}, [](const settings& s) { return s.orbit_views == 3; }}},
     {"--quiet", {{}, [](const settings& s) { return s.log_level == log_level::error; }}},
     {"--log-level", {{"warning"}, [](const settings& s) { return s.log_level == log_level::warning; }}},
@@ -154,17 +173,24 @@ void append_option(words& all, const option& row, const std::string& name) {
 words command_line(command c, const option& row, const std::string& name) {
     static settings unused;
     static const std::vector<option> table = option_table(unused);
+    const auto needs = [](const option& some, const option& other) {
+        return std::ranges::find(some.needs, other.name()) != some.needs.end();
+    };
     const auto is_needed = [&](const option& other) {
-        const auto needs = [&](const option& some) {
-            return std::ranges::find(some.needs, other.name()) != some.needs.end();
-        };
+        const bool indirectly = std::ranges::any_of(table, [&](const option& between) {
+            return between.belongs_to(c) && needs(row, between) && needs(between, other);
+        });
         return other.name() != row.name() &&
-               (other.is_required_by(c) || needs(row) || (other.name() == "--data" && !row.needs.empty()));
+               (other.is_required_by(c) || needs(row, other) || indirectly ||
+                (other.name() == "--data" && !row.needs.empty() && row.name() != "--data"));
     };
     words all{name_of(c)};
-    for (const option& other : table)
-        if (other.belongs_to(c) && is_needed(other)) append_option(all, other, other.name());
-    append_option(all, row, name);
+    for (const option& other : table) {
+        if (!other.belongs_to(c)) continue;
+        const bool is_in_its_place = row.is_positional() && other.name() == row.name();
+        if (is_needed(other) || is_in_its_place) append_option(all, other, other.name());
+    }
+    if (!row.is_positional()) append_option(all, row, name);
     return all;
 }
 

@@ -30,7 +30,8 @@ struct harness {
     std::function<run_function> run;
 };
 
-/// All loaders: the functions above, and each format of models that can be read, by its name in lower case.
+/// All loaders: the functions above, and each format of models that can be read, by its name in lower case,
+/// with _ for blanks.
 const std::vector<harness>& harnesses();
 
 /// Returns the harness of this name. Throws `std::out_of_range` if the name is unknown.

@@ -16,6 +16,7 @@
 #include "../../core/error.hpp"
 #include "../../core/file_bytes.hpp"
 #include "../../model/spherical_harmonics.hpp"
+#include "../quantize.hpp"
 
 namespace gs {
 namespace {
@@ -34,11 +35,7 @@ static_assert(sizeof(record) == 32);
 
 constexpr double zero_rotation = 128;
 
-double sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
-
 double log_sigmoid(double x) { return x < 0 ? x - std::log1p(std::exp(x)) : -std::log1p(std::exp(-x)); }
-
-std::uint8_t to_byte(double x) { return static_cast<std::uint8_t>(std::lround(std::clamp(x, 0.0, 255.0))); }
 
 /// Returns the order of the Gaussians in the file: those that matter most for the image come first.
 std::vector<std::size_t> by_opacity_and_volume(const gaussians& model) {
@@ -76,7 +73,7 @@ class splat_output {
             const double color = sh_c0 * double(finite(model_.sh_constant[3 * i + k], "color", i));
             r.color[k] = to_byte(255 * (0.5 + color));
         }
-        r.alpha = to_byte(255 * sigmoid(finite(model_.opacity[i], "opacity", i)));
+        r.alpha = opacity_to_byte(finite(model_.opacity[i], "opacity", i));
         return r;
     }
 
@@ -135,8 +132,7 @@ class splat_input {
             zero = zero && r.rotation[k] == zero_rotation;
         }
         if (zero) fail("rotation", i, "zero");
-        const double alpha = std::clamp(double(r.alpha), 0.5, 254.5) / 255;
-        model.opacity[i] = static_cast<float>(std::log(alpha / (1 - alpha)));
+        model.opacity[i] = byte_to_opacity(r.alpha);
     }
     [[noreturn]] void fail(const char* what, std::size_t i, const char* is) const {
         throw error(file_.name + ": the " + what + " of Gaussian " + std::to_string(i) + " is " + is);

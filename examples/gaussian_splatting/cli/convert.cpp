@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "../core/byte_size.hpp"
+#include "../core/error.hpp"
+#include "../edit/edit.hpp"
+#include "../writers/writer.hpp"
+#include "command_context.hpp"
+#include "commands.hpp"
+
+namespace gs::cli {
+namespace {
+
+std::vector<camera> training_cameras(const settings& s, const command_context& context) {
+    std::vector<camera> cameras;
+    if (s.scene.data.empty()) return cameras;
+    const scene scene = load_scene(s.scene, [&](const std::string& line) { context.say(line); });
+    for (const view& v : scene.train) cameras.push_back(v.camera);
+    return cameras;
+}
+
+glm::dvec3 direction_of(up_axis up) {
+    const int index = static_cast<int>(up);
+    glm::dvec3 direction(0);
+    direction[index / 2] = index % 2 == 0 ? 1 : -1;
+    return direction;
+}
+
+/// Applies the filters in this order: those that judge a Gaussian by itself come before the one that
+/// counts them.
+gaussians edited(gaussians model, const settings& s, const command_context& context) {
+    const auto report = [&](const char* filter, gaussians result) {
+        context.say(std::string(filter) + " keeps " + std::to_string(result.count()) + " of " +
+                    std::to_string(model.count()) + " Gaussians");
+        model = std::move(result);
+    };
+    if (s.crop) report("--crop", edit::crop(model, *s.crop));
+    if (s.remove_floaters)
+        report("--remove-floaters", edit::remove_floaters(model, training_cameras(s, context)));
+    if (s.decimate) report("--decimate", edit::decimate(model, s.decimate->of(model.count())));
+    if (s.up) model = edit::rotate(model, edit::upright(direction_of(*s.up)));
+    return model;
+}
+
+}  // namespace
+
+void convert(const settings& s) {
+    const command_context context(s);
+    std::error_code ignored;
+    if (std::filesystem::equivalent(s.ply, s.output, ignored))
+        throw error("convert would replace its own input " + s.ply + ": give OUT another name");
+    require_known_ending(s.output);
+    const gaussians model = edited(read_model(s.ply), s, context);
+    write_model(s.output, model, s.export_options);
+    context.say(s.output + ": " + std::to_string(model.count()) + " Gaussians, " +
+                size_in_bytes(std::filesystem::file_size(s.output)));
+}
+
+}  // namespace gs::cli

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "run_program.hpp"
+#include "small_training.hpp"
+
+using namespace gs_test;
+
+TEST_CASE("train writes a viewer and a report without paths of the machine") {
+    const temporary_folder folder;
+    check_success(small_training(folder / "run") + words{"-q"});
+    const std::string viewer = read_file(folder / "run/viewer.html"),
+                      report = read_file(folder / "run/report.html");
+    CHECK(says(viewer, {"<title>synthetic:spheres</title>", "class=\"splat\">"}));
+    CHECK(says(report, {"Worst view", "Best view", "held out", "--data synthetic:spheres", "--output run"}));
+    for (const std::string& page : {viewer, report}) CHECK(page.find(folder.path().string()) == page.npos);
+    const json history = read_json(folder / "run/metrics.json").at("history");
+    CHECK(history.at("iteration") == json{60});
+    CHECK(history.at("gaussians").size() == 1);
+}
+
+TEST_CASE("without --eval, the report shows training views") {
+    const temporary_folder folder;
+    check_success({"train", "-i", "20", "-o", folder / "run", "-d", "synthetic:spheres,views=4", "-r", "32",
+                   "--device", "cpu", "-q"});
+    CHECK(says(read_file(folder / "run/report.html"), {"<b>training views</b>", "Worst view", "Best view"}));
+}
+
+TEST_CASE("--no-viewer leaves out the viewer, and --viewer-size limits it") {
+    const temporary_folder folder;
+    check_success(small_training(folder / "none") + words{"-q", "--no-viewer"});
+    CHECK(!fs::exists(folder / "none/viewer.html"));
+    CHECK(fs::exists(folder / "none/report.html"));
+    const outcome o = run({"train", "-i", "10", "-o", folder / "small", "-d", "synthetic:spheres,points=9000",
+                           "-r", "32", "--device", "cpu", "--viewer-size", "200kB"});
+    CHECK(o.code == 0);
+    CHECK(says(o.out, {"viewer.html shows the", "most important of 9000", "at most 200kB"}));
+    CHECK(fs::file_size(folder / "small/viewer.html") <= 200000);
+    check_refusal(small_training(folder / "tiny") + words{"--viewer-size", "1kB"},
+                  {"--viewer-size 1kB", "at least 200kB", "--no-viewer"});
+}
+
+TEST_CASE("--overwrite without a viewer leaves none of the earlier run") {
+    const temporary_folder folder;
+    check_success(small_training(folder / "run") + words{"-q"});
+    check_success(small_training(folder / "run") + words{"-q", "--overwrite", "--no-viewer"});
+    CHECK(!fs::exists(folder / "run/viewer.html"));
+}
+
+TEST_CASE("a resumed run has the history of both parts") {
+    const temporary_folder folder;
+    check_success(small_training(folder / "run") +
+                  words{"-q", "--checkpoint-iterations", "30", "--test-iterations", "30"});
+    fs::remove(folder / "run/metrics.json");
+    for (const auto& file : fs::directory_iterator(folder / "run/checkpoints"))
+        if (file.path().string().find("60") != std::string::npos) fs::remove_all(file.path());
+    check_success(small_training(folder / "run") + words{"-q", "--resume"});
+    CHECK(read_json(folder / "run/metrics.json").at("history").at("iteration") == json{30, 60});
+}
+
+TEST_CASE("compare writes a page about several runs") {
+    const temporary_folder folder;
+    const words few{"-d", "synthetic:spheres", "-r", "32", "--eval", "--device", "cpu", "-q", "--no-viewer"};
+    check_success(words{"train", "-i", "10", "-o", folder / "a/run"} + few);
+    check_success(words{"train", "-i", "20", "-o", folder / "b/run", "--seed", "5"} + few);
+    check_success({"compare", folder / "a/run", folder / "b/run/", "-o", folder / "page.html"});
+    const std::string page = read_file(folder / "page.html");
+    CHECK(says(page, {"<th>run</th><th>run 2</th>", "Held-out PSNR", "Worst view",
+                      "<th>seed</th><td>0</td><td>5</td>"}));
+    CHECK(page.find(folder.path().string()) == page.npos);
+}
+
+TEST_CASE("compare refuses folders that are no runs") {
+    const temporary_folder folder;
+    check_refusal({"compare"}, {"compare needs runs"});
+    check_refusal({"compare", folder / "a"}, {"at least two"});
+    check_refusal({"compare", folder / "a", folder / "b"}, {"a", "no metrics.json"});
+    write_file(folder / "a/metrics.json", "[1]");
+    write_file(folder / "a/settings.json", "{");
+    check_refusal({"compare", folder / "a", folder / "a", "-o", folder / "page.html"},
+                  {"metrics.json", "no JSON object"});
+    write_file(folder / "a/metrics.json", "{}");
+    check_refusal({"compare", folder / "a", folder / "a", "-o", folder / "page.html"}, {"settings.json"});
+    CHECK(!fs::exists(folder / "page.html"));
+}
