@@ -1,13 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <glm/geometric.hpp>
 
 #include "../core/error.hpp"
 #include "../evaluation/held_out_views.hpp"
-#include "../scene/look_at.hpp"
+#include "../scene/orbit.hpp"
 #include "../writers/writer.hpp"
 #include "command_context.hpp"
 #include "commands.hpp"
@@ -21,34 +18,12 @@ struct named_camera {
     gs::camera camera;
 };
 
-/// Returns cameras on a circle around the center of the Gaussians, slightly above the plane of
-/// their largest extent. Precondition: the model is normalized by its own normalization: see
-/// `normalization_of`.
-std::vector<named_camera> orbit(const gaussians& model, int views, int size) {
-    const std::size_t n = model.count();
-    std::array<glm::dvec3, 2> quartiles;  // of the means; robust against floaters
-    for (int axis = 0; axis < 3; ++axis) {
-        std::vector<float> x(n);
-        for (std::size_t i = 0; i < n; ++i) x[i] = model.mean[3 * i + static_cast<std::size_t>(axis)];
-        std::ranges::sort(x);
-        quartiles[0][axis] = x[n / 4];
-        quartiles[1][axis] = x[n - 1 - n / 4];
-    }
-    const glm::dvec3 middle = 0.5 * (quartiles[0] + quartiles[1]), spread = quartiles[1] - quartiles[0];
-    const int thin = spread.x < spread.y ? (spread.x < spread.z ? 0 : 2) : (spread.y < spread.z ? 1 : 2);
-    glm::dvec3 up(0), ahead(0);
-    up[thin] = 1;
-    ahead[(thin + 1) % 3] = 1;
-    const glm::dvec3 side = glm::cross(up, ahead);
-    const double radius = 2.5 * std::max(glm::length(spread), 1.0);
+std::vector<named_camera> cameras_on(const orbit& around, int views, int size) {
     std::vector<named_camera> cameras;
     for (int i = 0; i < views; ++i) {
-        const double a = 2 * std::acos(-1.0) * i / views;
-        const glm::dvec3 from =
-            middle + radius * (0.9 * (std::cos(a) * ahead + std::sin(a) * side) + 0.45 * up);
         char name[32];
         std::snprintf(name, sizeof name, "%05d.png", i);
-        cameras.push_back({name, look_at(from, middle, up, size, 1.2 * size)});
+        cameras.push_back({name, around.camera_at(static_cast<double>(i) / views, size, size)});
     }
     return cameras;
 }
@@ -79,7 +54,7 @@ void render(const settings& s) {
     if (orbits) {
         const normalization own = normalization_of(model);
         model = to_internal(own, std::move(model));
-        cameras = orbit(model, s.orbit_views, orbit_size(s.scene.resolution));
+        cameras = cameras_on(orbit_of(model), s.orbit_views, orbit_size(s.scene.resolution));
     } else {
         const scene scene = context.load();
         model = to_internal(scene.normalization, std::move(model));
