@@ -78,6 +78,12 @@ std::uint8_t to_byte(float value);
 /// `to_byte` converts. Throws `error` like `atomic_file_write`.
 void write_png(const std::filesystem::path& file, int width, int height, const std::vector<float>& planes);
 
+/// Returns an 8-bit RGB image, row by row from the top, as a JPEG. `quality` is from 1 to 100, as
+/// that of cjpeg. Throws `error` if a side is zero or above 65500. Threads may call it.
+/// Precondition: `rgb` has 3 * width * height bytes.
+std::vector<std::uint8_t> encode_jpeg(int width, int height, const std::vector<std::uint8_t>& rgb,
+                                      int quality);
+
 /// Averages over areas. Each output pixel is the mean of the input pixels that it covers, including
 /// fractions of pixels. Masked pixels do not count. An output pixel is masked if masked pixels
 /// cover more than half of it. Precondition: 1 <= width <= source.width, and likewise for the
