@@ -40,6 +40,9 @@ int main(int argc, char** argv) {
             case gs::cli::command::render:
                 gs::cli::render(settings);
                 break;
+            case gs::cli::command::view:
+                gs::cli::view_model(settings);
+                break;
             case gs::cli::command::inspect:
                 gs::cli::inspect(settings);
                 break;

@@ -17,6 +17,7 @@ void train(const settings& s);
 void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient);
 void evaluate(const settings& s);
 void render(const settings& s);
+void view_model(const settings& s);
 void inspect(const settings& s);
 void doctor();
 /// @}

@@ -9,6 +9,7 @@
 #include "../losses/loss_names.hpp"
 #include "../poses/video_frames.hpp"
 #include "../writers/writer.hpp"
+#include "view_options.hpp"
 
 // The table of all options, group by group. An option is one row here and one member of `settings`.
 // The table is the source of the command line with its checks and help, of settings.json, and of
@@ -70,10 +71,10 @@ rows scene_options(settings& s) {
     return grouped(
         "Scene",
         {{.names = "ply",
-          .commands = {evaluate, render},
+          .commands = {evaluate, render, view},
           .value = text(s.ply, "FILE"),
           .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
-          .required = {evaluate, render}},
+          .required = {evaluate, render, view}},
          {.names = "-d,--data,-s,--source-path",
           .commands = {train, evaluate, render, inspect},
           .value = text(s.scene.data, "SCENE"),
@@ -107,12 +108,12 @@ rows scene_options(settings& s) {
           .value = flag(s.scene.masks),
           .help = "Measures the masked pixels of the photos, too"},
          {.names = "--background",
-          .commands = {train, evaluate, render},
+          .commands = {train, evaluate, render, view},
           .value = choice(s.background),
           .help = "Background color behind the Gaussians: auto is white if photos have transparent parts "
                   "and black otherwise; random, for train only, changes with every iteration"},
          {.names = "-w,--white-background",
-          .commands = {train, evaluate, render},
+          .commands = {train, evaluate, render, view},
           .value = shorthand(s.background, background_kind::white),
           .help = "Short for --background white",
           .excludes = {"--background"},
@@ -177,11 +178,11 @@ rows output_options(settings& s) {
                                .unit = "images",
                                .excludes = {"--data"}},
                               {.names = "--log-level",
-                               .commands = {train, evaluate, render},
+                               .commands = {train, evaluate, render, view},
                                .value = choice(s.log_level),
                                .help = "Least important messages to print"},
                               {.names = "-q,--quiet",
-                               .commands = {train, evaluate, render},
+                               .commands = {train, evaluate, render, view},
                                .value = shorthand(s.log_level, log_level::error),
                                .help = "Short for --log-level error",
                                .excludes = {"--log-level"},
@@ -215,7 +216,7 @@ rows run_options(settings& s) {
     return grouped(
         "Device and reproducibility",
         {{.names = "--device",
-          .commands = {train, evaluate, render},
+          .commands = {train, evaluate, render, view},
           .value = choice(s.device),
           .help = "Device to compute on; auto takes a GPU if one can be used"},
          {.names = "--seed",
@@ -426,9 +427,9 @@ rows evaluation_options(settings& s) {
 std::vector<option> option_table(settings& s) {
     rows table;
     for (auto& group :
-         {scene_options(s), pose_options(s), output_options(s), checkpoint_options(s), length_options(s),
-          effect_options(s), learning_rate_options(s), densification_options(s), strategy_options(s),
-          memory_options(s), evaluation_options(s), run_options(s)})
+         {scene_options(s), pose_options(s), output_options(s), view_options(s), checkpoint_options(s),
+          length_options(s), effect_options(s), learning_rate_options(s), densification_options(s),
+          strategy_options(s), memory_options(s), evaluation_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }
@@ -448,6 +449,8 @@ std::string purpose_of(command c) {
             return "Measures a saved model on the held-out views of a scene, or without --eval on all views";
         case render:
             return "Draws a saved model from the cameras of a scene or from an orbit";
+        case view:
+            return "Shows a saved model in a browser";
         case inspect:
             return "Reports which effects the photos of a scene need";
         case doctor:

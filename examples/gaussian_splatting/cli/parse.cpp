@@ -130,6 +130,7 @@ class command_options {
             CLI::Option* added = app.add_option(row.names);
             added->expected(1, CLI::detail::expected_max_vector_size);
             added->allow_extra_args(row.value.is_list);
+            if (!row.value.implied.empty()) added->expected(0, 1)->default_str(row.value.implied);
         }
         try {
             app.parse(words(given.rbegin(), given.rend()));  // CLI11 expects reverse order

@@ -80,6 +80,9 @@ struct settings {
     std::set<int> test_iterations;
 
     int orbit_views = 8;
+
+    std::optional<int> viewer;  ///< port of the live view, or 0 for the default; if unset, there is none
+    std::string viewer_host = "127.0.0.1";
 };
 
 }  // namespace gs::cli

@@ -8,10 +8,10 @@
 namespace gs::options {
 
 /// The commands of the program.
-enum class command { train, evaluate, render, inspect, doctor };
+enum class command { train, evaluate, render, view, inspect, doctor };
 
-constexpr std::array<std::string_view, 5> names_of(command) {
-    return {"train", "evaluate", "render", "inspect", "doctor"};
+constexpr std::array<std::string_view, 6> names_of(command) {
+    return {"train", "evaluate", "render", "view", "inspect", "doctor"};
 }
 
 }  // namespace gs::options
