@@ -35,6 +35,7 @@ class live_training {
     void report(const train::progress& progress);
     /// Returns whether a page asked to stop.
     bool is_stopped() const { return view_.is_stopped(); }
+    const live::live_view& view() const { return view_; }
 
   private:
     callbacks callbacks_;

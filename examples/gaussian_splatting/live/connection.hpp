@@ -43,14 +43,13 @@ class connection final : public httplib::Stream {
         return ::send(socket_, from, size, MSG_NOSIGNAL | MSG_DONTWAIT);
     }
 
-    /// Ends the connection. Discards what the client still sends, for a short time, because closing
-    /// a socket with unread bytes can destroy the response on its way.
+    /// Ends the response. Discards what the client still sends, for a short time, because closing a
+    /// socket with unread bytes can destroy the response on its way.
     void finish() {
         ::shutdown(socket_, SHUT_WR);
         const auto until = clock::now() + std::chrono::seconds(1);
         while (waits_for(POLLIN, until) && ::recv(socket_, buffer_.data(), buffer_.size(), 0) > 0) {
         }
-        ::close(socket_);
     }
 
     void get_remote_ip_and_port(std::string&, int&) const override {}

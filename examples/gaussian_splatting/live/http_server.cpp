@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <exception>
+#include <mutex>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -29,13 +31,39 @@ constexpr int jpeg_quality = 85;
 
 /// A server that answers one request per connection, within the limits of `connection`.
 class limited_server final : public httplib::Server {
+  public:
+    /// Lets connections of many pages wait until they are accepted; httplib lets only five wait.
+    void let_connections_wait() { ::listen(svr_sock_, 64); }
+
+    /// Ends the reading of all connections, so that silent clients do not delay the end.
+    void hang_up() {
+        const std::lock_guard held(lock_);
+        has_hung_up_ = true;
+        for (const socket_t socket : open_) ::shutdown(socket, SHUT_RD);
+    }
+
+  private:
     bool process_and_close_socket(socket_t socket) override {
+        {
+            const std::lock_guard held(lock_);
+            open_.insert(socket);
+            if (has_hung_up_) ::shutdown(socket, SHUT_RD);
+        }
         connection client(socket);
         bool is_closed = false;
         const bool answered = process_request(client, true, is_closed, nullptr);
         client.finish();
+        {
+            const std::lock_guard held(lock_);
+            open_.erase(socket);
+        }
+        ::close(socket);
         return answered;
     }
+
+    std::mutex lock_;
+    std::set<socket_t> open_;
+    bool has_hung_up_ = false;
 };
 
 void send_text(Response& response, int status, const std::string& sentence) {
@@ -111,6 +139,7 @@ class http_server::listener {
                                      {"Cross-Origin-Resource-Policy", "same-origin"}});
         add_routes();
         server_.new_task_queue = [] { return new worker_threads; };
+        server_.let_connections_wait();
         thread_ = std::thread([this] {
             server_.listen_after_bind();
             has_ended_ = true;
@@ -122,6 +151,7 @@ class http_server::listener {
         // Before the server runs, `stop` would have no effect.
         while (!server_.is_running() && !has_ended_) std::this_thread::yield();
         server_.stop();
+        server_.hang_up();
         thread_.join();
     }
 

@@ -33,6 +33,7 @@ void live_view::set_status(const live_status& status) {
     const std::string note = status.note.empty() ? status_.note : status.note;
     status_ = status;
     status_.note = note;
+    trains_ = status.trains;
     iteration_ = status.iteration;
 }
 
@@ -55,6 +56,7 @@ std::string live_view::status_json() {
 
 /// Runs in threads of the server.
 void live_view::press(button b) {
+    if (!trains_ && b != button::stop) return;
     switch (b) {
         case button::pause:
             is_paused_ = true;

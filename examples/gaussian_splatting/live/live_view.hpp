@@ -54,7 +54,7 @@ class live_view {
     /// of the time: after a frame, returns false for as long as the frame took.
     bool needs_attention() const {
         return has_orders_.load(std::memory_order_relaxed) ||
-               (mailbox_.has_requests() && clock::now() >= next_frame_);
+               (mailbox_.requests() > 0 && clock::now() >= next_frame_);
     }
     /// Draws the frames that pages wait for, and saves if a page asks for it. While a page pauses
     /// the training, does not return.
@@ -75,7 +75,8 @@ class live_view {
     std::mutex lock_;
     live_status status_;
     std::atomic<int> iteration_ = 0;
-    std::atomic<bool> has_orders_ = false, is_paused_ = false, saves_ = false, is_stopped_ = false;
+    std::atomic<bool> trains_ = false, has_orders_ = false, is_paused_ = false, saves_ = false,
+                      is_stopped_ = false;
     clock::time_point next_frame_{};
     http_server server_;  ///< last: its threads use the other members
 };

@@ -53,8 +53,8 @@ class mailbox {
 
     /// @name For the thread of the engine
     /// @{
-    /// Returns whether requests wait. Takes no lock.
-    bool has_requests() const { return waiting_.load(std::memory_order_relaxed) > 0; }
+    /// Returns the number of requests that wait. Takes no lock.
+    std::size_t requests() const { return waiting_.load(std::memory_order_relaxed); }
     /// Answers all waiting requests. A request for which `draw` throws an exception fails.
     void serve(const std::function<picture(const view_request&)>& draw);
     /// Waits until requests wait or `ring` is called, at most for `patience`.
