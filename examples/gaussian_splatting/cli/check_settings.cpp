@@ -49,6 +49,11 @@ void check_background(const settings& s) {
         throw error("--background random is for train: give " + name_of(s.command) + " white or black");
 }
 
+void check_orbit(const settings& s) {
+    if (s.given.contains("orbit_views") && !s.scene.data.empty() && !s.orbit)
+        throw error("--orbit-views beside --data needs --orbit: add it or leave out --orbit-views");
+}
+
 void check_video_frames(const settings& s) {
     if (s.video_frames && s.poses == pose_source::given)
         throw error("--video-frames needs --poses auto: add it or leave out --video-frames");
@@ -81,6 +86,7 @@ void check_settings(const settings& s) {
                            .seed = s.seed});
     check_background(s);
     check_video_frames(s);
+    check_orbit(s);
 }
 
 }  // namespace gs::cli

@@ -143,7 +143,7 @@ rows output_options(settings& s) {
     return grouped("Output", {{.names = "-o,--output,-m,--model-path",
                                .commands = {train},
                                .value = text(s.output, "FOLDER"),
-                               .help = "Folder for the model, its measures and the renders of held-out views",
+                               .help = "Folder for the model, its measures and held-out renders",
                                .required = {train}},
                               {.names = "-o,--output",
                                .commands = {evaluate},
@@ -153,7 +153,7 @@ rows output_options(settings& s) {
                               {.names = "-o,--output",
                                .commands = {render},
                                .value = text(s.output, "FOLDER"),
-                               .help = "Folder for the renders",
+                               .help = "Folder for the renders, or a video with the ending .mp4",
                                .required = {render}},
                               {.names = "-o,--output",
                                .commands = {inspect},
@@ -174,9 +174,9 @@ rows output_options(settings& s) {
                               {.names = "--orbit-views",
                                .commands = {render},
                                .value = whole(s.orbit_views, 1, 10000),
-                               .help = "Number of renders on an orbit around the model",
+                               .help = "Number of renders on an orbit, if they are images",
                                .unit = "images",
-                               .excludes = {"--data"}},
+                               .excludes = {"--path", "--seconds"}},
                               {.names = "--log-level",
                                .commands = {train, evaluate, render, view},
                                .value = choice(s.log_level),
@@ -236,7 +236,7 @@ rows length_options(settings& s) {
         {{.names = "-i,--iterations",
           .commands = {train},
           .value = planned_iterations(s.schedule.iterations),
-          .help = "Number of training iterations; a plan such as 7000,100:6500 in settings.json changes "
+          .help = "Number of iterations; a plan such as 7000,100:6500 in settings.json changes "
                   "it to 6500 after iteration 100",
           .unit = "iterations"},
          {.names = "--seconds",
@@ -426,10 +426,10 @@ rows evaluation_options(settings& s) {
 
 std::vector<option> option_table(settings& s) {
     rows table;
-    for (auto& group :
-         {scene_options(s), pose_options(s), output_options(s), view_options(s), checkpoint_options(s),
-          length_options(s), effect_options(s), learning_rate_options(s), densification_options(s),
-          strategy_options(s), memory_options(s), evaluation_options(s), run_options(s)})
+    for (auto& group : {scene_options(s), pose_options(s), output_options(s), video_options(s),
+                        view_options(s), checkpoint_options(s), length_options(s), effect_options(s),
+                        learning_rate_options(s), densification_options(s), strategy_options(s),
+                        memory_options(s), evaluation_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }

@@ -60,7 +60,7 @@ struct settings {
 
     quality_preset quality = quality_preset::balanced;
     train::schedule schedule;
-    std::optional<double> seconds;  ///< time of training, instead of `schedule.iterations`
+    std::optional<double> seconds;  ///< time of training, instead of its iterations, or of a video
     train::strategy_settings densification;
     std::string loss = train::default_loss;
     features::selection effects;
@@ -80,6 +80,9 @@ struct settings {
     std::set<int> test_iterations;
 
     int orbit_views = 8;
+    bool orbit = false;       ///< draws an orbit around a scene instead of its views
+    std::string camera_path;  ///< file with key views; empty if there is none
+    int frames_per_second = 30;
 
     std::optional<int> viewer;  ///< port of the live view, or 0 for the default; if unset, there is none
     std::string viewer_host = "127.0.0.1";

@@ -32,14 +32,6 @@ color heat(float level) {
     return mixed;
 }
 
-picture in_colors(int width, int height, const std::vector<float>& planes) {
-    picture p{width, height, std::vector<std::uint8_t>(planes.size())};
-    const std::size_t pixels = planes.size() / 3;
-    for (std::size_t i = 0; i < pixels; ++i)
-        for (std::size_t c = 0; c < 3; ++c) p.rgb[3 * i + c] = to_byte(planes[c * pixels + i]);
-    return p;
-}
-
 /// Shows levels as heat, of which `most` is the brightest.
 picture in_heat(int width, int height, const std::vector<float>& levels, float most) {
     picture p{width, height, {}};
@@ -93,7 +85,7 @@ picture frame_artist::draw(const view_request& request) {
     const bool shows_depth = request.overlay == overlay::depth;
     std::vector<float> render =
         engine_.render(camera, background_, {.inverse_depth = shows_depth, .separate_memory = true});
-    if (request.overlay == overlay::none) return in_colors(camera.width, camera.height, render);
+    if (request.overlay == overlay::none) return {camera.width, camera.height, interleaved(render)};
     if (shows_depth) {
         render.resize(render.size() / 3);
         return in_heat(camera.width, camera.height, render, nearly_largest(render));
