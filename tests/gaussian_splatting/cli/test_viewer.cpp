@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 #include <httplib.h>
+#include <omp.h>
 #include <signal.h>
 
 #include <atomic>
@@ -112,7 +113,10 @@ void press(const printed_url& url, const std::string& button) {
 
 TEST_CASE("viewer: a training that is watched, paused and saved has the bits of one that is not") {
     const gs::scene scene = spheres();
+    const int threads = omp_get_max_threads();
+    omp_set_num_threads(1);  // the threads of the server would compete with several
     check_equal(trained(scene, true), trained(scene, false));
+    omp_set_num_threads(threads);
 }
 
 TEST_CASE("viewer: stop saves the model and a checkpoint, with which the training continues") {
