@@ -169,10 +169,6 @@ nlohmann::ordered_json training_run::resolved_settings() const {
 
 train::train_events training_run::events() {
     return {
-        .schedule =
-            [this](train::training& training) {
-                if (live_) live_->add_to(training);
-            },
         .report =
             [this](const train::progress& p) {
                 measures_.last = p;
@@ -184,7 +180,11 @@ train::train_events training_run::events() {
         .warn = [this](const std::string& line) { warn(line); },
         .checkpoint = [this](int iteration, state_archive& archive) { save_checkpoint(iteration, archive); },
         .is_interrupted = [this] { return is_interrupted(); },
-        .begins = [this] { say_expected_memory(); }};
+        .begins = [this] { say_expected_memory(); },
+        .schedule =
+            [this](train::training& training) {
+                if (live_) live_->add_to(training);
+            }};
 }
 
 void training_run::say_expected_memory() {

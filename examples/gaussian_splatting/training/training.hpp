@@ -76,8 +76,6 @@ class training;
 
 /// The callbacks of the training loop.
 struct train_events {
-    /// Called before the first iteration, to add actions.
-    std::function<void(training&)> schedule = [](training&) {};
     /// Called every 100 iterations, at the end, and before each `test`.
     std::function<void(const progress&)> report;
     std::function<void(int iteration)> save;
@@ -94,6 +92,8 @@ struct train_events {
     std::function<bool()> is_interrupted = [] { return false; };
     /// Called before the first iteration, after memory for it has been reserved.
     std::function<void()> begins = [] {};
+    /// Called before the training is restored or begins, to add actions.
+    std::function<void(training&)> schedule = [](training&) {};
 };
 
 /// The mean loss over the steps of several reports of the engine.
