@@ -46,6 +46,9 @@ int main(int argc, char** argv) {
             case gs::cli::command::convert:
                 gs::cli::convert(settings);
                 break;
+            case gs::cli::command::view:
+                gs::cli::view_model(settings);
+                break;
             case gs::cli::command::inspect:
                 gs::cli::inspect(settings);
                 break;

@@ -58,6 +58,11 @@ void check_viewer_size(const settings& s) {
                     " or --no-viewer");
 }
 
+void check_orbit(const settings& s) {
+    if (s.given.contains("orbit_views") && !s.scene.data.empty() && !s.orbit)
+        throw error("--orbit-views beside --data needs --orbit: add it or leave out --orbit-views");
+}
+
 void check_video_frames(const settings& s) {
     if (s.video_frames && s.poses == pose_source::given)
         throw error("--video-frames needs --poses auto: add it or leave out --video-frames");
@@ -92,6 +97,7 @@ void check_settings(const settings& s) {
     check_background(s);
     check_video_frames(s);
     check_viewer_size(s);
+    check_orbit(s);
 }
 
 }  // namespace gs::cli

@@ -19,6 +19,7 @@ void evaluate(const settings& s);
 void render(const settings& s);
 void compare(const settings& s);
 void convert(const settings& s);
+void view_model(const settings& s);
 void inspect(const settings& s);
 void doctor();
 /// @}

@@ -19,7 +19,8 @@ struct helper_program {
 };
 constexpr std::array helper_programs{
     helper_program{"colmap", "colmap", "computes the camera poses of photos (train --poses auto)"},
-    helper_program{"ffmpeg", "ffmpeg", "takes frames from videos (train --poses auto)"},
+    helper_program{"ffmpeg", "ffmpeg",
+                   "takes frames from videos (train --poses auto), and writes videos (render)"},
     helper_program{"ffprobe", "ffmpeg", "counts the frames of videos (train --poses auto)"}};
 
 void print_row(const char* subject, const std::string& text) {

@@ -11,6 +11,7 @@
 #include "../writers/writer.hpp"
 #include "convert_options.hpp"
 #include "page_options.hpp"
+#include "view_options.hpp"
 
 // The table of all options, group by group. An option is one row here and one member of `settings`.
 // The table is the source of the command line with its checks and help, of settings.json, and of
@@ -71,10 +72,10 @@ rows grouped(const std::string& heading, rows all) {
 rows model_options(settings& s) {
     return grouped(
         "Model", {{.names = "ply",
-                   .commands = {evaluate, render},
+                   .commands = {evaluate, render, view},
                    .value = text(s.ply, "FILE"),
                    .help = "Model to read: a file with the ending " + readable_endings(all_writers(), " or "),
-                   .required = {evaluate, render}},
+                   .required = {evaluate, render, view}},
                   {.names = "input",
                    .commands = {convert},
                    .value = text(s.ply, "IN"),
@@ -130,12 +131,12 @@ rows scene_options(settings& s) {
           .value = flag(s.scene.masks),
           .help = "Measures the masked pixels of the photos, too"},
          {.names = "--background",
-          .commands = {train, evaluate, render},
+          .commands = {train, evaluate, render, view},
           .value = choice(s.background),
           .help = "Background color behind the Gaussians: auto is white if photos have transparent parts "
                   "and black otherwise; random, for train only, changes with every iteration"},
          {.names = "-w,--white-background",
-          .commands = {train, evaluate, render},
+          .commands = {train, evaluate, render, view},
           .value = shorthand(s.background, background_kind::white),
           .help = "Short for --background white",
           .excludes = {"--background"},
@@ -165,7 +166,7 @@ rows output_options(settings& s) {
     return grouped("Output", {{.names = "-o,--output,-m,--model-path",
                                .commands = {train},
                                .value = text(s.output, "FOLDER"),
-                               .help = "Folder for the model, its measures and the renders of held-out views",
+                               .help = "Folder for the model, its measures and held-out renders",
                                .required = {train}},
                               {.names = "-o,--output",
                                .commands = {evaluate},
@@ -175,7 +176,7 @@ rows output_options(settings& s) {
                               {.names = "-o,--output",
                                .commands = {render},
                                .value = text(s.output, "FOLDER"),
-                               .help = "Folder for the renders",
+                               .help = "Folder for the renders, or a video with the ending .mp4",
                                .required = {render}},
                               {.names = "-o,--output",
                                .commands = {inspect},
@@ -196,15 +197,15 @@ rows output_options(settings& s) {
                               {.names = "--orbit-views",
                                .commands = {render},
                                .value = whole(s.orbit_views, 1, 10000),
-                               .help = "Number of renders on an orbit around the model",
+                               .help = "Number of renders on an orbit, if they are images",
                                .unit = "images",
-                               .excludes = {"--data"}},
+                               .excludes = {"--path", "--seconds"}},
                               {.names = "--log-level",
-                               .commands = {train, evaluate, render, convert},
+                               .commands = {train, evaluate, render, convert, view},
                                .value = choice(s.log_level),
                                .help = "Least important messages to print"},
                               {.names = "-q,--quiet",
-                               .commands = {train, evaluate, render, convert},
+                               .commands = {train, evaluate, render, convert, view},
                                .value = shorthand(s.log_level, log_level::error),
                                .help = "Short for --log-level error",
                                .excludes = {"--log-level"},
@@ -238,7 +239,7 @@ rows run_options(settings& s) {
     return grouped(
         "Device and reproducibility",
         {{.names = "--device",
-          .commands = {train, evaluate, render},
+          .commands = {train, evaluate, render, view},
           .value = choice(s.device),
           .help = "Device; auto takes a GPU if there is one"},
          {.names = "--seed",
@@ -258,7 +259,7 @@ rows length_options(settings& s) {
         {{.names = "-i,--iterations",
           .commands = {train},
           .value = planned_iterations(s.schedule.iterations),
-          .help = "Number of training iterations; a plan such as 7000,100:6500 in settings.json changes "
+          .help = "Number of iterations; a plan such as 7000,100:6500 in settings.json changes "
                   "it to 6500 after iteration 100",
           .unit = "iterations"},
          {.names = "--seconds",
@@ -447,10 +448,11 @@ rows evaluation_options(settings& s) {
 
 std::vector<option> option_table(settings& s) {
     rows table;
-    for (auto& group : {model_options(s), scene_options(s), pose_options(s), output_options(s),
-                        page_options(s), checkpoint_options(s), length_options(s), effect_options(s),
-                        learning_rate_options(s), densification_options(s), strategy_options(s),
-                        memory_options(s), evaluation_options(s), convert_options(s), run_options(s)})
+    for (auto& group :
+         {model_options(s), scene_options(s), pose_options(s), output_options(s), page_options(s),
+          video_options(s), view_options(s), checkpoint_options(s), length_options(s), effect_options(s),
+          learning_rate_options(s), densification_options(s), strategy_options(s), memory_options(s),
+          evaluation_options(s), convert_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }
@@ -474,6 +476,8 @@ std::string purpose_of(command c) {
             return "Converts a saved model to another format, and can crop, thin out or turn it";
         case compare:
             return "Writes a web page that compares several runs of train";
+        case view:
+            return "Shows a saved model in a browser";
         case inspect:
             return "Reports which effects the photos of a scene need";
         case doctor:

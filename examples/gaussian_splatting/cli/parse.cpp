@@ -138,6 +138,7 @@ class command_options {
             const bool gets_one = row.is_positional() && positional > 1;
             added->expected(1, gets_one ? 1 : CLI::detail::expected_max_vector_size);
             added->allow_extra_args(row.value.is_list);
+            if (!row.value.implied.empty()) added->expected(0, 1)->default_str(row.value.implied);
         }
         try {
             app.parse(words(given.rbegin(), given.rend()));  // CLI11 expects reverse order

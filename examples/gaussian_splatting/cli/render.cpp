@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <glm/geometric.hpp>
 
 #include "../core/error.hpp"
 #include "../evaluation/held_out_views.hpp"
-#include "../scene/look_at.hpp"
+#include "../poses/child_process.hpp"
+#include "../scene/orbit.hpp"
+#include "../video/camera_path.hpp"
+#include "../video/video_file.hpp"
 #include "../writers/writer.hpp"
 #include "command_context.hpp"
 #include "commands.hpp"
+#include "stop_signals.hpp"
 
 namespace gs::cli {
 
@@ -21,36 +24,79 @@ struct named_camera {
     gs::camera camera;
 };
 
-/// Returns cameras on a circle around the center of the Gaussians, slightly above the plane of
-/// their largest extent. Precondition: the model is normalized by its own normalization: see
-/// `normalization_of`.
-std::vector<named_camera> orbit(const gaussians& model, int views, int size) {
-    const std::size_t n = model.count();
-    std::array<glm::dvec3, 2> quartiles;  // of the means; robust against floaters
-    for (int axis = 0; axis < 3; ++axis) {
-        std::vector<float> x(n);
-        for (std::size_t i = 0; i < n; ++i) x[i] = model.mean[3 * i + static_cast<std::size_t>(axis)];
-        std::ranges::sort(x);
-        quartiles[0][axis] = x[n / 4];
-        quartiles[1][axis] = x[n - 1 - n / 4];
-    }
-    const glm::dvec3 middle = 0.5 * (quartiles[0] + quartiles[1]), spread = quartiles[1] - quartiles[0];
-    const int thin = spread.x < spread.y ? (spread.x < spread.z ? 0 : 2) : (spread.y < spread.z ? 1 : 2);
-    glm::dvec3 up(0), ahead(0);
-    up[thin] = 1;
-    ahead[(thin + 1) % 3] = 1;
-    const glm::dvec3 side = glm::cross(up, ahead);
-    const double radius = 2.5 * std::max(glm::length(spread), 1.0);
+/// What `render` draws.
+struct drawing {
+    gaussians model;     ///< in internal coordinates
+    bool alpha = false;  ///< whether the photos of the scene have transparent parts
+    bool moves = false;  ///< whether the cameras are on an orbit or a path
+    std::vector<named_camera> cameras{};
+};
+
+struct image_sides {
+    int width, height;
+};
+
+/// Returns a size at --resolution, which divides it or is the longer side.
+image_sides at_resolution(image_sides full, int resolution) {
+    const double longer = std::max(full.width, full.height);
+    const double scale = divides_size(resolution) ? 1.0 / resolution : resolution / longer;
+    const auto scaled = [=](int side) { return std::max(1, static_cast<int>(std::lround(scale * side))); };
+    return {scaled(full.width), scaled(full.height)};
+}
+
+/// Returns the size for cameras without one: square images, or the usual shape of videos.
+image_sides default_sides(const settings& s) {
+    return at_resolution(video::is_video(s.output) ? image_sides{1280, 720} : image_sides{800, 800},
+                         s.scene.resolution);
+}
+
+/// Videos have even sides.
+image_sides suited(const settings& s, image_sides sides) {
+    if (!video::is_video(s.output)) return sides;
+    return {std::max(2, sides.width / 2 * 2), std::max(2, sides.height / 2 * 2)};
+}
+
+/// Returns the cameras of a motion, numbered. `at`: the camera after a share of the frames.
+template <class CameraAt>
+std::vector<named_camera> moving_cameras(int frames, const CameraAt& at) {
     std::vector<named_camera> cameras;
-    for (int i = 0; i < views; ++i) {
-        const double a = 2 * std::acos(-1.0) * i / views;
-        const glm::dvec3 from =
-            middle + radius * (0.9 * (std::cos(a) * ahead + std::sin(a) * side) + 0.45 * up);
+    for (int i = 0; i < frames; ++i) {
         char name[32];
         std::snprintf(name, sizeof name, "%05d.png", i);
-        cameras.push_back({name, look_at(from, middle, up, size, 1.2 * size)});
+        cameras.push_back({name, at(i)});
     }
     return cameras;
+}
+
+/// Returns the number of frames of an orbit or a path.
+int frame_count(const settings& s, std::optional<double> seconds_of_path) {
+    constexpr double usual_seconds = 8, most_frames = 1e6;
+    const double seconds = s.seconds.value_or(seconds_of_path.value_or(usual_seconds));
+    const double frames = std::round(seconds * s.frames_per_second);
+    if (frames > most_frames)
+        throw error("--seconds " + std::to_string(seconds) + " is too long: lower it or --fps");
+    return std::max(1, static_cast<int>(frames));
+}
+
+std::vector<named_camera> cameras_on(const orbit& around, const settings& s, image_sides sides) {
+    const bool is_counted = !video::is_video(s.output) && !s.seconds;
+    const int frames = is_counted ? s.orbit_views : frame_count(s, {});
+    const image_sides size = suited(s, sides);
+    return moving_cameras(frames, [&](int i) {
+        return around.camera_at(static_cast<double>(i) / frames, size.width, size.height);
+    });
+}
+
+std::vector<named_camera> cameras_on(const video::camera_path& path, const settings& s,
+                                     const normalization& normalization) {
+    const int frames = frame_count(s, path.seconds);
+    image_sides size = default_sides(s);
+    if (path.width && path.height) size = at_resolution({*path.width, *path.height}, s.scene.resolution);
+    size = suited(s, size);
+    return moving_cameras(frames, [&](int i) {
+        const double share = frames > 1 ? static_cast<double>(i) / (frames - 1) : 0;
+        return video::camera_of(path.at(share), normalization, size.width, size.height);
+    });
 }
 
 std::vector<named_camera> cameras_of(const scene& scene) {
@@ -61,38 +107,78 @@ std::vector<named_camera> cameras_of(const scene& scene) {
     return cameras;
 }
 
-/// Returns the side of an orbit's images, in pixels. A small --resolution divides 800 pixels; a
-/// larger one is the side itself.
-int orbit_size(int resolution) { return divides_size(resolution) ? 800 / resolution : resolution; }
+drawing drawing_of(gaussians model, const settings& s, const command_context& context) {
+    std::optional<video::camera_path> path;
+    if (!s.camera_path.empty()) path = video::read_camera_path(s.camera_path);
+    drawing d;
+    if (s.scene.data.empty()) {
+        const normalization own = normalization_of(model);
+        d.model = to_internal(own, std::move(model));
+        d.moves = true;
+        d.cameras = path ? cameras_on(*path, s, own) : cameras_on(orbit_of(d.model), s, default_sides(s));
+        return d;
+    }
+    const scene scene = context.load();
+    d.model = to_internal(scene.normalization, std::move(model));
+    d.alpha = scene.has_alpha;
+    d.moves = path || s.orbit;
+    if (path) {
+        d.cameras = cameras_on(*path, s, scene.normalization);
+    } else if (s.orbit) {
+        const camera& first = scene.train.front().camera;
+        d.cameras = cameras_on(orbit_of(scene), s, {first.width, first.height});
+    } else {
+        d.cameras = cameras_of(scene);
+    }
+    return d;
+}
+
+void write_images(const settings& s, train::engine& engine, const drawing& d,
+                  const std::array<float, 3>& background) {
+    const output_folder output(s.output);
+    for (const named_camera& c : d.cameras)
+        write_png(output.path() / c.name, c.camera.width, c.camera.height,
+                  engine.render(c.camera, background));
+}
+
+void write_movie(const settings& s, train::engine& engine, const drawing& d,
+                 const std::array<float, 3>& background) {
+    const std::filesystem::path file = s.output;
+    const output_folder folder(file.has_parent_path() ? file.parent_path() : ".");
+    const camera& first = d.cameras.front().camera;
+    std::size_t next = 0;
+    try {
+        video::write_video(file, {first.width, first.height, s.frames_per_second}, [&] {
+            if (next == d.cameras.size()) return std::vector<std::uint8_t>{};
+            return interleaved(engine.render(d.cameras[next++].camera, background));
+        });
+    } catch (const poses::interrupted& e) {
+        throw interruption(e.signal, e.what());
+    }
+}
 
 }  // namespace
 
 void render(const settings& s) {
     const command_context context(s);
+    const bool is_video = video::is_video(s.output);
+    if (is_video) video::require_encoder();
     const auto engine = context.make_engine();
     gaussians model = read_model(s.ply);
     context.require_no_background_before(model);
     if (model.count() == 0) throw error(s.ply + " holds no Gaussians: there is nothing to draw");
-    const bool orbits = s.scene.data.empty();
-    bool alpha = false;
-    std::vector<named_camera> cameras;
-    if (orbits) {
-        const normalization own = normalization_of(model);
-        model = to_internal(own, std::move(model));
-        cameras = orbit(model, s.orbit_views, orbit_size(s.scene.resolution));
-    } else {
-        const scene scene = context.load();
-        model = to_internal(scene.normalization, std::move(model));
-        alpha = scene.has_alpha;
-        cameras = cameras_of(scene);
-    }
-    const auto background = context.background(alpha);
-    const output_folder output(s.output);
-    engine->set_model(model);
-    for (const named_camera& c : cameras)
-        write_png(output.path() / c.name, c.camera.width, c.camera.height,
-                  engine->render(c.camera, background.color));
-    context.say(std::to_string(cameras.size()) + " images in " + s.output);
+    const drawing d = drawing_of(std::move(model), s, context);
+    if (is_video && !d.moves)
+        throw error(
+            "a video of the views of a scene jumps between them: add --orbit or --path, or give a "
+            "folder with -o");
+    const auto background = context.background(d.alpha);
+    engine->set_model(d.model);
+    if (is_video)
+        write_movie(s, *engine, d, background.color);
+    else
+        write_images(s, *engine, d, background.color);
+    context.say(std::to_string(d.cameras.size()) + (is_video ? " frames in " : " images in ") + s.output);
 }
 
 }  // namespace gs::cli

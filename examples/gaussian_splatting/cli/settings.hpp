@@ -66,7 +66,7 @@ struct settings {
 
     quality_preset quality = quality_preset::balanced;
     train::schedule schedule;
-    std::optional<double> seconds;  ///< time of training, instead of `schedule.iterations`
+    std::optional<double> seconds;  ///< time of training, instead of its iterations, or of a video
     train::strategy_settings densification;
     std::string loss = train::default_loss;
     features::selection effects;
@@ -95,6 +95,12 @@ struct settings {
     std::optional<edit::share> decimate;
     bool remove_floaters = false;
     std::optional<up_axis> up;
+    bool orbit = false;       ///< draws an orbit around a scene instead of its views
+    std::string camera_path;  ///< file with key views; empty if there is none
+    int frames_per_second = 30;
+
+    std::optional<int> viewer;  ///< port of the live view, or 0 for the default; if unset, there is none
+    std::string viewer_host = "127.0.0.1";
 };
 
 }  // namespace gs::cli

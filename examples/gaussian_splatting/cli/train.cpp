@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 
 #include "../core/atomic_file_write.hpp"
 #include "../core/error.hpp"
@@ -14,6 +15,7 @@
 #include "command_context.hpp"
 #include "commands.hpp"
 #include "earlier_run.hpp"
+#include "live_training.hpp"
 #include "memory_limits.hpp"
 #include "progress_bar.hpp"
 #include "report.hpp"
@@ -84,6 +86,10 @@ class training_run {
 
   private:
     train::train_events events();
+    bool is_interrupted() const { return signals_->received() != 0 || (live_ && live_->is_stopped()); }
+    void begin_live_view();
+    /// Ends the program after Ctrl-C, or after a page of the live view has asked to stop.
+    [[noreturn]] void end_early();
     void say_expected_memory();
     void warn(const std::string& line);
     void save(int iteration);
@@ -114,7 +120,8 @@ class training_run {
     bool replaces_ = s_.overwrite;  ///< whether an earlier run is still to be set aside
     progress_bar bar_;
     training_measures measures_;
-    nlohmann::ordered_json metrics_;  ///< content of metrics.json
+    nlohmann::ordered_json metrics_;     ///< content of metrics.json
+    std::optional<live_training> live_;  ///< while training runs, with --viewer
 };
 
 training_run::training_run(const settings& s, const load_options& source,
@@ -175,13 +182,18 @@ train::train_events training_run::events() {
                 measures_.last = p;
                 measures_.history.push_back(p);
                 bar_.show(p);
+                if (live_) live_->report(p);
             },
         .save = [this](int iteration) { save(iteration); },
         .test = [this](int iteration) { test(iteration); },
         .warn = [this](const std::string& line) { warn(line); },
         .checkpoint = [this](int iteration, state_archive& archive) { save_checkpoint(iteration, archive); },
-        .is_interrupted = [this] { return signals_->received() != 0; },
-        .begins = [this] { say_expected_memory(); }};
+        .is_interrupted = [this] { return is_interrupted(); },
+        .begins = [this] { say_expected_memory(); },
+        .schedule =
+            [this](train::training& training) {
+                if (live_) live_->add_to(training);
+            }};
 }
 
 void training_run::say_expected_memory() {
@@ -251,17 +263,34 @@ void training_run::warn_of_missed_time() {
                    : ", because the speed of the machine changed shortly before the end"));
 }
 
+void training_run::begin_live_view() {
+    if (!s_.viewer) return;
+    live_.emplace(s_, *engine_, scene_, options_,
+                  live_training::callbacks{.save =
+                                               [this](int iteration) {
+                                                   save(iteration);
+                                                   return model_file(iteration).string();
+                                               },
+                                           .is_interrupted = [this] { return signals_->received() != 0; }});
+}
+
+void training_run::end_early() {
+    const int last = measures_.result.iterations;
+    if (live_ && live_->is_stopped()) save(last);
+    const int signal = signals_->received() != 0 ? signals_->received() : SIGINT;
+    throw interruption(signal, "training was interrupted after iteration " + std::to_string(last) +
+                                   "; to continue it, add --resume to the same options; to finish it here, "
+                                   "also set --iterations " +
+                                   std::to_string(last) + (s_.seconds ? " instead of --seconds" : ""));
+}
+
 void training_run::train() {
     signals_.emplace();
+    begin_live_view();
     measures_.result = train::train(*engine_, scene_, options_, events());
     const train::train_result& result = measures_.result;
-    if (result.iterations < result.plan.last())
-        throw interruption(
-            signals_->received(),
-            "training was interrupted after iteration " + std::to_string(result.iterations) +
-                "; to continue it, add --resume to the same options; to finish it here, also set "
-                "--iterations " +
-                std::to_string(result.iterations) + (s_.seconds ? " instead of --seconds" : ""));
+    if (result.iterations < result.plan.last()) end_early();
+    live_.reset();
     warn_of_missed_time();
     options_.schedule.iterations = result.plan;
     options_.seconds.reset();

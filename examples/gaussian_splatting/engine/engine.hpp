@@ -16,6 +16,7 @@
 #include "../scene/scene.hpp"
 #include "feature_state.hpp"
 #include "photo_prefetch.hpp"
+#include "render_options.hpp"
 #include "step_report.hpp"
 #include "training_setup.hpp"
 
@@ -58,10 +59,10 @@ class engine {
     /// device.
     virtual feature_state& feature(std::string_view name) = 0;
 
-    /// Renders the model with SH coefficients up to a degree. Returns three planes, red, green and
-    /// blue, of the camera's size. The values are not clamped.
+    /// Renders the model. Returns three planes, red, green and blue, of the camera's size. The values
+    /// are not clamped.
     virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
-                                      int sh_degree = 3) = 0;
+                                      const render_options& options = {}) = 0;
     /// Compares the render of a held-out view with its target, both clamped to [0, 1]. If `render`
     /// is not null, it receives the render, which is not clamped.
     virtual image_quality measure(std::size_t test_view, const std::array<float, 3>& background,

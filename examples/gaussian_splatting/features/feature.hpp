@@ -70,7 +70,8 @@ class feature {
     virtual void schedule(const selected_feature&, train::training&) const {}
     /// Returns a function that applies the effect to the render of a training view, or an empty
     /// function if it changes no renders. The function takes the view's index and three planes of
-    /// its size; several threads may call it. Called during training if the effect is on.
+    /// its size or of a smaller size; several threads may call it. Called during training if the effect is
+    /// on.
     virtual show_function show_on_host(train::engine&, const scene&) const { return {}; }
     /// Sets the effect's values for held-out views. Called before they are measured, if the effect
     /// is on.

@@ -75,6 +75,14 @@ std::uint8_t to_byte(float value) {
     return static_cast<std::uint8_t>(std::lround(255.0F * std::min(value, 1.0F)));
 }
 
+std::vector<std::uint8_t> interleaved(const std::vector<float>& planes) {
+    const std::size_t pixels = planes.size() / 3;
+    std::vector<std::uint8_t> rgb(planes.size());
+    for (std::size_t i = 0; i < pixels; ++i)
+        for (std::size_t c = 0; c < 3; ++c) rgb[3 * i + c] = to_byte(planes[c * pixels + i]);
+    return rgb;
+}
+
 std::vector<float> over_background(const image& source, const float background[3]) {
     const std::size_t plane = source.rgba.size() / 4;
     std::vector<float> planes(3 * plane);

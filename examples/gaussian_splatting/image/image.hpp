@@ -76,6 +76,9 @@ image turned_upright(const image& stored, const orientation& turn);
 /// Returns 255 times a value, clamped to [0, 255] and rounded to nearest. Returns 0 for NaN.
 std::uint8_t to_byte(float value);
 
+/// Returns three planes as 8-bit RGB, row by row from the top, with values that `to_byte` converts.
+std::vector<std::uint8_t> interleaved(const std::vector<float>& planes);
+
 /// Writes an opaque 8-bit RGB PNG. `planes` holds three planes of width * height values, which
 /// `to_byte` converts. Throws `error` like `atomic_file_write`.
 void write_png(const std::filesystem::path& file, int width, int height, const std::vector<float>& planes);

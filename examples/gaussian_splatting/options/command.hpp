@@ -8,10 +8,10 @@
 namespace gs::options {
 
 /// The commands of the program.
-enum class command { train, evaluate, render, convert, compare, inspect, doctor };
+enum class command { train, evaluate, render, convert, compare, view, inspect, doctor };
 
-constexpr std::array<std::string_view, 7> names_of(command) {
-    return {"train", "evaluate", "render", "convert", "compare", "inspect", "doctor"};
+constexpr std::array<std::string_view, 8> names_of(command) {
+    return {"train", "evaluate", "render", "convert", "compare", "view", "inspect", "doctor"};
 }
 
 }  // namespace gs::options

@@ -32,6 +32,7 @@ struct option_value {
     std::function<nlohmann::ordered_json()> json;  ///< the member's value; null if unset
     bool is_list = false;                          ///< takes several words; `read` adds one
     std::vector<std::string> suggestions{};        ///< words that shells offer for completion
+    std::string implied{};  ///< the word that `read` gets if the user gives none; empty: one is needed
 
     bool is_flag() const { return type.empty(); }
 };

@@ -12,8 +12,10 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <sstream>
 #include <string_view>
+#include <thread>
 
 namespace gs::poses {
 namespace {
@@ -63,12 +65,16 @@ class pipe_ends {
     pipe_ends(const pipe_ends&) = delete;
     pipe_ends& operator=(const pipe_ends&) = delete;
     ~pipe_ends() {
-        close(ends_[0]);
+        close_reading_end();
         close_writing_end();
     }
 
     int reading_end() const { return ends_[0]; }
     int writing_end() const { return ends_[1]; }
+    void close_reading_end() {
+        if (ends_[0] >= 0) close(ends_[0]);
+        ends_[0] = -1;
+    }
     void close_writing_end() {
         if (ends_[1] >= 0) close(ends_[1]);
         ends_[1] = -1;
@@ -94,13 +100,19 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
     return pointers;
 }
 
+constexpr int no_input = -1;
+
 /// Starts the program as the leader of its own process group.
-pid_t start(const std::string& program, const std::vector<std::string>& arguments, int output) {
+pid_t start(const std::string& program, const std::vector<std::string>& arguments, int output,
+            int input = no_input) {
     std::vector<std::string> argument_texts{program}, variables = child_environment();
     argument_texts.insert(argument_texts.end(), arguments.begin(), arguments.end());
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    if (input == no_input)
+        posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    else
+        posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&files, output, STDERR_FILENO);
     posix_spawnattr_t attributes;
@@ -142,6 +154,29 @@ int wait_for(pid_t child) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// Writes all bytes. Returns false if nobody reads them.
+bool write_all(int to, const std::vector<std::uint8_t>& bytes) {
+    for (std::size_t done = 0; done < bytes.size();) {
+        const ssize_t count = write(to, bytes.data() + done, bytes.size() - done);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return false;
+        done += static_cast<std::size_t>(count);
+    }
+    return true;
+}
+
+/// While it exists, a write to a pipe without a reader fails instead of ending this process.
+class ignore_broken_pipes {
+  public:
+    ignore_broken_pipes() : earlier_(std::signal(SIGPIPE, SIG_IGN)) {}
+    ignore_broken_pipes(const ignore_broken_pipes&) = delete;
+    ignore_broken_pipes& operator=(const ignore_broken_pipes&) = delete;
+    ~ignore_broken_pipes() { std::signal(SIGPIPE, earlier_); }
+
+  private:
+    void (*earlier_)(int);
+};
+
 }  // namespace
 
 bool is_installed(const std::string& program) {
@@ -169,6 +204,37 @@ int run_child(const std::string& program, const std::vector<std::string>& argume
     }
     const int status = wait_for(child);
     if (received_signal != 0) throw interrupted(received_signal, program + " was interrupted");
+    return status;
+}
+
+int feed_child(const std::string& program, const std::vector<std::string>& arguments,
+               const std::function<std::vector<std::uint8_t>()>& next,
+               const std::function<void(const std::string& line)>& on_line) {
+    const forward_signals forwarding;
+    const ignore_broken_pipes ignoring;
+    pipe_ends output, input;
+    const pid_t child = start(program, arguments, output.writing_end(), input.reading_end());
+    running_child = child;
+    if (received_signal != 0) kill(-child, SIGTERM);  // it came before the child was known
+    output.close_writing_end();
+    input.close_reading_end();
+    std::vector<std::string> lines;
+    std::thread reader(
+        [&] { read_lines(output.reading_end(), [&](const std::string& line) { lines.push_back(line); }); });
+    std::exception_ptr failed;
+    try {
+        for (auto bytes = next(); !bytes.empty() && received_signal == 0; bytes = next())
+            if (!write_all(input.writing_end(), bytes)) break;
+    } catch (...) {
+        failed = std::current_exception();
+        kill(-child, SIGKILL);
+    }
+    input.close_writing_end();
+    reader.join();
+    const int status = wait_for(child);
+    if (failed) std::rethrow_exception(failed);
+    if (received_signal != 0) throw interrupted(received_signal, program + " was interrupted");
+    for (const std::string& line : lines) on_line(line);
     return status;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -28,5 +29,12 @@ bool is_installed(const std::string& program);
 /// be started. Precondition: no other thread calls this function at the same time.
 int run_child(const std::string& program, const std::vector<std::string>& arguments,
               const std::function<void(const std::string& line)>& on_line);
+
+/// Runs a program like `run_child`, and writes to its input what `next` returns, until that is empty
+/// or the program reads no more. If `next` throws, the program ends. Calls `on_line` after the program
+/// has ended.
+int feed_child(const std::string& program, const std::vector<std::string>& arguments,
+               const std::function<std::vector<std::uint8_t>()>& next,
+               const std::function<void(const std::string& line)>& on_line);
 
 }  // namespace gs::poses

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -140,15 +141,23 @@ class device_engine final : public engine, device::profiler, checkpointed {
     }
 
     std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
-                              int sh_degree) override {
-        draw(camera, background, std::min(sh_degree, sh_degree_));
-        return downloaded(renderer_.render(), camera);
+                              const render_options& options) override {
+        if (!options.separate_memory) {
+            draw(renderer_, camera, background, options);
+            return downloaded(renderer_.render(), camera);
+        }
+        const std::size_t before = device_.used_bytes();
+        if (!apart_) apart_.emplace(device_);
+        apart_->set_effects(effects_);
+        draw(*apart_, camera, background, options);
+        bytes_apart_ += device_.used_bytes() - before;
+        return downloaded(apart_->render(), camera);
     }
 
     image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
                           std::vector<float>* render) override {
         const photo& shot = views_.held_out()[test_view];
-        draw(shot.camera, background, sh_degree_);
+        draw(renderer_, shot.camera, background);
         const float* exposed = features_.show_held_out(test_view, renderer_.render(), shot.pixels());
         shown_.resize(3 * shot.pixels());
         device_.for_each_index(shown_.size(), clamp_render{exposed, shown_.data()});
@@ -190,7 +199,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
         std::size_t count() const override { return views_.size(); }
         drawn_view draw(std::size_t view) override {
             const photo& shot = views_[view];
-            on_.draw(shot.camera, {}, on_.sh_degree_);
+            on_.draw(on_.renderer_, shot.camera, {});
             return {on_.views_.load_in_order(views_, view).target({}), on_.renderer_.render(),
                     on_.renderer_.splats(), on_.renderer_.tiles_of()};
         }
@@ -245,8 +254,8 @@ class device_engine final : public engine, device::profiler, checkpointed {
             (forecast(2 * count_, sh_degree_).total() - forecast(count_, sh_degree_).total()) /
                 std::max<std::size_t>(count_, 1),
             1);
-        const std::uint64_t in_use =
-            std::max<std::uint64_t>(device_.used_bytes(), forecast(count_, sh_degree_).total());
+        const std::uint64_t in_use = std::max<std::uint64_t>(device_.used_bytes() - bytes_apart_,
+                                                             forecast(count_, sh_degree_).total());
         if (in_use >= setup_.facts.max_device_bytes) return count_;
         return count_ + (setup_.facts.max_device_bytes - in_use) / one;
     }
@@ -385,15 +394,22 @@ class device_engine final : public engine, device::profiler, checkpointed {
 
     /// Renders the model. Reserves more memory if the tile lists do not fit. Waits for the device.
     /// The render is not timed or counted as a step.
-    void draw(const camera& camera, const std::array<float, 3>& background, int sh_degree) {
+    void draw(renderer_type& renderer, const camera& camera, const std::array<float, 3>& background,
+              const render_options& options = {}) {
         const std::uint64_t before = all_pairs();
         device_.pause_times(true);
-        const float* behind = features_.background(camera);
-        renderer_.forward(trained_.values.read(), count_, camera, sh_degree, background, behind);
-        if (const std::uint64_t required = renderer_.instances(); required > renderer_.reserved_instances()) {
-            renderer_.reserve_instances(required, required / 4);
-            renderer_.forward(trained_.values.read(), count_, camera, sh_degree, background, behind);
+        const auto list = [&] {
+            renderer.list(trained_.values.read(), count_, camera, std::min(options.sh_degree, sh_degree_));
+        };
+        list();
+        if (const std::uint64_t required = renderer.instances(); required > renderer.reserved_instances()) {
+            renderer.reserve_instances(required, required / 4);
+            list();
         }
+        if (options.inverse_depth)
+            renderer.blend_depths();
+        else
+            renderer.blend(background, features_.background(camera));
         device_.pause_times(false);
         drawn_pairs_ += all_pairs() - before;
     }
@@ -425,6 +441,8 @@ class device_engine final : public engine, device::profiler, checkpointed {
     effect_set effects_;
     std::uint32_t steps_ = 0;
     std::uint64_t drawn_pairs_ = 0;
+    std::optional<renderer_type> apart_;  ///< see `render_options::separate_memory`
+    std::size_t bytes_apart_ = 0;         ///< device memory that such renders have allocated
     trained_parameters<Device> trained_;
     buffer<raster::visibility> seen_;
     buffer<float> shown_;

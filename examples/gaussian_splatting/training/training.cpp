@@ -354,6 +354,7 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
                    const train_events& events) {
     training training(engine, scene, options, events);
     options.features.schedule(training);
+    events.schedule(training);
     if (options.resume_from != nullptr) training.restore(*options.resume_from);
     return training.run();
 }

@@ -56,13 +56,13 @@ struct progress {
     int iteration = 0, iterations = 0;
     double loss = 0, psnr = 0;  ///< means over the steps since the last report
     std::size_t gaussians = 0;
-    double seconds = 0;  ///< without the `test` and `save` callbacks
+    double seconds = 0;  ///< without the callbacks that `training::call_untimed` calls
 };
 
 struct train_result {
     int iterations = 0;          ///< last iteration; less than planned if training was interrupted
     iteration_plan plan;         ///< with all corrections; training with it needs no clock
-    double seconds = 0;          ///< time of the loop, without the `test` and `save` callbacks
+    double seconds = 0;          ///< time of the loop, without what `training::call_untimed` calls
     double densify_seconds = 0;  ///< part of it in the phases `restructure` and `size_lists`
     std::uint64_t skipped_steps = 0;
     std::uint64_t left_out_gradients = 0;  ///< number of elements that were not finite
@@ -71,6 +71,8 @@ struct train_result {
     std::string growth_limited_by;         ///< option that stopped growth, such as "max_memory", or empty
     std::map<std::string, nlohmann::ordered_json> feature_reports;  ///< parts of metrics.json
 };
+
+class training;
 
 /// The callbacks of the training loop.
 struct train_events {
@@ -90,6 +92,8 @@ struct train_events {
     std::function<bool()> is_interrupted = [] { return false; };
     /// Called before the first iteration, after memory for it has been reserved.
     std::function<void()> begins = [] {};
+    /// Called before the training is restored or begins, to add actions.
+    std::function<void(training&)> schedule = [](training&) {};
 };
 
 /// The mean loss over the steps of several reports of the engine.
@@ -162,6 +166,8 @@ class training {
     /// The device records such faults in the iteration in which they occur. The loop checks for
     /// them every 100 iterations, at the end, and before each test and save.
     train_result run();
+    /// Calls a function whose time does not count as time of training. Waits for the device before.
+    void call_untimed(const std::function<void()>& callback);
 
     train::engine& engine() { return engine_; }
     const gs::scene& scene() const { return scene_; }
@@ -184,7 +190,6 @@ class training {
     void exchange(state_archive& archive);
     void exchange_plan(state_archive& archive);
     void run_phase(train::phase phase, int iteration);
-    void call_untimed(const std::function<void()>& callback);
     double seconds() const { return before_ + clock_() - start_ - outside_; }
 
     train::engine& engine_;

@@ -62,7 +62,7 @@ TEST_CASE("completion in bash: the first word is a command or an option instead 
 TEST_CASE("completion in bash: each command completes its own options") {
     CHECK(bash_offers({"train", "--ite"}) == offers{"--iterations"});
     CHECK(bash_offers({"render", "--ite"}).empty());
-    CHECK(bash_offers({"render", "--orb"}) == offers{"--orbit-views"});
+    CHECK(bash_offers({"render", "--orb"}) == offers{"--orbit", "--orbit-views"});
     CHECK(bash_offers({"train", "-d", "a folder", "--eval", "--qui"}) == offers{"--quiet"});
     gs::cli::settings defaults;
     for (const auto c : gs::cli::all_values<gs::cli::command>) {

@@ -94,6 +94,12 @@ const std::map<std::string, option_case> cases{
     {"--up", {{"-z"}, [](const settings& s) { return s.up == up_axis::minus_z; }}},
     {"--spz-version", {{"3"}, [](const settings& s) { return s.export_options.spz_version == 3; }}},
     {"--orbit-views", {{"3"}, [](const settings& s) { return s.orbit_views == 3; }}},
+    {"--orbit", {{}, [](const settings& s) { return s.orbit; }}},
+    {"--path", {{"path.json"}, [](const settings& s) { return s.camera_path == "path.json"; }}},
+    {"--fps", {{"24"}, [](const settings& s) { return s.frames_per_second == 24; }}},
+    {"--viewer", {{"8123"}, [](const settings& s) { return s.viewer == 8123; }}},
+    {"--port", {{"8124"}, [](const settings& s) { return s.viewer == 8124; }}},
+    {"--viewer-host", {{"::1"}, [](const settings& s) { return s.viewer_host == "::1"; }}},
     {"--quiet", {{}, [](const settings& s) { return s.log_level == log_level::error; }}},
     {"--log-level", {{"warning"}, [](const settings& s) { return s.log_level == log_level::warning; }}},
     {"--config", {{config_with_seed_7()}, [](const settings& s) { return s.seed == 7; }}},
@@ -339,4 +345,17 @@ TEST_CASE("the manual page has every name of every option") {
             CHECK(says(page, {name}));
         }
     });
+}
+
+TEST_CASE("--viewer takes a port or none") {
+    const words train{"train", "-d", "a scene", "-o", "results"};
+    const auto with = [&](words more) {
+        more.insert(more.begin(), train.begin(), train.end());
+        return parse(more).viewer;
+    };
+    CHECK_FALSE(with({}).has_value());
+    CHECK(with({"--viewer"}) == 0);
+    CHECK(with({"--viewer", "--seed", "3"}) == 0);
+    CHECK(with({"--viewer", "8123"}) == 8123);
+    CHECK_THROWS_AS(with({"--viewer", "65536"}), gs::error);
 }

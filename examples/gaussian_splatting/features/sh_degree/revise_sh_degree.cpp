@@ -57,7 +57,8 @@ double change_above(int degree, train::engine& engine, const scene& of,
     double sum = 0, values = 0;
     for (std::size_t i = 0; i < views; ++i) {
         const camera& camera = of.train[i * of.train.size() / views].camera;
-        const auto all = engine.render(camera, background), some = engine.render(camera, background, degree);
+        const auto all = engine.render(camera, background),
+                   some = engine.render(camera, background, {.sh_degree = degree});
         for (std::size_t k = 0; k < all.size(); ++k) {
             const double d = static_cast<double>(shown(all[k]) - shown(some[k]));
             sum += d * d;

@@ -241,10 +241,7 @@ void write_png(const std::filesystem::path& file, int width, int height, const s
     const std::size_t plane = columns * lines;
     if (plane == 0 || planes.size() != 3 * plane)
         throw std::invalid_argument("write_png: three planes of width * height pixels are needed");
-    std::vector<std::uint8_t> rgb(3 * plane);
-    for (std::size_t i = 0; i < plane; ++i)
-        for (std::size_t channel = 0; channel < 3; ++channel)
-            rgb[3 * i + channel] = to_byte(planes[channel * plane + i]);
+    std::vector<std::uint8_t> rgb = interleaved(planes);
     auto rows = row_pointers(rgb.data(), 3 * columns, lines);
     atomic_file_write(file, [&](std::ostream& out) {
         png_writer writer;
