@@ -3,6 +3,7 @@
 #include "compressed_ply/compressed_ply.hpp"
 #include "gltf/gltf.hpp"
 #include "ply/ply.hpp"
+#include "sog/sog.hpp"
 #include "splat/splat.hpp"
 #include "spz/spz.hpp"
 #include "writer.hpp"
@@ -16,6 +17,7 @@ std::span<const writer* const> all_writers() {
         &splat_writer,
         &spz_writer,
         &gltf_writer,
+        &sog_writer,
     };
     return table;
 }
