@@ -237,7 +237,7 @@ rows run_options(settings& s) {
     return grouped(
         "Device and reproducibility",
         {{.names = "--device",
-          .commands = {train, evaluate, render},
+          .commands = {train, evaluate, render, convert},
           .value = choice(s.device),
           .help = "Device to compute on; auto takes a GPU if one can be used"},
          {.names = "--seed",
