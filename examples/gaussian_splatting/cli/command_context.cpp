@@ -32,11 +32,21 @@ scene command_context::load(const load_options& source) const {
     return loaded;
 }
 
-std::unique_ptr<train::engine> command_context::make_engine() const {
+bool command_context::can_use_cuda() const {
     std::string reason;
+    return can_use_cuda(reason);
+}
+
+bool command_context::can_use_cuda(std::string& reason) const {
     const bool usable = settings_.device != device_kind::cpu && train::cuda_is_available(reason);
     if (settings_.device == device_kind::cuda && !usable)
         throw error("--device cuda: no GPU can be used: " + reason);
+    return usable;
+}
+
+std::unique_ptr<train::engine> command_context::make_engine() const {
+    std::string reason;
+    const bool usable = can_use_cuda(reason);
     if (settings_.device == device_kind::automatic && !usable) say("using the CPU: " + reason);
     return usable ? train::make_cuda_engine() : train::make_cpu_engine();
 }

@@ -26,6 +26,9 @@ class command_context {
     /// Reads the scene and transforms it to internal coordinates: see `normalize`.
     scene load() const { return load(settings_.scene); }
     scene load(const load_options& source) const;
+    /// Returns whether --device allows a GPU and one can be used. Throws `error` for --device cuda if
+    /// none can be used.
+    bool can_use_cuda() const;
     /// Returns an engine for the device of --device. Throws `error` for --device cuda if no GPU can
     /// be used.
     std::unique_ptr<train::engine> make_engine() const;
@@ -37,6 +40,8 @@ class command_context {
     void require_no_background_before(const gaussians& model) const;
 
   private:
+    bool can_use_cuda(std::string& reason) const;
+
     const settings& settings_;
 };
 

@@ -53,8 +53,11 @@ void convert(const settings& s) {
     if (std::filesystem::equivalent(s.ply, s.output, ignored))
         throw error("convert would replace its own input " + s.ply + ": give OUT another name");
     require_known_ending(s.output);
+    const bool uses_cuda = context.can_use_cuda();  // refuses an unusable device first
     const gaussians model = edited(read_model(s.ply), s, context);
-    write_model(s.output, model, s.export_options);
+    write_options options = s.export_options;
+    if (uses_cuda) options.k_means = cluster::k_means_on_cuda;
+    write_model(s.output, model, options);
     context.say(s.output + ": " + std::to_string(model.count()) + " Gaussians, " +
                 size_in_bytes(std::filesystem::file_size(s.output)));
 }

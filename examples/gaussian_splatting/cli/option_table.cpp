@@ -239,7 +239,7 @@ rows run_options(settings& s) {
     return grouped(
         "Device and reproducibility",
         {{.names = "--device",
-          .commands = {train, evaluate, render, view},
+          .commands = {train, evaluate, render, convert, view},
           .value = choice(s.device),
           .help = "Device; auto takes a GPU if there is one"},
          {.names = "--seed",

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "../cluster/k_means.hpp"
 #include "../model/gaussians.hpp"
 
 namespace gs {
@@ -15,6 +16,8 @@ namespace gs {
 struct write_options {
     int max_sh_degree = 3;  ///< 0 to 3; coefficients of higher degrees are dropped
     int spz_version = 4;    ///< 3 or 4: see `spz_writer`
+    /// Makes the palette of view-dependent colors in .sog files.
+    cluster::k_means_function k_means = cluster::k_means_on_cpu;
 };
 
 /// A file format for Gaussians. To add one, write its folder and add a row to the table in

@@ -4,6 +4,7 @@
 #include "gltf/gltf.hpp"
 #include "html/html.hpp"
 #include "ply/ply.hpp"
+#include "sog/sog.hpp"
 #include "splat/splat.hpp"
 #include "spz/spz.hpp"
 #include "writer.hpp"
@@ -18,6 +19,7 @@ std::span<const writer* const> all_writers() {
         &html_writer,
         &spz_writer,
         &gltf_writer,
+        &sog_writer,
     };
     return table;
 }

@@ -115,6 +115,18 @@ TEST_CASE("convert writes version 3 of SPZ on demand, which is a gzip file") {
     CHECK(read_file(c.file("b.spz")).starts_with("\x1f\x8b"));
 }
 
+TEST_CASE("convert clusters colors on the device of --device") {
+    const conversion c(5);
+    CHECK(c.result_of({"--device", "cpu"}, "a.sog").count() == 5);
+#if defined(WARPAGG_TEST_CUDA)
+    CHECK(c.result_of({"--device", "cuda"}, "b.sog").count() == 5);
+#else
+    check_refusal({"convert", c.file("in.ply"), c.file("b.sog"), "--device", "cuda"},
+                  {"--device cuda", "GPU"});
+    CHECK_FALSE(fs::exists(c.file("b.sog")));
+#endif
+}
+
 TEST_CASE("convert refuses files and values that it cannot use, and leaves files as they are") {
     const conversion c(3);
     const std::string in = c.file("in.ply"), out = c.file("out.ply");

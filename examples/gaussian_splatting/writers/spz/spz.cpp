@@ -22,8 +22,9 @@ namespace gs {
 namespace {
 
 constexpr int usual_fractional_bits = 12, most_fractional_bits = 24;
-constexpr double color_scale = 0.15;         ///< bytes per SH coefficient, divided by 255
-constexpr int step_degree_1 = 8, step = 16;  ///< of SH bytes: 5 and 4 bits
+constexpr double color_scale = 0.15;  ///< bytes per SH coefficient, divided by 255
+/// Step of SH bytes. With the 8 and 16 that other programs use, glossy surfaces lose their reflections.
+constexpr int sh_step = 2;
 
 /// Calls `f(i)` for each i in [0, count), in parallel.
 void for_each_gaussian(std::size_t count, const auto& f) {
@@ -102,11 +103,9 @@ void unpack_rotation_of_version_2(const std::uint8_t* bytes, float* q) {
     store_rotation(xyzw, q);
 }
 
-/// Returns the byte of an SH coefficient, rounded to a multiple of `multiple`, so that it needs fewer
+/// Returns the byte of an SH coefficient, rounded to a multiple of `sh_step`, so that it needs fewer
 /// bits.
-std::uint8_t pack_sh(float x, int multiple) {
-    return to_byte(std::round((128 * double(x) + 128) / multiple) * multiple);
-}
+std::uint8_t pack_sh(float x) { return to_byte(std::round((128 * double(x) + 128) / sh_step) * sh_step); }
 
 spz_content pack(const std::filesystem::path& file, const gaussians& model, int sh_degree, int version) {
     spz_content content{.version = version,
@@ -127,8 +126,7 @@ spz_content pack(const std::filesystem::path& file, const gaussians& model, int 
             content[scale][k] = to_byte(16 * (double(model.log_scale[k]) + 10));
         }
         for (std::size_t k = 0; k < sh_file; ++k)
-            content[sh][i * sh_file + k] = pack_sh(turn_about_x::sh[k / 3] * model.sh_rest[i * sh_model + k],
-                                                   k < 9 ? step_degree_1 : step);
+            content[sh][i * sh_file + k] = pack_sh(turn_about_x::sh[k / 3] * model.sh_rest[i * sh_model + k]);
     });
     return content;
 }

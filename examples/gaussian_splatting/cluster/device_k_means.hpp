@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "../device/device.hpp"
+#include "k_means.hpp"
+#include "kernels.hpp"
+
+namespace gs::cluster {
+
+/// `k_means_function` on any device.
+template <device::device Device>
+class device_k_means {
+    template <class T>
+    using buffer = typename Device::template buffer<T>;
+
+  public:
+    clustering run(const std::vector<float>& points, std::size_t width, std::size_t most) {
+        width_ = width;
+        const std::size_t count = points.size() / width;
+        if (count == 0) return {};
+        buffer<float> unsorted;
+        unsorted.resize(points.size());
+        device_.upload(unsorted.data(), points.data(), points.size());
+        const std::size_t k = std::min(most, count);
+        const std::vector<std::uint32_t> coarse = coarse_labels(unsorted, count, k);
+
+        const std::vector<std::uint32_t> order = sorted_by(coarse);
+        buffer<std::uint32_t> device_order;
+        upload(device_order, order);
+        points_.resize(points.size());
+        device_.for_each_index(points.size(),
+                               gather_points{unsorted.data(), device_order.data(), width, points_.data()});
+        device_.wait();  // before `unsorted` goes
+        const std::vector<segment> segments = fine_segments(coarse, k);
+        fit(segments, fine_iterations);
+        return result(segments, order);
+    }
+
+  private:
+    static constexpr std::size_t sample_size = 1 << 16;
+    static constexpr int coarse_iterations = 5, fine_iterations = 4;
+
+    template <class T>
+    void upload(buffer<T>& to, const std::vector<T>& from) {
+        to.resize(from.size());
+        device_.upload(to.data(), from.data(), from.size());
+        device_.wait();
+    }
+
+    /// Clusters a sample coarsely, and returns the coarse cluster of each point.
+    std::vector<std::uint32_t> coarse_labels(const buffer<float>& all, std::size_t count, std::size_t k) {
+        const auto clusters = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(k))));
+        std::vector<std::uint32_t> sample(std::min(count, sample_size));
+        for (std::size_t i = 0; i < sample.size(); ++i)
+            sample[i] = static_cast<std::uint32_t>(i * count / sample.size());
+        buffer<std::uint32_t> device_sample;
+        upload(device_sample, sample);
+        points_.resize(sample.size() * width_);
+        device_.for_each_index(sample.size() * width_,
+                               gather_points{all.data(), device_sample.data(), width_, points_.data()});
+        const std::vector<segment> one{
+            {0, static_cast<std::uint32_t>(sample.size()), 0, groups_for(clusters), clusters}};
+        fit(one, coarse_iterations);
+        resize_labels(count);
+        device_.zero(segment_of_point_.data(), count);
+        assign(all.data(), count);
+        std::vector<std::uint32_t> labels(count);
+        device_.download(labels.data(), labels_.data(), count);
+        return labels;
+    }
+
+    static std::uint32_t groups_for(std::size_t centroids) {
+        return static_cast<std::uint32_t>((centroids + group - 1) / group);
+    }
+
+    /// Returns the indices of the points, sorted by label.
+    static std::vector<std::uint32_t> sorted_by(const std::vector<std::uint32_t>& labels) {
+        std::vector<std::uint32_t> starts(*std::ranges::max_element(labels) + 1), order(labels.size());
+        for (const std::uint32_t label : labels) ++starts[label];
+        std::uint32_t first = 0;
+        for (std::uint32_t& start : starts) first += std::exchange(start, first);
+        for (std::size_t i = 0; i < labels.size(); ++i)
+            order[starts[labels[i]]++] = static_cast<std::uint32_t>(i);
+        return order;
+    }
+
+    /// Distributes `k` centroids to the coarse clusters in proportion to their points. Each gets at
+    /// least one. Rounds to whole groups where possible, because a group takes the same time with
+    /// any number of centroids.
+    static std::vector<segment> fine_segments(const std::vector<std::uint32_t>& coarse, std::size_t k) {
+        std::vector<std::uint32_t> sizes(*std::ranges::max_element(coarse) + 1);
+        for (const std::uint32_t label : coarse) ++sizes[label];
+        std::erase(sizes, 0U);
+        std::vector<segment> segments;
+        std::uint32_t point = 0, first_group = 0;
+        // The first centroid of each cluster is not part of what is distributed.
+        const std::size_t rest_of_k = k - sizes.size(), rest_of_points = coarse.size() - sizes.size();
+        std::size_t points_before = 0, given = 0;
+        for (const std::uint32_t size : sizes) {
+            points_before += size - 1;
+            const std::size_t share =
+                rest_of_points == 0 ? 0 : points_before * rest_of_k / rest_of_points - given;
+            given += share;
+            const auto centroids = static_cast<std::uint32_t>(1 + share);
+            segments.push_back(
+                {point, point + size, first_group, first_group + groups_for(centroids), centroids});
+            point += size;
+            first_group = segments.back().end_group;
+        }
+        return segments;
+    }
+
+    void resize_labels(std::size_t count) {
+        segment_of_point_.resize(count);
+        labels_.resize(count);
+        list_.resize(count);
+    }
+
+    /// Clusters `points_` within the segments: sets `centroids_` and `labels_`.
+    void fit(const std::vector<segment>& segments, int iterations) {
+        const std::size_t count = segments.back().end_point, groups = segments.back().end_group;
+        std::vector<std::uint32_t> of_point(count), of_group(groups);
+        for (std::size_t s = 0; s < segments.size(); ++s) {
+            std::fill(of_point.begin() + segments[s].first_point, of_point.begin() + segments[s].end_point,
+                      static_cast<std::uint32_t>(s));
+            std::fill(of_group.begin() + segments[s].first_group, of_group.begin() + segments[s].end_group,
+                      static_cast<std::uint32_t>(s));
+        }
+        resize_labels(count);
+        upload(segments_, segments);
+        upload(segment_of_point_, of_point);
+        upload(segment_of_group_, of_group);
+        slots_ = groups * group;
+        centroids_.resize(slots_ * width_);
+        half_squares_.resize(slots_);
+        starts_.resize(slots_ + 1);
+        device_.zero(centroids_.data(), slots_ * width_);
+        device_.for_each_index(slots_, seed_centroids{points_.data(), width_, segments_.data(),
+                                                      segment_of_group_.data(), centroids_.data()});
+        assign(points_.data(), count);
+        for (int i = 0; i < iterations; ++i) {
+            device_.sort_pairs(labels_, list_, count);
+            device_.for_each_index(slots_ + 1, find_starts{labels_.data(), count, starts_.data()});
+            device_.for_each_index(slots_ * width_, move_centroids{points_.data(), width_, list_.data(),
+                                                                   starts_.data(), centroids_.data()});
+            assign(points_.data(), count);
+        }
+    }
+
+    void assign(const float* points, std::size_t count) {
+        device_.for_each_index(slots_, half_squares{centroids_.data(), width_, segments_.data(),
+                                                    segment_of_group_.data(), half_squares_.data()});
+        constexpr std::size_t at_once = assign_points::points_at_once;
+        device_.for_each_index(
+            (count + at_once - 1) / at_once,
+            assign_points{count, points, width_, centroids_.data(), half_squares_.data(), segments_.data(),
+                          segment_of_point_.data(), labels_.data(), list_.data()});
+    }
+
+    /// Downloads the clustering, without the unused slots, in the original order of the points.
+    clustering result(const std::vector<segment>& segments, const std::vector<std::uint32_t>& order) {
+        std::vector<std::uint32_t> labels(order.size()), number_of_slot(slots_);
+        std::vector<float> slots(slots_ * width_);
+        device_.download(labels.data(), labels_.data(), labels.size());
+        device_.download(slots.data(), centroids_.data(), slots.size());
+        clustering all;
+        std::uint32_t number = 0;
+        for (const segment& s : segments)
+            for (std::size_t slot = s.first_group * group; slot < s.first_group * group + s.centroids;
+                 ++slot) {
+                number_of_slot[slot] = number++;
+                for (std::size_t j = 0; j < width_; ++j)
+                    all.centroids.push_back(slots[centroid_index(slot, j, width_)]);
+            }
+        all.labels.resize(order.size());
+        for (std::size_t i = 0; i < order.size(); ++i) all.labels[order[i]] = number_of_slot[labels[i]];
+        return all;
+    }
+
+    Device device_;
+    std::size_t width_ = 0, slots_ = 0;
+    buffer<float> points_, centroids_, half_squares_;
+    buffer<segment> segments_;
+    buffer<std::uint32_t> segment_of_point_, segment_of_group_, labels_, list_, starts_;
+};
+
+}  // namespace gs::cluster
