@@ -4,15 +4,13 @@
 
 #include <atomic>
 #include <exception>
-#include <mutex>
-#include <set>
 #include <thread>
 #include <utility>
 
 #include "../core/error.hpp"
 #include "../image/image.hpp"
 #include "access.hpp"
-#include "connection.hpp"
+#include "limited_server.hpp"
 #include "worker_threads.hpp"
 
 namespace gs::embedded {
@@ -28,43 +26,6 @@ using handler_result = httplib::Server::HandlerResponse;
 constexpr std::size_t most_body_bytes = 1024;
 constexpr std::size_t longest_page_name = 40;
 constexpr int jpeg_quality = 85;
-
-/// A server that answers one request per connection, within the limits of `connection`.
-class limited_server final : public httplib::Server {
-  public:
-    /// Lets connections of many pages wait until they are accepted; httplib lets only five wait.
-    void let_connections_wait() { ::listen(svr_sock_, 64); }
-
-    /// Ends the reading of all connections, so that silent clients do not delay the end.
-    void hang_up() {
-        const std::lock_guard held(lock_);
-        has_hung_up_ = true;
-        for (const socket_t socket : open_) ::shutdown(socket, SHUT_RD);
-    }
-
-  private:
-    bool process_and_close_socket(socket_t socket) override {
-        {
-            const std::lock_guard held(lock_);
-            open_.insert(socket);
-            if (has_hung_up_) ::shutdown(socket, SHUT_RD);
-        }
-        connection client(socket);
-        bool is_closed = false;
-        const bool answered = process_request(client, true, is_closed, nullptr);
-        client.finish();
-        {
-            const std::lock_guard held(lock_);
-            open_.erase(socket);
-        }
-        ::close(socket);
-        return answered;
-    }
-
-    std::mutex lock_;
-    std::set<socket_t> open_;
-    bool has_hung_up_ = false;
-};
 
 void send_text(Response& response, int status, const std::string& sentence) {
     response.status = status;

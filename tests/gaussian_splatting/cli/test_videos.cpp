@@ -13,9 +13,9 @@ namespace {
 using namespace gs_test;
 
 /// A model of the scene with spheres.
-class small_model {
+class spheres_model {
   public:
-    small_model() {
+    spheres_model() {
         check_success({"train", "-d", "synthetic:spheres", "-r", "32", "-i", "5", "--effects", "none",
                        "--device", "cpu", "-q", "-o", (folder_ / "run").string()});
     }
@@ -58,7 +58,7 @@ const std::string two_cameras = R"({"cameras": [
 
 TEST_CASE("videos: an orbit and a path become H.264 in MP4 with even sides") {
     if (!has_ffmpeg()) return;
-    const small_model model;
+    const spheres_model model;
     const fs::path video = model.file("new folder/a video.mp4");
     const std::string read = "codec_name,width,height,pix_fmt,r_frame_rate,nb_read_frames";
     check_success(model.render({"-o", video.string(), "-r", "65", "--seconds", "0.5", "--fps", "12"}));
@@ -72,7 +72,7 @@ TEST_CASE("videos: an orbit and a path become H.264 in MP4 with even sides") {
 }
 
 TEST_CASE("videos: an orbit of a scene has the size and the shape of its views") {
-    const small_model model;
+    const spheres_model model;
     const fs::path images = model.file("orbit");
     check_success(model.render(
         {"-o", images.string(), "-d", "synthetic:spheres", "-r", "32", "--orbit", "--orbit-views", "3"}));
@@ -84,7 +84,7 @@ TEST_CASE("videos: an orbit of a scene has the size and the shape of its views")
 }
 
 TEST_CASE("videos: a path becomes images in a folder") {
-    const small_model model;
+    const spheres_model model;
     write_file(model.file("path.json"), two_cameras);
     const fs::path images = model.file("images");
     check_success(model.render({"-o", images.string(), "--path", model.file("path.json").string(),
@@ -96,7 +96,7 @@ TEST_CASE("videos: a path becomes images in a folder") {
 }
 
 TEST_CASE("videos: without ffmpeg, a sentence names the remedy") {
-    const small_model model;
+    const spheres_model model;
     const char* path = std::getenv("PATH");
     const std::string before = path ? path : "";
     setenv("PATH", model.file("nothing").c_str(), 1);
@@ -107,7 +107,7 @@ TEST_CASE("videos: without ffmpeg, a sentence names the remedy") {
 }
 
 TEST_CASE("videos: a failure of ffmpeg leaves an earlier video as it was") {
-    const small_model model;
+    const spheres_model model;
     const fs::path programs = model.file("programs"), video = model.file("a.mp4");
     write_file(programs / "ffmpeg",
                "#!/bin/sh\nfor last; do :; done\necho half > \"${last#file:}\"\n"
@@ -123,7 +123,7 @@ TEST_CASE("videos: a failure of ffmpeg leaves an earlier video as it was") {
 }
 
 TEST_CASE("videos: the views of a scene are no motion, and --orbit-views needs an orbit") {
-    const small_model model;
+    const spheres_model model;
     check_refusal(model.render({"-o", model.file("a.mp4").string(), "-d", "synthetic:spheres", "-r", "32"}),
                   gs::poses::is_installed("ffmpeg") ? words{"--orbit", "--path"} : words{"ffmpeg"});
     check_refusal(model.render({"-o", "x", "-d", "synthetic:spheres", "--orbit-views", "3"}), {"--orbit"});

@@ -49,7 +49,7 @@ TEST_CASE("a render of inverse depths has the weights of the colors") {
             const auto colors = e->render(c, {0, 0, 0}, {.separate_memory = true});
             const auto depths = e->render(c, {0, 0, 0}, {.inverse_depth = true, .separate_memory = true});
             constexpr std::size_t pixels = std::size_t{side} * side;
-            CHECK(colors[pixels / 2 + side / 2] > 0.9f);
+            CHECK(colors[pixels / 2 + side / 2] > 0.5f);  // something is drawn
             for (std::size_t i = 0; i < pixels; ++i) {
                 CHECK(depths[i] == doctest::Approx(colors[i] / distance).epsilon(1e-5));
                 CHECK(depths[pixels + i] == 0);

@@ -85,7 +85,10 @@ class recorder final : public gs::train::engine, gs::device::profiler {
         return {{static_cast<double>(first + last) / 2, 1}, 0, {}};
     }
     gs::train::feature_state& feature(std::string_view) override { return sh_; }
-    std::vector<float> render(const gs::camera&, const std::array<float, 3>&, int) override { return {}; }
+    std::vector<float> render(const gs::camera&, const std::array<float, 3>&,
+                              const gs::train::render_options&) override {
+        return {};
+    }
     gs::train::image_quality measure(std::size_t, const std::array<float, 3>&, std::vector<float>*) override {
         return {};
     }
