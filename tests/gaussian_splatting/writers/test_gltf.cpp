@@ -78,7 +78,7 @@ struct glb {
     }
 };
 
-gs::gaussians read(const std::string& data) {
+gs::gaussians read_glb_bytes(const std::string& data) {
     const temporary_folder folder;
     gs_test::write_file(folder / "a.glb", data);
     return gs::gltf_writer.read(folder / "a.glb");
@@ -139,7 +139,7 @@ TEST_CASE("gltf: attributes may be interleaved") {
     }
     file.view("POSITION") = {{"buffer", 0}, {"byteOffset", at - 4}, {"byteLength", 60}, {"byteStride", 28}};
     file.accessor("POSITION")["byteOffset"] = 4;
-    const gs::gaussians found = read(file.file());
+    const gs::gaussians found = read_glb_bytes(file.file());
     CHECK(found.mean == std::vector<float>{1, -2, -3, 11, -12, -13});
     CHECK(found.log_scale[0] == doctest::Approx(model.log_scale[0]));
 }
@@ -149,7 +149,7 @@ TEST_CASE("gltf: an opacity of 0 or 1 and a scale of 0 are read as finite values
     file.set_float("KHR_gaussian_splatting:OPACITY", 0, 0);
     file.set_float("KHR_gaussian_splatting:OPACITY", 1, 1);
     file.set_float("KHR_gaussian_splatting:SCALE", 0, 0);
-    const gs::gaussians found = read(file.file());
+    const gs::gaussians found = read_glb_bytes(file.file());
     CHECK(found.opacity[0] < -15);
     CHECK(found.opacity[1] > 15);
     CHECK(std::isfinite(found.opacity[0]));

@@ -58,7 +58,7 @@ std::string zipped(const std::string& data) {
     return result;
 }
 
-gs::gaussians read(const std::string& data) {
+gs::gaussians read_spz_bytes(const std::string& data) {
     const temporary_folder folder;
     write_file(folder / "a.spz", data);
     return gs::spz_writer.read(folder / "a.spz");
@@ -152,7 +152,7 @@ TEST_CASE("spz: version 2 stores x y z of a rotation as bytes") {
     content = with(content, 4, std::uint32_t{2});
     const std::size_t rotation = content.size() - 13;
     content.replace(rotation, 4, "\xff\x80\x80", 3);  // x = 1
-    const gs::gaussians model = read(zipped(content));
+    const gs::gaussians model = read_spz_bytes(zipped(content));
     CHECK(model.quaternion[1] == doctest::Approx(1));
     CHECK(model.quaternion[0] == doctest::Approx(0));
     CHECK(model.mean == std::vector<float>{1, 2, -0.5f});
@@ -162,7 +162,7 @@ TEST_CASE("spz: SH coefficients of degree 4 are dropped") {
     std::string content = expected_content(3);
     content = with(content, 12, std::uint8_t{4});
     content += std::string(3 * 24 - 9, '\x90');
-    const gs::gaussians model = read(zipped(content));
+    const gs::gaussians model = read_spz_bytes(zipped(content));
     CHECK(model.sh_degree == 3);
     CHECK(model.sh_rest[0] == 0.5f);
     CHECK(model.sh_rest[44] == doctest::Approx(0.125));
@@ -214,5 +214,5 @@ TEST_CASE("spz: malformed files of version 3 are refused with the field") {
     file[file.size() - 8] = static_cast<char>(file[file.size() - 8] ^ 1);  // the checksum
     CHECK(refused(file) == "its data end early or cannot be decompressed");
     // Extensions follow the Gaussians.
-    CHECK(read(zipped(with(content, 14, std::uint8_t{2}) + "an extension")).count() == 300);
+    CHECK(read_spz_bytes(zipped(with(content, 14, std::uint8_t{2}) + "an extension")).count() == 300);
 }

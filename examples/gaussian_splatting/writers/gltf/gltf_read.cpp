@@ -19,7 +19,7 @@
 namespace gs {
 namespace {
 
-using json = nlohmann::json;
+using input_json = nlohmann::json;
 
 constexpr std::uint32_t longest_json = 1 << 20;
 
@@ -29,7 +29,7 @@ class gltf_input {
 
     gaussians read() {
         read_json();
-        const json* const attributes = find_attributes();
+        const input_json* const attributes = find_attributes();
         if (!attributes) return {};
         require_no_transformation();
         int sh_degree = 0;
@@ -78,7 +78,7 @@ class gltf_input {
             fail("its JSON has " + std::to_string(text.size) + " bytes, which is too much");
         std::string bytes(text.size, '\0');
         read_raw(bytes.data(), bytes.size());
-        document_ = parse_json<json>(bytes, file_.name + ": its first chunk");
+        document_ = parse_json<input_json>(bytes, file_.name + ": its first chunk");
         const std::uint64_t rest = file_.size - least - text.size;
         if (rest == 0) return;
         if (rest < sizeof binary) fail("its second chunk is too short");
@@ -90,59 +90,59 @@ class gltf_input {
     }
 
     /// Returns a member, or null if the value is no object or has no such member.
-    static const json* member(const json* value, const char* name) {
+    static const input_json* member(const input_json* value, const char* name) {
         if (!value || !value->is_object()) return nullptr;
         const auto found = value->find(name);
         return found == value->end() ? nullptr : &*found;
     }
     /// Returns an element of the array that is a member of the document, or null.
-    const json* element(const char* array, std::uint64_t index) const {
-        const json* const all = member(&document_, array);
+    const input_json* element(const char* array, std::uint64_t index) const {
+        const input_json* const all = member(&document_, array);
         return all && all->is_array() && index < all->size() ? &(*all)[index] : nullptr;
     }
     /// Returns a member that is a whole number, or `otherwise`.
-    static std::uint64_t whole(const json* value, const char* name, std::uint64_t otherwise) {
-        const json* const found = member(value, name);
+    static std::uint64_t whole(const input_json* value, const char* name, std::uint64_t otherwise) {
+        const input_json* const found = member(value, name);
         return found && found->is_number_unsigned() ? found->get<std::uint64_t>() : otherwise;
     }
 
     /// Returns the attributes of the first primitive with the extension, or null for a file that
     /// uses the extension but has no mesh.
-    const json* find_attributes() const {
-        const json* const meshes = member(&document_, "meshes");
+    const input_json* find_attributes() const {
+        const input_json* const meshes = member(&document_, "meshes");
         if (meshes && meshes->is_array())
-            for (const json& mesh : *meshes) {
-                const json* const primitives = member(&mesh, "primitives");
+            for (const input_json& mesh : *meshes) {
+                const input_json* const primitives = member(&mesh, "primitives");
                 if (!primitives || !primitives->is_array()) continue;
-                for (const json& primitive : *primitives) {
+                for (const input_json& primitive : *primitives) {
                     if (!member(member(&primitive, "extensions"), gltf_extension)) continue;
-                    const json* const attributes = member(&primitive, "attributes");
+                    const input_json* const attributes = member(&primitive, "attributes");
                     if (!attributes || !attributes->is_object()) fail("its primitive has no attributes");
                     return attributes;
                 }
             }
-        const json* const used = member(&document_, "extensionsUsed");
+        const input_json* const used = member(&document_, "extensionsUsed");
         if (!meshes && used && std::ranges::find(*used, gltf_extension) != used->end()) return nullptr;
         fail("it has no mesh with " + std::string(gltf_extension));
     }
 
     void require_no_transformation() const {
-        const json* const nodes = member(&document_, "nodes");
+        const input_json* const nodes = member(&document_, "nodes");
         if (!nodes || !nodes->is_array()) return;
-        for (const json& node : *nodes)
+        for (const input_json& node : *nodes)
             for (const char* name : {"matrix", "translation", "rotation", "scale"})
                 if (member(&node, name)) fail("a node has a " + std::string(name) + ", which cannot be read");
     }
 
-    source source_of(const gltf_attribute& a, const json& attributes) const {
+    source source_of(const gltf_attribute& a, const input_json& attributes) const {
         constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
         const std::string where = "its attribute " + a.name + " ";
-        const json* const accessor = element("accessors", whole(&attributes, a.name.c_str(), none));
+        const input_json* const accessor = element("accessors", whole(&attributes, a.name.c_str(), none));
         if (!accessor) fail(where + "has no accessor");
-        const json* const type = member(accessor, "type");
+        const input_json* const type = member(accessor, "type");
         if (whole(accessor, "componentType", 0) != gltf_float || !type || *type != a.type)
             fail(where + "is not a " + a.type + " of floats");
-        const json* const view = element("bufferViews", whole(accessor, "bufferView", none));
+        const input_json* const view = element("bufferViews", whole(accessor, "bufferView", none));
         if (!view || whole(view, "buffer", none) != 0) fail(where + "has no view of the binary data");
         const std::uint64_t row = sizeof(float) * a.width;
         source s{.count = whole(accessor, "count", none), .stride = whole(view, "byteStride", row)};
@@ -210,7 +210,7 @@ class gltf_input {
     }
 
     opened_file file_;
-    json document_;
+    input_json document_;
     std::uint64_t binary_offset_ = 0, binary_size_ = 0;
 };
 

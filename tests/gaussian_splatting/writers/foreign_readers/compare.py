@@ -21,12 +21,12 @@ BOUNDS = {
     # A rotation of .splat may have one component of 1, which is stored as 127/128, beside rounded ones.
     "splat": (0, 1e-5, math.sqrt(1 + 3 * 0.25) / 128, BYTE, BYTE / 0.282, None),
     "spz": (0.5 / 4096, 0.5 / 16, 0.0021, BYTE, BYTE / 0.15, 1 / 128),
-    "their spz": (0.5 / 4096, 0.5 / 16, 0.0021, BYTE, BYTE / 0.15, 8 / 128),
+    "their spz": (0.5 / 4096, 0.5 / 16, 0.0021, BYTE, BYTE / 0.15, 8.5 / 128),
     "glb": (0, 1e-5, 1e-6, 1e-6, 0, 0),
     # A codebook is coarse where a model has few values.
-    "sog": (1e-3, (4 / 256,), 0.0081, BYTE, (4 / 256,), None),
+    "sog": (1e-3, (8 / 256,), 0.0081, BYTE, (8 / 256,), None),
     # splat-transform rounds toward zero, so errors are up to a whole step.
-    "their sog": (1e-3, (4 / 256,), 0.0162, 2 * BYTE, (4 / 256,), None),
+    "their sog": (1e-3, (8 / 256,), 0.0162, 2 * BYTE, (8 / 256,), None),
 }
 # Formats clip values to a range: of log of scale, f_dc, f_rest.
 UNLIMITED = (-math.inf, math.inf)
