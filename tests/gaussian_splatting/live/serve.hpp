@@ -11,6 +11,7 @@
 #include <array>
 #include <atomic>
 #include <cstring>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ namespace gs_test {
 /// A server whose frames come from the test instead of an engine.
 struct fake_server {
     std::atomic<int> frames = 0, presses = 0;
+    std::mutex lock{};
     gs::live::view_request last{};  ///< of the last frame; read it only when no request is running
     gs::live::http_server server{{.port = any_port()},
                                  {.scene = [] { return std::string(R"({"views":[]})"); },
@@ -44,7 +46,10 @@ struct fake_server {
 
     gs::live::mailbox::answer draw(const gs::live::view_request& request) {
         ++frames;
-        last = request;
+        {
+            const std::lock_guard held(lock);
+            last = request;
+        }
         const auto bytes = static_cast<std::size_t>(3 * request.width * request.height);
         return {gs::live::mailbox::outcome::drawn,
                 {request.width, request.height, std::vector<std::uint8_t>(bytes, 128)},
