@@ -13,13 +13,8 @@ namespace gs {
 
 std::span<const writer* const> all_writers() {
     static constexpr const writer* table[] = {
-        &ply_writer,
-        &compressed_ply_writer,
-        &splat_writer,
-        &html_writer,
-        &spz_writer,
-        &gltf_writer,
-        &sog_writer,
+        &ply_writer, &compressed_ply_writer, &splat_writer, &html_writer,
+        &spz_writer, &gltf_writer,           &sog_writer,
     };
     return table;
 }
