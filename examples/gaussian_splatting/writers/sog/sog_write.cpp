@@ -191,6 +191,18 @@ class sog_output {
     std::vector<named_image> images_;
 };
 
+/// Throws `error` for colors that `k_means` cannot cluster.
+void require_clusterable(const std::filesystem::path& file, const gaussians& model) {
+    constexpr float end = 1e9f;
+    const auto found = std::ranges::find_if(model.sh_rest, [](float x) { return std::abs(x) >= end; });
+    if (found == model.sh_rest.end()) return;
+    const auto place = static_cast<std::size_t>(found - model.sh_rest.begin());
+    throw error("cannot write " + file.string() + ": the view-dependent color of Gaussian " +
+                std::to_string(place / static_cast<std::size_t>(model.rest_width())) +
+                " is beyond the range of SOG files, which ends at 10^9; use another format or "
+                "--max-sh-degree 0");
+}
+
 constexpr std::string_view endings[] = {".sog"};
 
 }  // namespace
@@ -198,6 +210,7 @@ constexpr std::string_view endings[] = {".sog"};
 void write_sog(const std::filesystem::path& file, const gaussians& model, const write_options& options) {
     const int sh_degree = std::min(model.sh_degree, options.max_sh_degree);
     require_writable(file, model, sh_degree);
+    if (sh_degree > 0) require_clusterable(file, model);
     sog_output output(model, sh_degree, options.k_means);
     if (!output.fits())
         throw error("cannot write " + file.string() +
