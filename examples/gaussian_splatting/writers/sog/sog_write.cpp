@@ -63,7 +63,10 @@ class sog_output {
 
     std::string bundle() {
         meta_ = {{"version", 2}, {"asset", {{"generator", "warpagg"}}}, {"count", model_.count()}};
-        if (model_.antialiased) meta_["model"] = "antialiased";
+        if (model_.antialiased) {
+            meta_["antialias"] = true;
+            meta_["model"] = "antialiased";  // newer programs read only this
+        }
         add_means();
         add_scales();
         add_rotations();
