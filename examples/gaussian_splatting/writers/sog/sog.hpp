@@ -22,7 +22,7 @@ namespace gs {
 ///
 /// Reading throws `error` with the file and the field for: an archive or an image that is damaged, a
 /// missing image, an image that is too small, a number that is not finite, an index beyond the palette,
-/// more than 100 Gaussians for each byte of the file.
+/// more than 10 Gaussians for each byte of the file.
 extern const writer sog_writer;
 
 }  // namespace gs

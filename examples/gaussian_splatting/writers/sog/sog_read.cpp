@@ -22,7 +22,7 @@ namespace {
 
 using input_json = nlohmann::json;
 
-constexpr std::uint64_t longest_meta = 1 << 20, gaussians_per_byte = 100;
+constexpr std::uint64_t longest_meta = 1 << 20, gaussians_per_byte = 10;
 constexpr std::size_t palette_columns = 64, largest_palette = 65536;
 
 class sog_input {
