@@ -69,18 +69,19 @@ TEST_CASE("convert writes every format that its ending names, from every format 
 }
 
 TEST_CASE("convert crops, removes floaters and decimates, in this order") {
-    const conversion c(13);
+    const conversion c(20);
     CHECK(c.x_of({"--crop", "3,-1,-1,5.5,1,1"}) == std::vector<float>{3, 4, 5});
     CHECK(c.x_of({"--crop", "5.5,1,1,3,-1,-1"}) == std::vector<float>{3, 4, 5});
     CHECK(c.x_of({"--crop", "-1,-1,-1,0,1,1"}) == std::vector<float>{0});
     CHECK(c.x_of({"--decimate", "2"}) == std::vector<float>{0, 1});
-    CHECK(c.x_of({"--decimate", "25%"}) == std::vector<float>{0, 1, 2, 3});
+    CHECK(c.x_of({"--decimate", "11%"}) == std::vector<float>{0, 1, 2});
     CHECK(c.x_of({"--crop", "3,-1,-1,9,1,1", "--decimate", "2"}) == std::vector<float>{3, 4});
-    // Only numbers 0 to 6 have an opacity above 0.5, and numbers 0 to 8 one above 0.2.
-    const auto kept = c.x_of({"--remove-floaters"});
-    CHECK(kept == std::vector<float>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+    // Numbers 14 to 19 have an opacity below 0.02.
+    CHECK(c.result_of({"--remove-floaters"}).count() == 14);
+    CHECK(c.result_of({"--decimate", "50%", "--remove-floaters"}).count() == 7);
+    CHECK(c.x_of({"--remove-floaters", "--crop", "13,-1,-1,19,1,1"}) == std::vector<float>{13});
     const outcome o = c.run_with({"--decimate", "2"});
-    CHECK(says(o.out, {"--decimate keeps 2 of 13 Gaussians", "out.ply: 2 Gaussians, "}));
+    CHECK(says(o.out, {"--decimate keeps 2 of 20 Gaussians", "out.ply: 2 Gaussians, "}));
     CHECK(c.run_with({"--decimate", "2", "--quiet"}).out.empty());
 }
 
