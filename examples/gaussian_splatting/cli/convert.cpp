@@ -58,6 +58,7 @@ void convert(const settings& s) {
     write_options options = s.export_options;
     if (uses_cuda) options.k_means = cluster::k_means_on_cuda;
     write_model(s.output, model, options);
+    for (const std::string& part : left_out(s.output, model, options)) context.warn(part);
     context.say(s.output + ": " + std::to_string(model.count()) + " Gaussians, " +
                 size_in_bytes(std::filesystem::file_size(s.output)));
 }

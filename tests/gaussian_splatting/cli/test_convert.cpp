@@ -116,6 +116,14 @@ TEST_CASE("convert writes version 3 of SPZ on demand, which is a gzip file") {
     CHECK(read_file(c.file("b.spz")).starts_with("\x1f\x8b"));
 }
 
+TEST_CASE("convert warns about what the format cannot hold") {
+    const conversion c(2);
+    CHECK(says(c.run_with({}, "a.splat").out, {"warning:", "a.splat leaves out", "view dependence"}));
+    CHECK_FALSE(says(c.run_with({}, "a.spz").out, {"warning:"}));
+    CHECK_FALSE(says(c.run_with({"--max-sh-degree", "0"}, "a.splat").out, {"warning:"}));
+    CHECK(c.run_with({"--quiet"}, "a.splat").out.empty());
+}
+
 TEST_CASE("convert clusters colors on the device of --device") {
     const conversion c(5);
     CHECK(c.result_of({"--device", "cpu"}, "a.sog").count() == 5);

@@ -108,6 +108,28 @@ TEST_CASE("writers: each format drops SH coefficients above --max-sh-degree") {
     });
 }
 
+TEST_CASE("writers: each format names exactly what its files do not give back") {
+    for_each_format([](const gs::writer& format, const precision&) {
+        gs::gaussians model = random_model(5, 2);
+        model.antialiased = true;
+        model.sky.assign(gs::sky_width, 0.5f);
+        const gs::gaussians found = read_back(format, model);
+        const std::string file = "model" + std::string(format.endings[0]);
+        std::string all;
+        for (const std::string& sentence : gs::left_out(file, model)) all += sentence + "\n";
+        CHECK(gs_test::says(all, {"view dependence of colors"}) == (found.sh_degree < 2));
+        CHECK(gs_test::says(all, {"antialiasing"}) == !found.antialiased);
+        CHECK(gs_test::says(all, {"learned background"}) == found.sky.empty());
+        CHECK(gs::left_out(file, random_model(5, 0)).empty());
+    });
+    const gs::gaussians model = random_model(5, 2);
+    CHECK(
+        gs::left_out("a.splat", model) ==
+        std::vector<std::string>{"a.splat leaves out the view dependence of colors: SPLAT files cannot hold "
+                                 "it; .ply files can"});
+    CHECK(gs::left_out("a.splat", model, {.max_sh_degree = 0}).empty());
+}
+
 TEST_CASE("writers: each format keeps opacities of almost 0 and 1, and reads them as finite logits") {
     for_each_format([](const gs::writer& format, const precision& bound) {
         gs::gaussians model = random_model(3, 0);

@@ -225,6 +225,7 @@ void write_sog(const std::filesystem::path& file, const gaussians& model, const 
     });
 }
 
-constinit const writer sog_writer{"SOG", endings, write_sog, read_sog};
+constinit const writer sog_writer{
+    .name = "SOG", .endings = endings, .write = write_sog, .read = read_sog, .holds_sky = false};
 
 }  // namespace gs

@@ -169,6 +169,7 @@ constexpr std::string_view endings[] = {".spz"};
 
 }  // namespace
 
-constinit const writer spz_writer{"SPZ", endings, write_spz, read_spz};
+constinit const writer spz_writer{
+    .name = "SPZ", .endings = endings, .write = write_spz, .read = read_spz, .holds_sky = false};
 
 }  // namespace gs
