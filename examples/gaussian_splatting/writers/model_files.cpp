@@ -70,6 +70,10 @@ std::vector<std::string> left_out(const std::filesystem::path& file, const gauss
     return sentences;
 }
 
+bool has_ending(const std::filesystem::path& file, const writer& format, writer_table writers) {
+    return writer_of(file, writers) == &format;
+}
+
 void require_known_ending(const std::filesystem::path& file, writer_table writers) {
     known_writer_of(file, writers);
 }

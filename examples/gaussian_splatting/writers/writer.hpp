@@ -63,6 +63,10 @@ std::vector<std::string> left_out(const std::filesystem::path& file, const gauss
                                   const write_options& options = {},
                                   std::span<const writer* const> writers = all_writers());
 
+/// Returns whether the ending of the file, in upper or lower case, selects this writer.
+bool has_ending(const std::filesystem::path& file, const writer& format,
+                std::span<const writer* const> writers = all_writers());
+
 /// Throws `error`, which lists the known endings, if no format has the ending of the file.
 void require_known_ending(const std::filesystem::path& file,
                           std::span<const writer* const> writers = all_writers());

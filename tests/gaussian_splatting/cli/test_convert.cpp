@@ -152,6 +152,7 @@ TEST_CASE("convert refuses files and values that it cannot use, and leaves files
         check_refusal({"convert", in, out, "--decimate", count}, {"--decimate", count});
     check_refusal({"convert", in, out, "--up", "w"}, {"--up", "-z", "'w'"});
     check_refusal({"convert", in, out, "--spz-version", "2"}, {"--spz-version", "3 to 4"});
+    check_refusal({"convert", in, out, "--spz-version", "3"}, {"--spz-version", out, ".spz"});
     CHECK(read_file(in) == before);
     CHECK_FALSE(fs::exists(out));
 }
