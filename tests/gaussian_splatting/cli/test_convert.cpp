@@ -151,6 +151,9 @@ TEST_CASE("convert refuses files and values that it cannot use, and leaves files
     for (const char* count : {"0", "-1", "0%", "101%", "%", "x%", "1e3"})
         check_refusal({"convert", in, out, "--decimate", count}, {"--decimate", count});
     check_refusal({"convert", in, out, "--up", "w"}, {"--up", "-z", "'w'"});
+    check_refusal({"convert", in, out, "--up"}, {"--up", "needs a value"});
+    check_refusal({"convert", in, out, "--up", "--remove-floater"},
+                  {"--remove-floater", "--remove-floaters"});
     check_refusal({"convert", in, out, "--spz-version", "2"}, {"--spz-version", "3 to 4"});
     check_refusal({"convert", in, out, "--spz-version", "3"}, {"--spz-version", out, ".spz"});
     CHECK(read_file(in) == before);
