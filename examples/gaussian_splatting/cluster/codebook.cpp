@@ -15,11 +15,11 @@ namespace {
 constexpr std::size_t most_groups = 4096;
 
 /// A range of the sorted values.
-struct group {
+struct value_range {
     std::size_t first, end;
     double error;  ///< sum of squared distances to the mean
 
-    bool operator<(const group& other) const { return error < other.error; }
+    bool operator<(const value_range& other) const { return error < other.error; }
 };
 
 /// Sorted values, with the mean and the error of each range.
@@ -45,13 +45,15 @@ class sorted_values {
         const double sum = sums_[end] - sums_[first];
         return std::max(0.0, squares_[end] - squares_[first] - sum * sum / static_cast<double>(end - first));
     }
-    group make_group(std::size_t first, std::size_t end) const { return {first, end, error(first, end)}; }
+    value_range make_range(std::size_t first, std::size_t end) const {
+        return {first, end, error(first, end)};
+    }
     /// Returns where the upper half of a range of different values begins.
-    std::size_t half(const group& g) const {
-        const double middle = std::midpoint<double>(values_[g.first], values_[g.end - 1]);
+    std::size_t half(const value_range& r) const {
+        const double middle = std::midpoint<double>(values_[r.first], values_[r.end - 1]);
         const auto begin = values_.begin();
-        return static_cast<std::size_t>(std::upper_bound(begin + static_cast<std::ptrdiff_t>(g.first),
-                                                         begin + static_cast<std::ptrdiff_t>(g.end), middle) -
+        return static_cast<std::size_t>(std::upper_bound(begin + static_cast<std::ptrdiff_t>(r.first),
+                                                         begin + static_cast<std::ptrdiff_t>(r.end), middle) -
                                         begin);
     }
 
@@ -68,14 +70,14 @@ class sorted_values {
 /// Returns the ends of groups of similar values, after the beginning of the first one. Splits the group
 /// with the largest error until there are enough.
 std::vector<std::size_t> bounds_of_groups(const sorted_values& values) {
-    std::priority_queue<group> groups;
-    groups.push(values.make_group(0, values.size()));
+    std::priority_queue<value_range> groups;
+    groups.push(values.make_range(0, values.size()));
     while (groups.size() < most_groups && groups.top().error > 0) {
-        const group g = groups.top();
-        const std::size_t half = values.half(g);
+        const value_range r = groups.top();
+        const std::size_t half = values.half(r);
         groups.pop();
-        groups.push(values.make_group(g.first, half));
-        groups.push(values.make_group(half, g.end));
+        groups.push(values.make_range(r.first, half));
+        groups.push(values.make_range(half, r.end));
     }
     std::vector<std::size_t> bounds{0};
     for (; !groups.empty(); groups.pop()) bounds.push_back(groups.top().end);
