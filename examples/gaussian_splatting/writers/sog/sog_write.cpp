@@ -194,16 +194,17 @@ class sog_output {
     std::vector<named_image> images_;
 };
 
-/// Throws `error` for colors that `k_means` cannot cluster.
-void require_clusterable(const std::filesystem::path& file, const gaussians& model) {
+/// Throws `error` for colors up to `sh_degree` that `k_means` cannot cluster.
+void require_clusterable(const std::filesystem::path& file, const gaussians& model, int sh_degree) {
     constexpr float end = 1e9f;
-    const auto found = std::ranges::find_if(model.sh_rest, [](float x) { return std::abs(x) >= end; });
-    if (found == model.sh_rest.end()) return;
-    const auto place = static_cast<std::size_t>(found - model.sh_rest.begin());
-    throw error("cannot write " + file.string() + ": the view-dependent color of Gaussian " +
-                std::to_string(place / static_cast<std::size_t>(model.rest_width())) +
-                " is beyond the range of SOG files, which ends at 10^9; use another format or "
-                "--max-sh-degree 0");
+    const auto stride = static_cast<std::size_t>(model.rest_width());
+    const auto width = static_cast<std::size_t>(3 * (sh_coefficients(sh_degree) - 1));
+    for (std::size_t i = 0; i < model.count(); ++i)
+        for (std::size_t k = 0; k < width; ++k)
+            if (std::abs(model.sh_rest[i * stride + k]) >= end)
+                throw error("cannot write " + file.string() + ": the view-dependent color of Gaussian " +
+                            std::to_string(i) + " is beyond the range of SOG files, which ends at 10^9; " +
+                            "use another format or --max-sh-degree 0");
 }
 
 constexpr std::string_view endings[] = {".sog"};
@@ -213,7 +214,7 @@ constexpr std::string_view endings[] = {".sog"};
 void write_sog(const std::filesystem::path& file, const gaussians& model, const write_options& options) {
     const int sh_degree = std::min(model.sh_degree, options.max_sh_degree);
     require_writable(file, model, sh_degree);
-    if (sh_degree > 0) require_clusterable(file, model);
+    require_clusterable(file, model, sh_degree);
     sog_output output(model, sh_degree, options.k_means);
     if (!output.fits())
         throw error("cannot write " + file.string() +
