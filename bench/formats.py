@@ -70,7 +70,7 @@ def rows_of(program, scene, model, device, measure_options, folder):
         exact = psnr if exact is None else exact
         size = file.stat().st_size
         rows.append([pathlib.Path(scene).name, name, f"{size / 1e6:.2f}", f"{model.stat().st_size / size:.1f}",
-                     f"{psnr:.2f}", f"{exact - psnr:.2f}", f"{seconds:.2f}", f"{spread:.0%}"])
+                     f"{psnr:.2f}", f"{round(exact - psnr, 2) + 0:.2f}", f"{seconds:.2f}", f"{spread:.0%}"])
     return rows
 
 

@@ -7,6 +7,7 @@
 #include "../core/byte_size.hpp"
 #include "../core/error.hpp"
 #include "../edit/edit.hpp"
+#include "../writers/spz/spz.hpp"
 #include "../writers/writer.hpp"
 #include "command_context.hpp"
 #include "commands.hpp"
@@ -45,6 +46,12 @@ gaussians edited(gaussians model, const settings& s, const command_context& cont
     return model;
 }
 
+void require_spz_for_its_options(const settings& s) {
+    if (s.given.contains("spz_version") && !has_ending(s.output, spz_writer))
+        throw error("--spz-version is for .spz files, but OUT is " + s.output +
+                    ": leave it out, or give OUT the ending .spz");
+}
+
 }  // namespace
 
 void convert(const settings& s) {
@@ -53,11 +60,13 @@ void convert(const settings& s) {
     if (std::filesystem::equivalent(s.ply, s.output, ignored))
         throw error("convert would replace its own input " + s.ply + ": give OUT another name");
     require_known_ending(s.output);
+    require_spz_for_its_options(s);
     const bool uses_cuda = context.can_use_cuda();  // refuses an unusable device first
     const gaussians model = edited(read_model(s.ply), s, context);
     write_options options = s.export_options;
     if (uses_cuda) options.k_means = cluster::k_means_on_cuda;
     write_model(s.output, model, options);
+    for (const std::string& part : left_out(s.output, model, options)) context.warn(part);
     context.say(s.output + ": " + std::to_string(model.count()) + " Gaussians, " +
                 size_in_bytes(std::filesystem::file_size(s.output)));
 }

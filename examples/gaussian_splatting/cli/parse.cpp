@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
-#include <utility>
 
 #include "../core/error.hpp"
 #include "apply_quality_preset.hpp"
@@ -101,7 +100,9 @@ class command_options {
             const bool is_long = word.starts_with("--");
             const bool is_short = !is_long && word.size() > 1 && word[0] == '-' &&
                                   std::isalpha(static_cast<unsigned char>(word[1])) != 0;
-            if (std::exchange(is_value, false) || word == "--" || (!is_long && !is_short)) continue;
+            const bool is_name = is_long || (is_short && !is_value);
+            is_value = false;
+            if (word == "--" || !is_name) continue;
             const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
             const auto row =
                 std::ranges::find_if(rows_, [&](const option& o) { return contains(o.all_names(), name); });

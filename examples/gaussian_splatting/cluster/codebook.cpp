@@ -3,91 +3,151 @@
 #include "codebook.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <queue>
 #include <vector>
 
 namespace gs::cluster {
 namespace {
 
-constexpr std::size_t bins = 1 << 14, bins_per_cell = 64;
-constexpr int iterations = 100;
+constexpr std::size_t most_groups = 4096;
 
-struct bin {
-    double sum = 0, count = 0;
-    double weight = 0;  ///< in the choice of the first numbers
+/// A range of the sorted values.
+struct value_range {
+    std::size_t first, end;
+    double error;  ///< sum of squared distances to the mean
+
+    bool operator<(const value_range& other) const { return error < other.error; }
 };
 
-/// Returns the bins that are not empty, in ascending order. The weight is the cube root of the density
-/// in a cell of several bins: numbers of this density minimize the error of fine quantization (Panter
-/// and Dite 1951).
-std::vector<bin> histogram_of(std::span<const float> values) {
-    const auto [low, high] = std::ranges::minmax(values);
-    const double scale = high > low ? (bins - 1) / (double(high) - double(low)) : 0;
-    std::vector<bin> histogram(bins);
-    for (const float x : values) {
-        bin& b = histogram[static_cast<std::size_t>((double(x) - double(low)) * scale)];
-        b.sum += double(x);
-        ++b.count;
+/// Sorted values, with the mean and the error of each range.
+class sorted_values {
+  public:
+    explicit sorted_values(std::span<const float> values)
+        : values_(values.begin(), values.end()), sums_(values.size() + 1), squares_(values.size() + 1) {
+        std::ranges::sort(values_);
+        // Sums start in the middle, so that outliers at the ends do not cost other ranges precision.
+        const std::size_t middle = values_.size() / 2;
+        for (std::size_t i = middle; i < values_.size(); ++i) add(i + 1, i, 1, values_[i]);
+        for (std::size_t i = middle; i-- > 0;) add(i, i + 1, -1, values_[i]);
     }
-    for (std::size_t first = 0; first < bins; first += bins_per_cell) {
-        const std::span cell(&histogram[first], bins_per_cell);
-        double count = 0, filled = 0;
-        for (const bin& b : cell) {
-            count += b.count;
-            filled += b.count > 0;
+
+    std::size_t size() const { return values_.size(); }
+
+    double mean(std::size_t first, std::size_t end) const {
+        return std::clamp<double>((sums_[end] - sums_[first]) / static_cast<double>(end - first),
+                                  values_[first], values_[end - 1]);
+    }
+    double error(std::size_t first, std::size_t end) const {
+        if (values_[first] == values_[end - 1]) return 0;
+        const double sum = sums_[end] - sums_[first];
+        return std::max(0.0, squares_[end] - squares_[first] - sum * sum / static_cast<double>(end - first));
+    }
+    value_range make_range(std::size_t first, std::size_t end) const {
+        return {first, end, error(first, end)};
+    }
+    /// Returns where the upper half of a range of different values begins.
+    std::size_t half(const value_range& r) const {
+        const double middle = std::midpoint<double>(values_[r.first], values_[r.end - 1]);
+        const auto begin = values_.begin();
+        return static_cast<std::size_t>(std::upper_bound(begin + static_cast<std::ptrdiff_t>(r.first),
+                                                         begin + static_cast<std::ptrdiff_t>(r.end), middle) -
+                                        begin);
+    }
+
+  private:
+    void add(std::size_t to, std::size_t from, double sign, double x) {
+        sums_[to] = sums_[from] + sign * x;
+        squares_[to] = squares_[from] + sign * x * x;
+    }
+
+    std::vector<float> values_;
+    std::vector<double> sums_, squares_;  ///< of the values before each, apart from a constant
+};
+
+/// Returns the ends of groups of similar values, after the beginning of the first one. Splits the group
+/// with the largest error until there are enough.
+std::vector<std::size_t> bounds_of_groups(const sorted_values& values) {
+    std::priority_queue<value_range> groups;
+    groups.push(values.make_range(0, values.size()));
+    while (groups.size() < most_groups && groups.top().error > 0) {
+        const value_range r = groups.top();
+        const std::size_t half = values.half(r);
+        groups.pop();
+        groups.push(values.make_range(r.first, half));
+        groups.push(values.make_range(half, r.end));
+    }
+    std::vector<std::size_t> bounds{0};
+    for (; !groups.empty(); groups.pop()) bounds.push_back(groups.top().end);
+    std::ranges::sort(bounds);
+    return bounds;
+}
+
+/// Finds the partition of groups into ranges with the smallest error, by dynamic programming. With
+/// more groups, the last range of the best partition never begins earlier, which bounds the search.
+class best_partition {
+  public:
+    best_partition(const sorted_values& values, const std::vector<std::size_t>& bounds, std::size_t ranges)
+        : values_(values), bounds_(bounds), starts_(ranges) {
+        const std::size_t groups = bounds.size() - 1;
+        before_.assign(groups + 1, std::numeric_limits<double>::max());
+        before_[0] = 0;
+        for (std::vector<std::uint16_t>& starts : starts_) {
+            now_.assign(groups + 1, std::numeric_limits<double>::max());
+            starts.resize(groups + 1);
+            search(starts, 1, groups, 0, groups - 1);
+            before_.swap(now_);
         }
-        for (bin& b : cell) b.weight = filled > 0 ? std::cbrt(count) / filled : 0;
     }
-    std::erase_if(histogram, [](const bin& b) { return b.count == 0; });
-    return histogram;
-}
 
-/// Returns where to begin.
-std::vector<double> first_numbers(const std::vector<bin>& histogram) {
-    double total = 0;
-    for (const bin& b : histogram) total += b.weight;
-    std::vector<double> numbers;
-    double before = 0;
-    for (const bin& b : histogram) {
-        before += b.weight;
-        const double wanted = before / total * static_cast<double>(codebook::size);
-        while (static_cast<double>(numbers.size()) + 0.5 < wanted) numbers.push_back(b.sum / b.count);
+    std::vector<double> means() const {
+        std::vector<double> all;
+        std::size_t end = bounds_.size() - 1;
+        for (std::size_t k = starts_.size(); k-- > 0; end = starts_[k][end])
+            all.push_back(values_.mean(bounds_[starts_[k][end]], bounds_[end]));
+        std::ranges::reverse(all);
+        return all;
     }
-    numbers.resize(codebook::size, numbers.back());
-    return numbers;
-}
 
-/// Moves each number to the mean of the values that are nearest to it.
-void move(const std::vector<bin>& histogram, std::vector<double>& numbers) {
-    std::vector<bin> nearest(numbers.size());
-    std::size_t k = 0;
-    for (const bin& b : histogram) {
-        const double mean = b.sum / b.count;
-        while (k + 1 < numbers.size() && std::abs(numbers[k + 1] - mean) < std::abs(numbers[k] - mean)) ++k;
-        nearest[k].sum += b.sum;
-        nearest[k].count += b.count;
+  private:
+    /// Finds the errors of the first `low` to `high` groups with one more range, which begins between
+    /// `earliest` and `latest`.
+    void search(std::vector<std::uint16_t>& starts, std::size_t low, std::size_t high, std::size_t earliest,
+                std::size_t latest) {
+        if (low > high) return;
+        const std::size_t end = (low + high) / 2;
+        std::size_t best = earliest;
+        for (std::size_t start = earliest; start <= std::min(latest, end - 1); ++start) {
+            const double error = before_[start] + values_.error(bounds_[start], bounds_[end]);
+            if (error < now_[end]) {
+                now_[end] = error;
+                best = start;
+            }
+        }
+        starts[end] = static_cast<std::uint16_t>(best);
+        search(starts, low, end - 1, earliest, best);
+        search(starts, end + 1, high, best, latest);
     }
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-        if (nearest[i].count > 0) numbers[i] = nearest[i].sum / nearest[i].count;
-    std::ranges::sort(numbers);
-}
+
+    const sorted_values& values_;
+    const std::vector<std::size_t>& bounds_;
+    std::vector<double> before_, now_;                ///< the error of the first groups with as many ranges
+    std::vector<std::vector<std::uint16_t>> starts_;  ///< where the last range begins
+};
 
 }  // namespace
 
 codebook::codebook(std::span<const float> values) {
     if (values.empty()) return;
-    const std::vector<bin> histogram = histogram_of(values);
-    std::vector<double> numbers = first_numbers(histogram);
-    if (histogram.size() <= size) {  // a number for each
-        for (std::size_t i = 0; i < size; ++i) {
-            const bin& b = histogram[std::min(i, histogram.size() - 1)];
-            numbers[i] = b.sum / b.count;
-        }
-    } else {
-        for (int i = 0; i < iterations; ++i) move(histogram, numbers);
-    }
-    std::ranges::transform(numbers, values_.begin(), [](double x) { return static_cast<float>(x); });
-    for (std::size_t i = 0; i + 1 < size; ++i) limits_[i] = (values_[i] + values_[i + 1]) / 2;
+    const sorted_values sorted(values);
+    const std::vector<std::size_t> bounds = bounds_of_groups(sorted);
+    const std::size_t different = std::min(size, bounds.size() - 1);
+    const std::vector<double> numbers = best_partition(sorted, bounds, different).means();
+    for (std::size_t i = 0; i < size; ++i)
+        values_[i] = static_cast<float>(numbers[std::min(i, different - 1)]);
+    for (std::size_t i = 0; i + 1 < size; ++i) limits_[i] = std::midpoint(values_[i], values_[i + 1]);
 }
 
 std::uint8_t codebook::nearest(float x) const {

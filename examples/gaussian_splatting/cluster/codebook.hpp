@@ -14,8 +14,8 @@ class codebook {
   public:
     static constexpr std::size_t size = 256;
 
-    /// Fits the numbers to `values`, which are finite, by k-means of their histogram. Takes linear
-    /// time. Without values, all numbers are zero.
+    /// Fits the numbers to `values`, which are finite: merges similar values, and partitions the rest
+    /// with the smallest possible error. Takes the time of sorting. Without values, all numbers are zero.
     explicit codebook(std::span<const float> values);
 
     const std::array<float, size>& values() const { return values_; }

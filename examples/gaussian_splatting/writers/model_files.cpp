@@ -55,6 +55,25 @@ std::string writable_endings(writer_table writers, const char* last_separator) {
     return enumerated(endings_of(writers, false), last_separator);
 }
 
+std::vector<std::string> left_out(const std::filesystem::path& file, const gaussians& model,
+                                  const write_options& options, writer_table writers) {
+    const writer& format = known_writer_of(file, writers);
+    std::vector<std::string> sentences;
+    const auto add = [&](const char* what) {
+        sentences.push_back(file.string() + " leaves out the " + what + ": " + std::string(format.name) +
+                            " files cannot hold it; .ply files can");
+    };
+    if (model.count() > 0 && std::min(model.sh_degree, options.max_sh_degree) > format.max_sh_degree)
+        add("view dependence of colors");
+    if (model.antialiased && !format.holds_antialiasing) add("mark of antialiasing");
+    if (!model.sky.empty() && !format.holds_sky) add("learned background");
+    return sentences;
+}
+
+bool has_ending(const std::filesystem::path& file, const writer& format, writer_table writers) {
+    return writer_of(file, writers) == &format;
+}
+
 void require_known_ending(const std::filesystem::path& file, writer_table writers) {
     known_writer_of(file, writers);
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "../cluster/k_means.hpp"
 #include "../model/gaussians.hpp"
@@ -41,7 +42,9 @@ struct writer {
     /// them with the size of the file itself.
     gaussians (*read)(const std::filesystem::path& file) = nullptr;
 
-    int max_sh_degree = 3;  ///< the highest SH degree that its files hold
+    int max_sh_degree = 3;           ///< the highest SH degree that its files hold
+    bool holds_antialiasing = true;  ///< whether its files mark antialiased models
+    bool holds_sky = true;           ///< whether its files hold a learned background
 };
 
 /// Returns all writers.
@@ -53,6 +56,16 @@ std::string readable_endings(std::span<const writer* const> writers, const char*
 
 /// Returns the endings of all formats, for messages.
 std::string writable_endings(std::span<const writer* const> writers, const char* last_separator);
+
+/// Returns what a file in the format of its ending cannot hold of a model, a sentence for each part.
+/// Throws `error`, which lists the known endings, for other endings.
+std::vector<std::string> left_out(const std::filesystem::path& file, const gaussians& model,
+                                  const write_options& options = {},
+                                  std::span<const writer* const> writers = all_writers());
+
+/// Returns whether the ending of the file, in upper or lower case, selects this writer.
+bool has_ending(const std::filesystem::path& file, const writer& format,
+                std::span<const writer* const> writers = all_writers());
 
 /// Throws `error`, which lists the known endings, if no format has the ending of the file.
 void require_known_ending(const std::filesystem::path& file,

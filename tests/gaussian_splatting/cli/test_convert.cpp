@@ -69,18 +69,19 @@ TEST_CASE("convert writes every format that its ending names, from every format 
 }
 
 TEST_CASE("convert crops, removes floaters and decimates, in this order") {
-    const conversion c(13);
+    const conversion c(20);
     CHECK(c.x_of({"--crop", "3,-1,-1,5.5,1,1"}) == std::vector<float>{3, 4, 5});
     CHECK(c.x_of({"--crop", "5.5,1,1,3,-1,-1"}) == std::vector<float>{3, 4, 5});
     CHECK(c.x_of({"--crop", "-1,-1,-1,0,1,1"}) == std::vector<float>{0});
     CHECK(c.x_of({"--decimate", "2"}) == std::vector<float>{0, 1});
-    CHECK(c.x_of({"--decimate", "25%"}) == std::vector<float>{0, 1, 2, 3});
+    CHECK(c.x_of({"--decimate", "11%"}) == std::vector<float>{0, 1, 2});
     CHECK(c.x_of({"--crop", "3,-1,-1,9,1,1", "--decimate", "2"}) == std::vector<float>{3, 4});
-    // Only numbers 0 to 6 have an opacity above 0.5, and numbers 0 to 8 one above 0.2.
-    const auto kept = c.x_of({"--remove-floaters"});
-    CHECK(kept == std::vector<float>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+    // Numbers 14 to 19 have an opacity below 0.02.
+    CHECK(c.result_of({"--remove-floaters"}).count() == 14);
+    CHECK(c.result_of({"--decimate", "50%", "--remove-floaters"}).count() == 7);
+    CHECK(c.x_of({"--remove-floaters", "--crop", "13,-1,-1,19,1,1"}) == std::vector<float>{13});
     const outcome o = c.run_with({"--decimate", "2"});
-    CHECK(says(o.out, {"--decimate keeps 2 of 13 Gaussians", "out.ply: 2 Gaussians, "}));
+    CHECK(says(o.out, {"--decimate keeps 2 of 20 Gaussians", "out.ply: 2 Gaussians, "}));
     CHECK(c.run_with({"--decimate", "2", "--quiet"}).out.empty());
 }
 
@@ -115,6 +116,14 @@ TEST_CASE("convert writes version 3 of SPZ on demand, which is a gzip file") {
     CHECK(read_file(c.file("b.spz")).starts_with("\x1f\x8b"));
 }
 
+TEST_CASE("convert warns about what the format cannot hold") {
+    const conversion c(2);
+    CHECK(says(c.run_with({}, "a.splat").out, {"warning:", "a.splat leaves out", "view dependence"}));
+    CHECK_FALSE(says(c.run_with({}, "a.spz").out, {"warning:"}));
+    CHECK_FALSE(says(c.run_with({"--max-sh-degree", "0"}, "a.splat").out, {"warning:"}));
+    CHECK(c.run_with({"--quiet"}, "a.splat").out.empty());
+}
+
 TEST_CASE("convert clusters colors on the device of --device") {
     const conversion c(5);
     CHECK(c.result_of({"--device", "cpu"}, "a.sog").count() == 5);
@@ -142,7 +151,11 @@ TEST_CASE("convert refuses files and values that it cannot use, and leaves files
     for (const char* count : {"0", "-1", "0%", "101%", "%", "x%", "1e3"})
         check_refusal({"convert", in, out, "--decimate", count}, {"--decimate", count});
     check_refusal({"convert", in, out, "--up", "w"}, {"--up", "-z", "'w'"});
+    check_refusal({"convert", in, out, "--up"}, {"--up", "needs a value"});
+    check_refusal({"convert", in, out, "--up", "--remove-floater"},
+                  {"--remove-floater", "--remove-floaters"});
     check_refusal({"convert", in, out, "--spz-version", "2"}, {"--spz-version", "3 to 4"});
+    check_refusal({"convert", in, out, "--spz-version", "3"}, {"--spz-version", out, ".spz"});
     CHECK(read_file(in) == before);
     CHECK_FALSE(fs::exists(out));
 }

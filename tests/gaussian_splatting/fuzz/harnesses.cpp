@@ -13,9 +13,9 @@ namespace {
 /// Returns how many times their own size the files of a format may grow in memory, beyond the usual
 /// bound.
 std::size_t further_growth(std::string_view format) {
-    if (format == "spz") return 5000;   // may decompress to 1000 times its size, and becomes floats
-    if (format == "sog") return 30000;  // 100 Gaussians for each byte, with images and floats
-    if (format == "gltf") return 100;   // a JSON document; attributes may share their data
+    if (format == "spz") return 5000;  // may decompress to 1000 times its size, and becomes floats
+    if (format == "sog") return 5000;  // 10 Gaussians for each byte, with images and floats; a palette
+    if (format == "gltf") return 100;  // a JSON document; attributes may share their data
     return 0;
 }
 

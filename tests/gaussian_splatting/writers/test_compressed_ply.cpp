@@ -106,8 +106,20 @@ TEST_CASE("compressed_ply: malformed files are refused with the field") {
     CHECK(refused(changed(whole, "f_rest_4", "f_rest_5")) == name + ": it has the property 'f_rest_5' twice");
     CHECK(refused(changed(whole, "property uchar f_rest_8\n", "")) ==
           name + ": its rows 'sh' have 8 bytes, but SH degrees 1 to 3 have 9, 24 or 45");
+    CHECK(refused(changed(whole, "property uchar f_rest_0", "property char f_rest_0")) ==
+          name + ": property 0 of its element 'sh' is not f_rest_0");
     std::string infinite = whole;
     const std::size_t at = whole.find(end_header) + end_header.size();
     infinite.replace(at + 72, 4, std::string("\x00\x00\x80\x7f", 4));
     CHECK(refused(infinite) == name + ": a range of chunk 1 is not finite");
+}
+
+TEST_CASE("compressed_ply: rows without properties are refused before memory is allocated for them") {
+    const temporary_folder folder;
+    const std::string name = (folder / "a.compressed.ply").string();
+    write_file(name,
+               "ply\nformat binary_little_endian 1.0\nelement chunk 36028797018963968\n"
+               "element vertex 9223372036854775808\nend_header\n");
+    CHECK(error_of([&] { gs::compressed_ply_writer.read(name); }) ==
+          name + ": property 0 of its element 'chunk' is not min_x");
 }

@@ -180,6 +180,9 @@ TEST_CASE("gltf: malformed files are refused with the field") {
           "its attribute " + scale + " is not a VEC3 of floats");
     CHECK(refused([&](glb& f) { f.accessor(scale)["bufferView"] = 99; }) ==
           "its attribute " + scale + " has no view of the binary data");
+    CHECK(refused([&](glb& f) {
+              f.accessor(scale)["sparse"] = {{"count", 1}};
+          }) == "its attribute " + scale + " is sparse, which cannot be read");
     CHECK(refused([&](glb& f) { f.accessor(scale)["count"] = 4; }) ==
           "its attribute " + scale + " exceeds the binary data");
     CHECK(refused([&](glb& f) { f.accessor(scale)["count"] = std::uint64_t{1} << 62; }) ==

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -73,6 +75,7 @@ TEST_CASE("sog: images have the pixels of the format") {
     sog_parts sog(model);
     CHECK(sog.meta["version"] == 2);
     CHECK(sog.meta["count"] == 2);
+    CHECK(sog.meta["antialias"] == true);
     CHECK(sog.meta["model"] == "antialiased");
     CHECK(sog.meta["means"]["mins"][1].get<double>() == doctest::Approx(-std::log(2.0)));
     CHECK(sog.meta["means"]["maxs"][1].get<double>() == doctest::Approx(std::log(4.0)));
@@ -101,6 +104,65 @@ TEST_CASE("sog: antialiasing is kept") {
     CHECK_FALSE(gs_test::read_back(gs::sog_writer, model).antialiased);
     model.antialiased = true;
     CHECK(gs_test::read_back(gs::sog_writer, model).antialiased);
+}
+
+TEST_CASE("sog: the specified and the newer mark of antialiasing are read") {
+    const temporary_folder folder;
+    const auto is_antialiased = [&](const char* member, const json& value) {
+        sog_parts sog(random_model(3, 0));
+        sog.meta[member] = value;
+        gs_test::write_file(folder / "a.sog", sog.file());
+        return gs::sog_writer.read(folder / "a.sog").antialiased;
+    };
+    CHECK(is_antialiased("antialias", true));
+    CHECK(is_antialiased("model", "antialiased"));
+    CHECK_FALSE(is_antialiased("antialias", false));
+    CHECK_FALSE(is_antialiased("antialias", 1));
+    CHECK_FALSE(is_antialiased("model", "default"));
+}
+
+TEST_CASE("sog: one huge color leaves the others as they are") {
+    gs::gaussians model = random_model(300, 0);
+    model.sh_constant[0] = -1e9f;
+    const gs::gaussians found = gs_test::read_back(gs::sog_writer, model);
+    model.sh_constant[0] = 0;
+    gs::gaussians without_first = found;
+    for (float& x : without_first.sh_constant)
+        if (x < -1e8f) x = 0;
+    gs_test::check_same_gaussians(model, without_first, {1e-4, 0.02, 0.01, 0.002, 3.54 / 256, 0});
+}
+
+TEST_CASE("sog: view-dependent colors that cannot be clustered are refused, and no file is written") {
+    const temporary_folder folder;
+    gs::gaussians model = random_model(3, 1);
+    model.sh_rest[2 * 9 + 4] = -3e38f;
+    const auto file = folder / "a.sog";
+    CHECK(
+        error_of([&] { gs::sog_writer.write(file, model, {}); }) ==
+        "cannot write " + file.string() +
+            ": the view-dependent color of Gaussian 2 is beyond the range of SOG files, which ends at 10^9; "
+            "use another format or --max-sh-degree 0");
+    CHECK_FALSE(std::filesystem::exists(file));
+    gs::sog_writer.write(file, model, {.max_sh_degree = 0});
+    model = random_model(3, 2);
+    model.sh_rest[23] = 1e9f;
+    gs::sog_writer.write(file, model, {.max_sh_degree = 1});
+}
+
+TEST_CASE("sog: scales and colors are rounded to the nearest number of their codebooks") {
+    const gs::gaussians model = random_model(700, 0);
+    const sog_parts sog(model);
+    const gs::gaussians found = gs_test::read_back(gs::sog_writer, model);
+    const auto largest_half_gap = [&](const char* property) {
+        const auto book = sog.meta[property]["codebook"].get<std::vector<double>>();
+        double largest = 0;
+        for (std::size_t i = 1; i < book.size(); ++i)
+            largest = std::max(largest, (book[i] - book[i - 1]) / 2);
+        return largest + 1e-6;
+    };
+    // The ends of a codebook are means of few values, so values beyond them are near, too.
+    gs_test::check_same_gaussians(
+        model, found, {1e-4, largest_half_gap("scales"), 0.0081, 0.002, largest_half_gap("sh0"), 0});
 }
 
 TEST_CASE("sog: the same model makes the same file") {
@@ -134,6 +196,8 @@ TEST_CASE("sog: malformed files are refused with the field") {
     CHECK(refused([](sog_parts& s) { s.meta["count"] = -1; }) == "its 'count' is not a whole number");
     CHECK(gs_test::says(refused([](sog_parts& s) { s.meta["count"] = std::uint64_t{1} << 60; }),
                         {"Gaussians are more than its", "bytes can hold"}));
+    CHECK(gs_test::says(refused([](sog_parts& s) { s.meta["count"] = 1000000; }),
+                        {"its 1000000 Gaussians are more than its", "bytes can hold"}));
     CHECK(refused([](sog_parts& s) { s.meta["count"] = 99; }) ==
           "its image 'means_l.webp' has 8x4 pixels for 99 values");
     CHECK(refused([](sog_parts& s) { s.images.erase("quats.webp"); }) ==

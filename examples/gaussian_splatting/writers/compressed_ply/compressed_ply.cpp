@@ -204,6 +204,9 @@ class compressed_input {
         const ply_element& chunk = element(header, "chunk");
         const ply_element* const sh = header.find("sh");
         const int sh_degree = sh ? degree(sh->stride) : 0;
+        require_properties(header, chunk, chunk_properties, ply_scalar::float32);
+        require_properties(header, vertex, vertex_properties, ply_scalar::uint32);
+        if (sh) require_sh_properties(header, *sh);
         header.require_size();  // before memory is allocated for the count in the header
         if (chunk.count != (vertex.count + chunk_size - 1) / chunk_size)
             fail("it has " + std::to_string(chunk.count) + " chunks of 256 for " +
@@ -247,6 +250,14 @@ class compressed_input {
         if (found.size() != N) fail("its element '" + std::string(rows.name) + "' has unknown properties");
     }
 
+    void require_sh_properties(const ply_header& header, const ply_element& rows) const {
+        const std::span<const ply_property> found = header.properties(rows);
+        for (std::size_t k = 0; k < found.size(); ++k)
+            if (found[k].name != "f_rest_" + std::to_string(k) || found[k].type != ply_scalar::uint8)
+                fail("property " + std::to_string(k) + " of its element 'sh' is not f_rest_" +
+                     std::to_string(k));
+    }
+
     void seek(std::uint64_t offset) { file_.in.seekg(static_cast<std::streamoff>(offset)); }
 
     template <class T>
@@ -256,8 +267,6 @@ class compressed_input {
     }
 
     void read_vertices(const ply_header& header, const ply_element& chunk_rows, const ply_element& rows) {
-        require_properties(header, chunk_rows, chunk_properties, ply_scalar::float32);
-        require_properties(header, rows, vertex_properties, ply_scalar::uint32);
         std::array<packed_vertex, chunk_size> packed;
         for (std::size_t first = 0; first < model_.count(); first += chunk_size) {
             seek(header.offset(chunk_rows) + first / chunk_size * sizeof(chunk));
@@ -288,11 +297,6 @@ class compressed_input {
 
     void read_sh(const ply_header& header, const ply_element& rows) {
         const auto width = static_cast<std::size_t>(model_.rest_width());
-        const std::span<const ply_property> properties = header.properties(rows);
-        for (std::size_t k = 0; k < properties.size(); ++k)
-            if (properties[k].name != "f_rest_" + std::to_string(k))
-                fail("property " + std::to_string(k) + " of its element 'sh' is not f_rest_" +
-                     std::to_string(k));
         std::array<std::uint8_t, 45> row;
         seek(header.offset(rows));
         for (std::size_t i = 0; i < model_.count(); ++i) {

@@ -178,6 +178,11 @@ constexpr std::string_view endings[] = {".glb"};
 
 }  // namespace
 
-constinit const writer gltf_writer{"glTF", endings, write_gltf, read_gltf};
+constinit const writer gltf_writer{.name = "glTF",
+                                   .endings = endings,
+                                   .write = write_gltf,
+                                   .read = read_gltf,
+                                   .holds_antialiasing = false,
+                                   .holds_sky = false};
 
 }  // namespace gs

@@ -142,6 +142,7 @@ class gltf_input {
         const input_json* const type = member(accessor, "type");
         if (whole(accessor, "componentType", 0) != gltf_float || !type || *type != a.type)
             fail(where + "is not a " + a.type + " of floats");
+        if (member(accessor, "sparse")) fail(where + "is sparse, which cannot be read");
         const input_json* const view = element("bufferViews", whole(accessor, "bufferView", none));
         if (!view || whole(view, "buffer", none) != 0) fail(where + "has no view of the binary data");
         const std::uint64_t row = sizeof(float) * a.width;

@@ -17,11 +17,12 @@ namespace gs {
 /// | rotation | the smallest three components with 8 bits each |
 /// | view-dependent color | a palette of at most 65536 entries, by `write_options::k_means` |
 ///
-/// The axes are those of the model. Antialiasing is kept as `model`, a learned background is lost.
+/// The axes are those of the model. Antialiasing is kept as `antialias` and `model`, a learned
+/// background is lost.
 ///
 /// Reading throws `error` with the file and the field for: an archive or an image that is damaged, a
 /// missing image, an image that is too small, a number that is not finite, an index beyond the palette,
-/// more than 100 Gaussians for each byte of the file.
+/// more than 10 Gaussians for each byte of the file.
 extern const writer sog_writer;
 
 }  // namespace gs

@@ -22,7 +22,7 @@ namespace {
 
 using input_json = nlohmann::json;
 
-constexpr std::uint64_t longest_meta = 1 << 20, gaussians_per_byte = 100;
+constexpr std::uint64_t longest_meta = 1 << 20, gaussians_per_byte = 10;
 constexpr std::size_t palette_columns = 64, largest_palette = 65536;
 
 class sog_input {
@@ -44,7 +44,7 @@ class sog_input {
         // The first images confirm the count before memory is allocated for it.
         const rgba_image low = image("means", 0), high = image("means", 1);
         model_ = sized_model(count_, static_cast<int>(degree));
-        model_.antialiased = meta_.contains("model") && meta_["model"] == "antialiased";
+        model_.antialiased = has("antialias", true) || has("model", "antialiased");
         read_means(low, high);
         read_scales();
         read_rotations();
@@ -60,6 +60,9 @@ class sog_input {
         if (!value.is_object() || !value.contains(name))
             fail("its meta.json has no '" + std::string(name) + "'");
         return value[name];
+    }
+    bool has(const char* name, const input_json& value) const {
+        return meta_.contains(name) && meta_[name] == value;
     }
     std::uint64_t whole(const input_json& value, const char* name) const {
         const input_json& found = member(value, name);

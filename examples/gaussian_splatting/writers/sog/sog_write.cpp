@@ -63,7 +63,10 @@ class sog_output {
 
     std::string bundle() {
         meta_ = {{"version", 2}, {"asset", {{"generator", "warpagg"}}}, {"count", model_.count()}};
-        if (model_.antialiased) meta_["model"] = "antialiased";
+        if (model_.antialiased) {
+            meta_["antialias"] = true;
+            meta_["model"] = "antialiased";  // newer programs read only this
+        }
         add_means();
         add_scales();
         add_rotations();
@@ -191,6 +194,19 @@ class sog_output {
     std::vector<named_image> images_;
 };
 
+/// Throws `error` for colors up to `sh_degree` that `k_means` cannot cluster.
+void require_clusterable(const std::filesystem::path& file, const gaussians& model, int sh_degree) {
+    constexpr float end = 1e9f;
+    const auto stride = static_cast<std::size_t>(model.rest_width());
+    const auto width = static_cast<std::size_t>(3 * (sh_coefficients(sh_degree) - 1));
+    for (std::size_t i = 0; i < model.count(); ++i)
+        for (std::size_t k = 0; k < width; ++k)
+            if (std::abs(model.sh_rest[i * stride + k]) >= end)
+                throw error("cannot write " + file.string() + ": the view-dependent color of Gaussian " +
+                            std::to_string(i) + " is beyond the range of SOG files, which ends at 10^9; " +
+                            "use another format or --max-sh-degree 0");
+}
+
 constexpr std::string_view endings[] = {".sog"};
 
 }  // namespace
@@ -198,6 +214,7 @@ constexpr std::string_view endings[] = {".sog"};
 void write_sog(const std::filesystem::path& file, const gaussians& model, const write_options& options) {
     const int sh_degree = std::min(model.sh_degree, options.max_sh_degree);
     require_writable(file, model, sh_degree);
+    require_clusterable(file, model, sh_degree);
     sog_output output(model, sh_degree, options.k_means);
     if (!output.fits())
         throw error("cannot write " + file.string() +
@@ -209,6 +226,7 @@ void write_sog(const std::filesystem::path& file, const gaussians& model, const 
     });
 }
 
-constinit const writer sog_writer{"SOG", endings, write_sog, read_sog};
+constinit const writer sog_writer{
+    .name = "SOG", .endings = endings, .write = write_sog, .read = read_sog, .holds_sky = false};
 
 }  // namespace gs

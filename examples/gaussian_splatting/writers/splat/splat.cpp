@@ -158,6 +158,12 @@ void write_splat(const std::filesystem::path& file, const gaussians& model, cons
 
 gaussians read_splat(const std::filesystem::path& file) { return splat_input(file).read(); }
 
-constinit const writer splat_writer{"SPLAT", endings, write_splat, read_splat, 0};
+constinit const writer splat_writer{.name = "SPLAT",
+                                    .endings = endings,
+                                    .write = write_splat,
+                                    .read = read_splat,
+                                    .max_sh_degree = 0,
+                                    .holds_antialiasing = false,
+                                    .holds_sky = false};
 
 }  // namespace gs

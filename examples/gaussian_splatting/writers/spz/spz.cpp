@@ -45,7 +45,7 @@ int fractional_bits_of(const std::filesystem::path& file, const gaussians& model
     const int integral_bits = std::ilogb(largest) + 1;
     if (integral_bits > 23)
         throw error("cannot write " + file.string() + ": the position " + std::to_string(largest) +
-                    " is beyond the range of SPZ files, which ends at 2^23");
+                    " is beyond the range of SPZ files, which ends at 2^23; use another format or --crop");
     return std::min(
         {std::max(usual_fractional_bits, 16 - integral_bits), 23 - integral_bits, most_fractional_bits});
 }
@@ -169,6 +169,7 @@ constexpr std::string_view endings[] = {".spz"};
 
 }  // namespace
 
-constinit const writer spz_writer{"SPZ", endings, write_spz, read_spz};
+constinit const writer spz_writer{
+    .name = "SPZ", .endings = endings, .write = write_spz, .read = read_spz, .holds_sky = false};
 
 }  // namespace gs

@@ -11,10 +11,12 @@ namespace gs {
 ///
 /// | parameter | precision |
 /// | --- | --- |
-/// | position | 24 bits, fixed point; 12 bits of them are the fraction, unless the model is very large or
-/// small | | log of scale | 8 bits from -10 to 5.9375 | | color | 8 bits; SH coefficients of degree 0 from
-/// -3.3 to 3.3 | | opacity | 8 bits | | rotation | the smallest three components with 10 bits each | |
-/// view-dependent color | 7 bits from -1 to 1 |
+/// | position | 24 bits, fixed point; the fraction has 12 bits, if the size of the model allows |
+/// | log of scale | 8 bits from -10 to 5.9375 |
+/// | color | 8 bits; SH coefficients of degree 0 from -3.3 to 3.3 |
+/// | opacity | 8 bits |
+/// | rotation | the smallest three components with 10 bits each |
+/// | view-dependent color | 7 bits from -1 to 1 |
 ///
 /// The axes are x right, y up, z backward; both functions turn the model about its x axis. The flag
 /// for antialiasing is kept, a learned background is lost. The order of the Gaussians stays.
