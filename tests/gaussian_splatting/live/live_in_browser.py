@@ -84,6 +84,20 @@ class LiveView(unittest.TestCase):
         if folder := os.environ.get("WARPAGG_SCREENSHOTS"):
             self.browser.screenshot(pathlib.Path(folder) / f"live_{name}.png")
 
+    def check_retry(self):
+        """The page asks again for a frame that was not drawn in time."""
+        frames = self.browser.evaluate(FRAMES)
+        self.browser.evaluate("""
+            (original => {
+                window.fetch = (path, options) => {
+                    if (!path.startsWith('/frame')) return original(path, options);
+                    window.fetch = original;
+                    return Promise.resolve(new Response(null, {status: 204}));
+                };
+            })(fetch)""")
+        self.click("home")
+        self.browser.wait(f"{FRAMES} > {frames}")
+
     def check_model(self, name, size):
         model = self.folder / "model/point_cloud/iteration_300/point_cloud.ply"
         self.open(self.start("view", model, "--device", "cpu"), size)
@@ -94,6 +108,7 @@ class LiveView(unittest.TestCase):
         self.browser.wait(f"{PICTURE} !== {before!r}")
         self.assertTrue(self.browser.evaluate("document.getElementById('pause').hidden"))
         self.keep_screenshot("model_" + name)
+        self.check_retry()
         self.assertEqual(self.browser.problems, [])
 
     def check_training(self, name, size):
