@@ -4,7 +4,6 @@
 
 #include "../core/byte_size.hpp"
 #include "../core/error.hpp"
-#include "../video/video_file.hpp"
 
 namespace gs::cli {
 
@@ -62,20 +61,6 @@ void check_viewer_size(const settings& s) {
 void check_orbit(const settings& s) {
     if (s.given.contains("orbit_views") && !s.scene.data.empty() && !s.orbit)
         throw error("--orbit-views beside --data needs --orbit: add it or leave out --orbit-views");
-    if (s.given.contains("orbit_views") && video::is_video(s.output))
-        throw error("--orbit-views is for images: give --seconds for a video");
-}
-
-/// Checks that the options about the time of a motion have an effect.
-void check_motion(const settings& s) {
-    if (s.command != command::render) return;
-    const bool moves = s.scene.data.empty() || s.orbit || !s.camera_path.empty();
-    for (const char* key : {"seconds", "fps"})
-        if (s.given.contains(key) && !moves)
-            throw error(std::string("--") + key +
-                        " beside --data needs --orbit or --path: add one of them or leave it out");
-    if (s.given.contains("fps") && !video::is_video(s.output) && s.camera_path.empty() && !s.seconds)
-        throw error("--fps with images on an orbit needs --seconds: add it or leave out --fps");
 }
 
 void check_video_frames(const settings& s) {
@@ -113,7 +98,6 @@ void check_settings(const settings& s) {
     check_video_frames(s);
     check_viewer_size(s);
     check_orbit(s);
-    check_motion(s);
 }
 
 }  // namespace gs::cli
