@@ -1,117 +1,166 @@
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
-"""Drives Debian's Chromium through chromedriver, with Python's standard library only."""
+"""Drives headless Chromium through pipes, with Python's standard library only."""
 import base64
 import json
-import shutil
-import socket
+import os
+import select
 import subprocess
 import sys
 import tempfile
 import time
-import urllib.request
+import urllib.parse
+
+FLAGS = ("--headless=new", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
+         "--disable-component-update", "--disable-sync", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+         "--remote-debugging-pipe", "--hide-scrollbars", "--force-color-profile=srgb")
+
 
 SKIPPED = 77  # the exit status that CTest counts as skipped
 
-FLAGS = ("--headless=new --no-sandbox --disable-quic --no-first-run --disable-background-networking "
-         "--disable-component-update --disable-sync --use-angle=swiftshader --enable-unsafe-swiftshader").split()
-
 
 def require_browser():
-    """Ends the test as skipped if there is no browser."""
-    for program in ("chromium", "chromedriver"):
-        if shutil.which(program) is None:
-            print(f"skipped: {program} is not installed (Debian's packages chromium and chromium-driver)")
-            sys.exit(SKIPPED)
+    """Returns the browser's program. Without one, ends the test as skipped."""
+    program = os.environ.get("WARPAGG_CHROMIUM")
+    if not program:
+        print("skipped: Chromium is not installed (Debian's package chromium)")
+        sys.exit(SKIPPED)
+    return program
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+class BrowserError(Exception):
+    """The browser refused a command, or did not answer in time."""
 
 
 class Browser:
-    """A window of a size. `phone`: with a touch screen and a mobile user agent."""
+    """One page in a new browser. Use it in a `with` statement."""
 
-    def __init__(self, width, height, phone=False):
+    def __init__(self, program, seconds=60):
+        self.deadline = time.monotonic() + seconds
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        port = free_port()
-        self.driver = subprocess.Popen(["chromedriver", f"--port={port}"], stdout=subprocess.DEVNULL,
-                                       stderr=subprocess.DEVNULL)
-        self.url = f"http://127.0.0.1:{port}"
-        options = {"binary": shutil.which("chromium"),
-                   "args": [*FLAGS, f"--user-data-dir={self.profile.name}", f"--window-size={width},{height}"]}
-        if phone:
-            options["mobileEmulation"] = {"deviceMetrics": {"width": width, "height": height, "pixelRatio": 2,
-                                                            "touch": True}}
-        self._await_driver()
-        created = self._call("POST", "/session", {"capabilities": {"alwaysMatch": {
-            "goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL"},
-            "unhandledPromptBehavior": "ignore"}}})
-        self.url += "/session/" + created["sessionId"]
+        to_browser, self.output = os.pipe()
+        self.input, from_browser = os.pipe()
+        # Chromium reads commands from descriptor 3 and answers on descriptor 4.
+        command = ["sh", "-c", f'exec "$@" 3<&{to_browser} 4>&{from_browser}', "sh", program, *FLAGS,
+                   f"--user-data-dir={self.profile.name}", "about:blank"]
+        self.process = subprocess.Popen(command, pass_fds=(to_browser, from_browser),
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.received, self.last_id = b"", 0
+        self.problems = []  # errors on the console, exceptions, and requests beyond the page
+        self.has_dialog = False
+        self.own = ()  # beginnings of the addresses that the page may load
+        self.session = None
+        target = next(t for t in self.call("Target.getTargets")["targetInfos"] if t["type"] == "page")
+        self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(domain + ".enable")
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        try:
-            self._call("DELETE", "")
-        finally:
-            self.driver.terminate()
-            self.driver.wait()
-            self.profile.cleanup()
+        self.process.terminate()
+        self.process.wait()
+        os.close(self.output)
+        os.close(self.input)
+        self.profile.cleanup()
 
-    def _await_driver(self):
-        for _ in range(600):
-            try:
-                if self._call("GET", "/status")["ready"]:
-                    return
-            except OSError:
-                time.sleep(0.05)
-        raise RuntimeError("chromedriver does not start")
+    def call(self, method, **parameters):
+        self.last_id += 1
+        message = {"id": self.last_id, "method": method, "params": parameters}
+        if self.session:
+            message["sessionId"] = self.session
+        os.write(self.output, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self.receive()
+            if answer.get("id") != self.last_id:
+                self.note(answer)
+            elif "error" in answer:
+                raise BrowserError(f"{method}: {answer['error']['message']}")
+            else:
+                return answer["result"]
 
-    def _call(self, method, path, body=None):
-        data = None if method != "POST" else json.dumps(body or {}).encode()
-        request = urllib.request.Request(self.url + path, data, {"Content-Type": "application/json"}, method=method)
-        try:
-            with urllib.request.urlopen(request, timeout=60) as response:
-                return json.load(response)["value"]
-        except urllib.error.HTTPError as failed:
-            raise RuntimeError(json.load(failed)["value"]["message"]) from None
+    def receive(self):
+        while b"\0" not in self.received:
+            left = self.deadline - time.monotonic()
+            if left <= 0 or not select.select([self.input], [], [], left)[0]:
+                raise BrowserError("the browser does not answer")
+            part = os.read(self.input, 1 << 20)
+            if not part:
+                raise BrowserError("the browser has ended")
+            self.received += part
+        text, self.received = self.received.split(b"\0", 1)
+        return json.loads(text)
 
-    def open(self, url):
-        self._call("POST", "/url", {"url": url})
+    def note(self, event):
+        parameters = event.get("params", {})
+        if event.get("method") == "Runtime.exceptionThrown":
+            details = parameters["exceptionDetails"]
+            self.problems.append(details.get("exception", {}).get("description", details["text"]))
+        if event.get("method") == "Runtime.consoleAPICalled" and parameters["type"] in ("error", "warning"):
+            self.problems.append(str([a.get("value", a.get("description")) for a in parameters["args"]]))
+        if event.get("method") == "Log.entryAdded" and parameters["entry"]["level"] in ("error", "warning"):
+            # SwiftShader itself is slow at reading pixels, and says so.
+            if "GPU stall due to ReadPixels" not in parameters["entry"]["text"]:
+                self.problems.append(parameters["entry"]["text"])
+        if event.get("method") == "Network.requestWillBeSent":
+            url = parameters["request"]["url"]
+            if not url.startswith(("data:", "blob:", "about:", *self.own)):
+                self.problems.append("the page asks for " + url)
 
-    def run(self, script):
-        """The value of a script, such as `return document.title`."""
-        return self._call("POST", "/execute/sync", {"script": script, "args": []})
+        if event.get("method") == "Page.javascriptDialogOpening":
+            self.has_dialog = True
 
-    def wait_for(self, condition, seconds=60):
-        """Waits until an expression of JavaScript is true."""
-        until = time.monotonic() + seconds
-        while not self.run(f"return Boolean({condition})"):
-            if time.monotonic() > until:
-                raise AssertionError(f"not true after {seconds} s: {condition}")
-            time.sleep(0.05)
+    def open(self, address, width, height, ratio=1, mobile=False):
+        """Shows a page, which may load only files or, if a server sent it, only from this server."""
+        parts = urllib.parse.urlsplit(address)
+        self.own = (f"{parts.scheme}://{parts.netloc}/",)
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio,
+                  mobile=mobile)
+        self.call("Emulation.setTouchEmulationEnabled", enabled=mobile)
+        self.call("Page.navigate", url=address)
+        self.wait("document.readyState === 'complete'")
+
+    def evaluate(self, expression):
+        result = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in result:
+            raise BrowserError(f"{expression}: {result['exceptionDetails']}")
+        return result["result"].get("value")
+
+    def wait(self, condition):
+        while not self.evaluate(condition):
+            if time.monotonic() > self.deadline:
+                raise BrowserError("never true: " + condition)
+            time.sleep(0.02)
+
+    def mouse(self, kind, x, y, **more):
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", **more)
+
+    def touch(self, kind, *points):
+        self.call("Input.dispatchTouchEvent", type=kind,
+                  touchPoints=[{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
 
     def drag(self, start, end, touches=False):
-        """Drags from a point of the page to another, in pixels."""
-        def move(to, milliseconds):
-            return {"type": "pointerMove", "duration": milliseconds, "x": to[0], "y": to[1], "origin": "viewport"}
-        pointer = {"type": "pointer", "id": "pointer", "parameters": {"pointerType": "touch" if touches else "mouse"},
-                   "actions": [move(start, 0), {"type": "pointerDown", "button": 0}, move(end, 300),
-                               {"type": "pointerUp", "button": 0}]}
-        self._call("POST", "/actions", {"actions": [pointer]})
+        """Drags from a point of the page to another, with the mouse or with a finger."""
+        if touches:
+            self.touch("touchStart", start)
+            self.touch("touchMove", end)
+            self.touch("touchEnd")
+        else:
+            self.mouse("mousePressed", *start, buttons=1, clickCount=1)
+            self.mouse("mouseMoved", *end, buttons=1)
+            self.mouse("mouseReleased", *end, clickCount=1)
 
     def accept_dialog(self):
-        self._call("POST", "/alert/accept")
+        """Waits for a dialog of the page, and answers yes."""
+        while not self.has_dialog:
+            self.note(self.receive())
+        self.has_dialog = False
+        self.call("Page.handleJavaScriptDialog", accept=True)
 
-    def errors(self):
-        """The errors on the console since the last call."""
-        return [entry["message"] for entry in self._call("POST", "/se/log", {"type": "browser"})
-                if entry["level"] == "SEVERE"]
-
-    def screenshot(self, file):
+    def screenshot(self, file, whole=False):
+        image = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)
         with open(file, "wb") as out:
-            out.write(base64.b64decode(self._call("GET", "/screenshot")))
+            out.write(base64.b64decode(image["data"]))

@@ -35,7 +35,7 @@ std::vector<pages::run_record> records_of(const std::vector<std::string>& folder
         if (!fs::exists(folder / "metrics.json"))
             throw error("cannot compare " + folder.string() +
                         ": it is no folder of a finished run, because it has no metrics.json");
-        const std::string last = last_part(fs::absolute(folder).lexically_normal());
+        const std::string last = last_part(folder);
         std::string name = last;
         for (int again = 2; !taken.insert(name).second; ++again) name = last + " " + std::to_string(again);
         runs.push_back({name, json_in(folder / "metrics.json"), json_in(folder / "settings.json")});

@@ -157,9 +157,24 @@ void write_movie(const settings& s, train::engine& engine, const drawing& d,
     }
 }
 
+/// Checks that the options about orbits and paths have an effect.
+void check_motion(const settings& s) {
+    const bool is_video = video::is_video(s.output);
+    const bool moves = s.scene.data.empty() || s.orbit || !s.camera_path.empty();
+    for (const char* key : {"seconds", "fps"})
+        if (s.given.contains(key) && !moves)
+            throw error(std::string("--") + key +
+                        " beside --data needs --orbit or --path: add one of them or leave it out");
+    if (s.given.contains("fps") && !is_video && s.camera_path.empty() && !s.seconds)
+        throw error("--fps with images on an orbit needs --seconds: add it or leave out --fps");
+    if (s.given.contains("orbit_views") && is_video)
+        throw error("--orbit-views is for images: give --seconds for a video");
+}
+
 }  // namespace
 
 void render(const settings& s) {
+    check_motion(s);
     const command_context context(s);
     const bool is_video = video::is_video(s.output);
     if (is_video) video::require_encoder();

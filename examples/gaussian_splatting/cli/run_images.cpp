@@ -69,7 +69,8 @@ std::vector<pages::view_images> typical_training_views(train::engine& engine, co
     return chosen;
 }
 
-std::string last_part(const std::filesystem::path& path) {
+std::string last_part(const std::filesystem::path& relative) {
+    const std::filesystem::path path = std::filesystem::absolute(relative).lexically_normal();
     return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 

@@ -38,7 +38,7 @@ std::vector<pages::view_images> typical_training_views(train::engine& engine, co
                                                        const features::feature_set& features,
                                                        const std::array<float, 3>& background);
 
-/// Returns the last part of a path, which says nothing about this machine.
-std::string last_part(const std::filesystem::path& path);
+/// Returns the name of the file or folder at a path, such as ".", without the folders above it.
+std::string last_part(const std::filesystem::path& relative);
 
 }  // namespace gs::cli

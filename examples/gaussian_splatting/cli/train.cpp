@@ -223,7 +223,7 @@ void training_run::save_checkpoint(int iteration, state_archive& archive) {
         replace_earlier_run();
         checkpoints_in(s_.output).write(iteration, archive, s_.keep_checkpoints);
     } catch (const std::exception& failed) {
-        if (signals_->received() != 0) throw;
+        if (is_interrupted()) throw;
         warn(failed.what() + std::string("; training continues"));
     }
 }

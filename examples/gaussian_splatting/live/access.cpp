@@ -16,6 +16,14 @@
 namespace gs::live {
 namespace {
 
+/// Host names have no case, and browsers write them in small letters.
+std::string in_small_letters(std::string_view name) {
+    std::string small(name);
+    for (char& c : small)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return small;
+}
+
 bool is_any_address(std::string_view host) { return host == "0.0.0.0" || host == "::"; }
 
 bool is_ip_address(const std::string& text) {
@@ -61,11 +69,12 @@ bool access_control::knows(std::string_view token) const {
     return differences == 0;
 }
 
-bool access_control::names_server(std::string_view name) const {
-    if (name == host_) return true;
+bool access_control::names_server(std::string_view in_header) const {
+    const std::string name = in_small_letters(in_header);
+    if (name == in_small_letters(host_)) return true;
     if (is_loopback(host_)) return name == "localhost";
     return is_any_address(host_) &&
-           (name == "localhost" || name == machine_name() || is_ip_address(std::string(name)));
+           (name == "localhost" || name == in_small_letters(machine_name()) || is_ip_address(name));
 }
 
 bool access_control::allows_host(std::string_view header) const {

@@ -35,7 +35,7 @@ class access_control {
     std::string url() const;
 
   private:
-    bool names_server(std::string_view name) const;
+    bool names_server(std::string_view in_header) const;
 
     std::string host_;
     int port_;

@@ -94,9 +94,9 @@ void write_choice(std::ostream& out, const char* side, std::size_t selected,
 
 void write_compared_view(std::ostream& out, const compared_view& view, const std::vector<run_record>& runs) {
     out << "<figure class=\"choice\"><figcaption><b>" << html_escaped(view.label) << "</b> "
-        << html_escaped(view.name) << "</figcaption><div class=\"pair\"><img alt=\"Left image\" src=\""
-        << data_url(view.renders.front()) << "\"><img class=\"over\" alt=\"Right image\" src=\""
-        << data_url(view.renders[1])
+        << html_escaped(shown_view_name(view.name))
+        << "</figcaption><div class=\"pair\"><img alt=\"Left image\" src=\"" << data_url(view.renders.front())
+        << "\"><img class=\"over\" alt=\"Right image\" src=\"" << data_url(view.renders[1])
         << "\"><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" aria-label=\"Share of the left "
            "image\"></div><p class=\"sides\">";
     write_choice(out, "Left", 1, runs);

@@ -32,7 +32,8 @@ std::string summary_of(const ordered_json& metrics) {
 
 void write_view(std::ostream& out, const view_images& view) {
     const std::string psnr = view.psnr ? ", " + formatted_number("%.2f dB", *view.psnr) : "";
-    out << "<figure><figcaption><b>" << html_escaped(view.label) << "</b> " << html_escaped(view.name) << psnr
+    out << "<figure><figcaption><b>" << html_escaped(view.label) << "</b> "
+        << html_escaped(shown_view_name(view.name)) << psnr
         << "</figcaption><div class=\"pair\"><img alt=\"Photo\" src=\"" << data_url(view.photo)
         << "\"><img class=\"over\" alt=\"Render\" src=\"" << data_url(view.render)
         << "\"><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" aria-label=\"Share of the "

@@ -77,6 +77,11 @@ std::string shown_setting(const ordered_json& value) {
     return text.substr(text.find_last_of('/') + 1);
 }
 
+std::string shown_view_name(const std::string& name) {
+    const bool is_outside = name.starts_with('/') || name.starts_with("../");
+    return is_outside ? name.substr(name.find_last_of('/') + 1) : name;
+}
+
 const std::vector<metric>& reported_metrics() {
     static const std::vector<metric> all{{{"psnr"}, "Held-out PSNR (dB)", "%.2f", 1},
                                          {{"ssim"}, "Held-out SSIM", "%.4f", 1},

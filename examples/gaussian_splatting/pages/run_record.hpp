@@ -41,6 +41,9 @@ std::vector<line_chart> charts_of(const std::vector<run_record>& runs);
 /// the machine.
 std::string shown_setting(const nlohmann::ordered_json& value);
 
+/// Returns the name of a view for people. Removes the folders of a photo outside of the scene.
+std::string shown_view_name(const std::string& name);
+
 /// A number of metrics.json that reports list.
 struct metric {
     std::vector<std::string> path;

@@ -80,6 +80,8 @@ void require_encoder() {
 
 void write_video(const fs::path& file, const format& format,
                  const std::function<std::vector<std::uint8_t>()>& next) {
+    if (fs::is_directory(file))
+        throw error("cannot write " + file.string() + ": it is a folder; give another name with -o");
     const unfinished_file part(file.string() + ".part");
     std::string last_line;
     const int status =

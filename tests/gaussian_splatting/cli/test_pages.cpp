@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "cli/run_images.hpp"
 #include "run_program.hpp"
 #include "small_training.hpp"
 
@@ -20,6 +21,13 @@ TEST_CASE("train writes a viewer and a report without paths of the machine") {
     const json history = read_json(folder / "run/metrics.json").at("history");
     CHECK(history.at("iteration") == json{60});
     CHECK(history.at("gaussians").size() == 1);
+}
+
+TEST_CASE("pages name a scene after its folder") {
+    CHECK(gs::cli::last_part("/scenes/garden/") == "garden");
+    CHECK(gs::cli::last_part("garden/images/..") == "garden");
+    CHECK(gs::cli::last_part(".") == fs::current_path().filename());
+    CHECK(gs::cli::last_part("synthetic:spheres") == "synthetic:spheres");
 }
 
 TEST_CASE("without --eval, the report shows training views") {

@@ -128,3 +128,20 @@ TEST_CASE("videos: the views of a scene are no motion, and --orbit-views needs a
                   gs::poses::is_installed("ffmpeg") ? words{"--orbit", "--path"} : words{"ffmpeg"});
     check_refusal(model.render({"-o", "x", "-d", "synthetic:spheres", "--orbit-views", "3"}), {"--orbit"});
 }
+
+TEST_CASE("videos: options without an effect are refused") {
+    const spheres_model model;
+    const words views{"-o", model.file("views").string(), "-d", "synthetic:spheres"};
+    check_refusal(model.render(views + words{"--seconds", "3"}), {"--seconds", "--orbit", "--path"});
+    check_refusal(model.render(views + words{"--fps", "3"}), {"--fps", "--orbit", "--path"});
+    check_refusal(model.render({"-o", model.file("images").string(), "--fps", "3"}), {"--fps", "--seconds"});
+    check_refusal(model.render({"-o", model.file("a.mp4").string(), "--orbit-views", "3"}),
+                  {"--orbit-views", "images", "--seconds"});
+}
+
+TEST_CASE("videos: a folder with the name of the video is refused") {
+    if (!has_ffmpeg()) return;
+    const spheres_model model;
+    fs::create_directories(model.file("a.mp4"));
+    check_refusal(model.render({"-o", model.file("a.mp4").string()}), {"a.mp4:", "folder", "another name"});
+}

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <optional>
 #include <regex>
+#include <stdexcept>
 #include <thread>
 
 #include "../live/serve.hpp"
@@ -92,7 +93,8 @@ struct printed_url {
 };
 
 printed_url await_url(const fs::path& output) {
-    while (true) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (std::chrono::steady_clock::now() < until) {
         std::ifstream in(output);
         const std::string text{std::istreambuf_iterator<char>(in), {}};
         std::smatch found;
@@ -100,6 +102,7 @@ printed_url await_url(const fs::path& output) {
             return {std::stoi(found[1]), found[2]};
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
+    throw std::runtime_error("the program has printed no URL");
 }
 
 void press(const printed_url& url, const std::string& button) {
@@ -134,6 +137,22 @@ TEST_CASE("viewer: stop saves the model and a checkpoint, with which the trainin
     for (const auto& entry : fs::directory_iterator(output / "point_cloud"))
         models += fs::exists(entry.path() / "point_cloud.ply");
     CHECK(models == 1);
+}
+
+TEST_CASE("viewer: stop without a checkpoint is an error") {
+    const temporary_folder folder;
+    const fs::path output = folder / "run";
+    const outcome stopped = run_and_then(
+        {"train", "-d", "synthetic:spheres", "-r", "32", "--effects", "none", "--device", "cpu", "-o",
+         output.string(), "-i", "100000", "--viewer", std::to_string(fake_server::any_port())},
+        [&](pid_t, const fs::path& out) {
+            const printed_url url = await_url(out);
+            write_file(output / "checkpoints", "a file in the place of the folder");
+            press(url, "stop");
+        });
+    CHECK(stopped.code == 2);
+    CHECK(says(stopped.err, {"checkpoints"}));
+    CHECK(stopped.err.find("training continues") == std::string::npos);
 }
 
 TEST_CASE("viewer: view shows a model until it is stopped or interrupted") {

@@ -88,6 +88,8 @@ TEST_CASE("server: only names of the server are allowed in the header Host") {
     CHECK(all.allows_host("192.168.0.7:8080"));
     CHECK(all.allows_host("[fe80::1]:8080"));
     CHECK_FALSE(all.allows_host("evil.example:8080"));
+    // Browsers write names in small letters.
+    CHECK(gs::live::access_control("Server.Example", 8080).allows_host("server.example:8080"));
     CHECK(six.allows_host("[::1]"));
     CHECK(six.url().starts_with("http://[::1]:80/?token="));
     CHECK(gs::live::is_loopback("127.0.0.1"));
@@ -194,6 +196,18 @@ TEST_CASE("server: garbage does not end it") {
         c.send(bytes);
     }
     CHECK(s.get("/status") == 200);
+}
+
+TEST_CASE("server: ranges do not multiply a response") {
+    const fake_server s;
+    std::string ranges = "Range: bytes=0-";
+    while (ranges.size() < 8000) ranges += ",0-";
+    const raw_connection c(s.server.port());
+    c.send("GET /?token=" + s.server.token() +
+           " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(s.server.port()) + "\r\n" + ranges + "\r\n\r\n");
+    const std::string response = c.receive();
+    CHECK(response.starts_with("HTTP/1.1 200"));
+    CHECK(response.size() < 65536);
 }
 
 TEST_CASE("server: a request of endless headers is cut off") {

@@ -18,8 +18,8 @@ import tempfile
 import unittest
 import zlib
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from browser import Browser  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from browser import Browser, require_browser  # noqa: E402
 
 SCENE = ["-d", "synthetic:spheres,views=9", "-r", "96"]
 EFFECTS_SCENE = ["-d", "synthetic:spheres,sky=0.7,scales=4,gloss=1,views=9", "-r", "64"]
@@ -146,9 +146,6 @@ class Pages(unittest.TestCase):
                 self.keep_screenshot("viewer_" + name)
                 self.check_quiet()
 
-    def mouse(self, kind, x, y, **more):
-        self.browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", **more)
-
     def state(self):
         return json.loads(self.browser.evaluate(
             "JSON.stringify([viewer.camera.position, viewer.camera.distance, viewer.camera.axes])"))
@@ -157,9 +154,7 @@ class Pages(unittest.TestCase):
         self.open("run/viewer.html", SMALL)
         self.browser.wait(COMPLETE)
         position, distance, axes = self.state()
-        self.mouse("mousePressed", 150, 120, buttons=1, clickCount=1)
-        self.mouse("mouseMoved", 120, 105, buttons=1)
-        self.mouse("mouseReleased", 120, 105, clickCount=1)
+        self.browser.drag((150, 120), (120, 105))
         orbited = self.state()
         self.assertNotAlmostEqual(position[0], orbited[0][0], 3)
         self.assertAlmostEqual(distance, orbited[1])
@@ -172,29 +167,23 @@ class Pages(unittest.TestCase):
         self.browser.evaluate("document.getElementById('reset').click()")
         self.assertEqual(self.state(), [position, distance, axes])
         for clicks in (1, 2):
-            self.mouse("mousePressed", 160, 120, buttons=1, clickCount=clicks)
-            self.mouse("mouseReleased", 160, 120, clickCount=clicks)
+            self.browser.mouse("mousePressed", 160, 120, buttons=1, clickCount=clicks)
+            self.browser.mouse("mouseReleased", 160, 120, clickCount=clicks)
         self.assertNotEqual(self.state()[1], distance)
         self.browser.wait(COMPLETE)
         self.keep_screenshot("viewer_pivot")
         self.check_quiet()
 
-    def touch(self, kind, *points):
-        self.browser.call("Input.dispatchTouchEvent", type=kind, touchPoints=[
-            {"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)])
-
     def test_fingers_turn_and_zoom(self):
         self.open("run/viewer.html", SMALL_TOUCH)
         self.browser.wait(COMPLETE)
         position, distance, _ = self.state()
-        self.touch("touchStart", (120, 150))
-        self.touch("touchMove", (160, 150))
-        self.touch("touchEnd")
+        self.browser.drag((120, 150), (160, 150), touches=True)
         self.browser.wait(f"viewer.camera.position[0] !== {position[0]}")
         self.assertAlmostEqual(self.state()[1], distance)
-        self.touch("touchStart", (90, 150), (150, 150))
-        self.touch("touchMove", (60, 150), (180, 150))
-        self.touch("touchEnd")
+        self.browser.touch("touchStart", (90, 150), (150, 150))
+        self.browser.touch("touchMove", (60, 150), (180, 150))
+        self.browser.touch("touchEnd")
         self.browser.wait(f"viewer.camera.distance < {0.7 * distance}")
         self.check_quiet()
 
@@ -233,7 +222,5 @@ class Pages(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if not os.environ.get("WARPAGG_CHROMIUM"):
-        print("skipped: Chromium is not installed (Debian's package chromium)")
-        sys.exit(77)
+    require_browser()
     unittest.main()

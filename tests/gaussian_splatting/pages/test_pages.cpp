@@ -156,6 +156,19 @@ TEST_CASE("pages: the report labels training views as such") {
     CHECK(says(held_out, {"held out"}));
 }
 
+TEST_CASE("pages: names of views have no folders outside of the scene") {
+    const auto caption = [](const std::string& name) {
+        const view_images view{name, "Worst view", 20.25, plain_image(4, 4, 0), plain_image(4, 4, 1)};
+        const std::string page = page_of({sample_run("a"), {view}, false});
+        const std::string begin = "Worst view</b> ";
+        const auto at = page.find(begin) + begin.size();
+        return page.substr(at, page.find(',', at) - at);
+    };
+    CHECK(caption("left/a.jpg") == "left/a.jpg");
+    CHECK(caption("/home/someone/a.jpg") == "a.jpg");
+    CHECK(caption("../someone/a.jpg") == "a.jpg");
+}
+
 TEST_CASE("pages: the report ignores values of wrong types") {
     const run_record broken{
         "a",
