@@ -13,6 +13,21 @@ namespace gs::cluster {
 namespace {
 
 constexpr std::size_t most_groups = 4096;
+constexpr std::size_t most_sorted = std::size_t{1} << 19;
+
+/// Returns one of every few values, so that there are at most `most_sorted`, and the smallest and
+/// the largest one. Which one differs, because values may alternate between coordinates.
+std::vector<float> sample_of(std::span<const float> values) {
+    if (values.size() <= most_sorted) return {values.begin(), values.end()};
+    const auto [least, most] = std::ranges::minmax(values);
+    std::vector<float> sample{least, most};
+    for (std::size_t i = 2; i < most_sorted; ++i) {
+        const std::size_t first = i * values.size() / most_sorted;
+        const std::size_t end = (i + 1) * values.size() / most_sorted;
+        sample.push_back(values[first + i % (end - first)]);
+    }
+    return sample;
+}
 
 /// A range of the sorted values.
 struct value_range {
@@ -22,11 +37,11 @@ struct value_range {
     bool operator<(const value_range& other) const { return error < other.error; }
 };
 
-/// Sorted values, with the mean and the error of each range.
+/// Sorted values, or a sample of very many, with the mean and the error of each range.
 class sorted_values {
   public:
     explicit sorted_values(std::span<const float> values)
-        : values_(values.begin(), values.end()), sums_(values.size() + 1), squares_(values.size() + 1) {
+        : values_(sample_of(values)), sums_(values_.size() + 1), squares_(values_.size() + 1) {
         std::ranges::sort(values_);
         // Sums start in the middle, so that outliers at the ends do not cost other ranges precision.
         const std::size_t middle = values_.size() / 2;

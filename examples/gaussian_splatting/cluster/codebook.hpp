@@ -15,7 +15,8 @@ class codebook {
     static constexpr std::size_t size = 256;
 
     /// Fits the numbers to `values`, which are finite: merges similar values, and partitions the rest
-    /// with the smallest possible error. Takes the time of sorting. Without values, all numbers are zero.
+    /// with the smallest possible error. Reads a sample of about half a million values if there are
+    /// more. Takes the time of sorting. Without values, all numbers are zero.
     explicit codebook(std::span<const float> values);
 
     const std::array<float, size>& values() const { return values_; }

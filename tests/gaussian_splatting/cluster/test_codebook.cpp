@@ -57,6 +57,20 @@ TEST_CASE("codebook: the error is close to the best for a normal distribution, e
     }
 }
 
+TEST_CASE("codebook: a sample of very many values stands for all coordinates and for the extremes") {
+    std::mt19937 random(1);
+    std::normal_distribution<float> normal;
+    std::vector<float> values(std::size_t{6} << 19);  // so that the sample takes one of six
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = 100.0f * static_cast<float>(i % 3) + normal(random);
+    values[1] = 1e6f;
+    const codebook book(values);
+    CHECK(book.values()[book.nearest(1e6f)] == 1e6f);
+    // Each of the three distributions gets a third of the numbers.
+    const double best = std::sqrt(3.0) * 3.14159265 / 2 / (85.0 * 85);
+    CHECK(mean_squared_error(book, values) < 1.05 * best);
+}
+
 TEST_CASE("codebook: no other codebook of few values has a smaller error") {
     // Of 258 squares, three share a number. 0, 1 and 4 do, whose mean is 5 / 3.
     std::vector<float> values;
