@@ -57,10 +57,15 @@ gs::gaussians trained(const gs::scene& scene, bool is_watched) {
     live.emplace(settings, *engine, scene, options,
                  gs::cli::live_training::callbacks{[&](int) { return std::to_string(++saves); },
                                                    [] { return false; }});
-    events.schedule = [&](gs::train::training& t) { live->add_to(t); };
+    std::atomic<int> frames = 0;
+    events.schedule = [&](gs::train::training& t) {
+        live->add_to(t);
+        // On a busy machine, training could end before the page pauses it.
+        t.add({gs::train::phase::observe, "wait for the page", [&](int) { return frames < 5; },
+               [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(50)); }});
+    };
     events.report = [&](const gs::train::progress& p) { live->report(p); };
     std::atomic<bool> has_ended = false;
-    std::atomic<int> frames = 0;
     pages = std::thread([&] {
         httplib::Client client("127.0.0.1", *settings.viewer);
         const std::string token = live->view().token();
