@@ -42,6 +42,13 @@ gaussians edited(gaussians model, const settings& s, const command_context& cont
     if (s.remove_floaters)
         report("--remove-floaters", edit::remove_floaters(model, training_cameras(s, context)));
     if (s.decimate) report("--decimate", edit::decimate(model, s.decimate->of(model.count())));
+    const bool becomes_gaussians =
+        s.sky == sky_form::gaussians || (s.sky == sky_form::automatic && !holds_sky(s.output));
+    if (s.sky == sky_form::none) model.sky.clear();
+    if (becomes_gaussians && !model.sky.empty()) {
+        context.say("the learned background becomes " + std::to_string(edit::sky_count) + " Gaussians");
+        model = edit::with_sky_gaussians(std::move(model));
+    }
     if (s.up) model = edit::rotate(model, edit::upright(direction_of(*s.up)));
     return model;
 }

@@ -91,6 +91,11 @@ std::vector<option> convert_options(settings& s) {
         {.names = "--max-sh-degree",
          .value = whole(s.export_options.max_sh_degree, 0, 3),
          .help = "Highest degree of the spherical harmonics (SH) that OUT has"},
+        {.names = "--sky",
+         .value = choice(s.sky),
+         .help =
+             "Learned background in OUT: auto keeps it if the format can hold it, and otherwise writes it "
+             "as Gaussians on a sphere around the model, which all viewers show; none leaves it out"},
         {.names = "--up",
          .value = choice(s.up),
          .help = "Axis that points up in IN; turns the model so that viewers show it upright",

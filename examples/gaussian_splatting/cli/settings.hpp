@@ -33,6 +33,9 @@ enum class background_kind { automatic, white, black, random };
 enum class pose_source { given, automatic };
 enum class quality_preset { fast, balanced, best };
 enum class log_level { error, warning, info };
+/// How `convert` writes a learned background: as it is if the format can hold it, and otherwise as
+/// Gaussians; always as Gaussians; or not at all.
+enum class sky_form { automatic, gaussians, none };
 enum class up_axis { x, minus_x, y, minus_y, z, minus_z };
 
 /// Returns the words of the command line for an enumeration, in the order of its values.
@@ -44,6 +47,7 @@ constexpr std::array<std::string_view, 4> names_of(background_kind) {
 constexpr std::array<std::string_view, 2> names_of(pose_source) { return {"given", "auto"}; }
 constexpr std::array<std::string_view, 3> names_of(quality_preset) { return {"fast", "balanced", "best"}; }
 constexpr std::array<std::string_view, 3> names_of(log_level) { return {"error", "warning", "info"}; }
+constexpr std::array<std::string_view, 3> names_of(sky_form) { return {"auto", "gaussians", "none"}; }
 constexpr std::array<std::string_view, 6> names_of(up_axis) { return {"x", "-x", "y", "-y", "z", "-z"}; }
 /// @}
 
@@ -94,6 +98,7 @@ struct settings {
     std::optional<edit::box> crop;  ///< in the coordinates of the model
     std::optional<edit::share> decimate;
     bool remove_floaters = false;
+    sky_form sky = sky_form::automatic;
     std::optional<up_axis> up;
     bool orbit = false;       ///< draws an orbit around a scene instead of its views
     std::string camera_path;  ///< file with key views; empty if there is none

@@ -57,6 +57,13 @@ inline constexpr std::size_t least_floater_views = 2;
 /// Precondition: `rotation` is orthonormal, with determinant 1.
 gaussians rotate(const gaussians& model, const glm::dmat3& rotation);
 
+/// Replaces the learned background by `sky_count` Gaussians on a sphere around the model, which any
+/// viewer shows. They have the colors of the background as seen from the center of the model.
+/// Gaussians far outside of the model end up behind the sphere. Returns a model without a learned
+/// background as it is.
+gaussians with_sky_gaussians(gaussians model);
+inline constexpr std::size_t sky_count = 4096;
+
 /// Returns the smallest rotation that turns the axis `up`, a unit vector, to -y, which viewers of
 /// .ply files show upward.
 glm::dmat3 upright(const glm::dvec3& up);

@@ -70,6 +70,10 @@ std::vector<std::string> left_out(const std::filesystem::path& file, const gauss
     return sentences;
 }
 
+bool holds_sky(const std::filesystem::path& file, writer_table writers) {
+    return known_writer_of(file, writers).holds_sky;
+}
+
 bool has_ending(const std::filesystem::path& file, const writer& format, writer_table writers) {
     return writer_of(file, writers) == &format;
 }

@@ -63,6 +63,9 @@ std::vector<std::string> left_out(const std::filesystem::path& file, const gauss
                                   const write_options& options = {},
                                   std::span<const writer* const> writers = all_writers());
 
+/// Returns `writer::holds_sky` of the format of the file's ending. Throws `error` like `left_out`.
+bool holds_sky(const std::filesystem::path& file, std::span<const writer* const> writers = all_writers());
+
 /// Returns whether the ending of the file, in upper or lower case, selects this writer.
 bool has_ending(const std::filesystem::path& file, const writer& format,
                 std::span<const writer* const> writers = all_writers());

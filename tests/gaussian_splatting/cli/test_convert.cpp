@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/parse.hpp"
+#include "edit/edit.hpp"
 #include "run_program.hpp"
 #include "writers/writer.hpp"
 
@@ -122,6 +123,23 @@ TEST_CASE("convert warns about what the format cannot hold") {
     CHECK_FALSE(says(c.run_with({}, "a.spz").out, {"warning:"}));
     CHECK_FALSE(says(c.run_with({"--max-sh-degree", "0"}, "a.splat").out, {"warning:"}));
     CHECK(c.run_with({"--quiet"}, "a.splat").out.empty());
+}
+
+TEST_CASE("convert writes the learned background as Gaussians if the format cannot hold it, or on demand") {
+    const conversion c(2);
+    gs::gaussians model = row(2);
+    model.sky.assign(gs::sky_width, 0.25f);
+    gs::write_model(c.file("in.ply"), model);
+    constexpr std::size_t more = 2 + gs::edit::sky_count;
+
+    CHECK(c.result_of({}).sky == model.sky);
+    CHECK(c.result_of({}).count() == 2);
+    CHECK(c.result_of({}, "a.spz").count() == more);
+    CHECK(c.result_of({"--sky", "gaussians"}).count() == more);
+    CHECK(c.result_of({"--sky", "gaussians"}).sky.empty());
+    CHECK(c.result_of({"--sky", "none"}).sky.empty());
+    CHECK(c.result_of({"--sky", "none"}, "a.spz").count() == 2);
+    CHECK(says(c.run_with({}, "b.glb").out, {"learned background", std::to_string(more - 2)}));
 }
 
 TEST_CASE("convert clusters colors on the device of --device") {

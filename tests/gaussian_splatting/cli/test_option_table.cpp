@@ -91,6 +91,7 @@ const std::map<std::string, option_case> cases{
     {"--remove-floaters", {{}, [](const settings& s) { return s.remove_floaters; }}},
     {"--decimate", {{"12.5%"}, [](const settings& s) { return s.decimate && s.decimate->of(100) == 13; }}},
     {"--max-sh-degree", {{"1"}, [](const settings& s) { return s.export_options.max_sh_degree == 1; }}},
+    {"--sky", {{"none"}, [](const settings& s) { return s.sky == sky_form::none; }}},
     {"--up", {{"-z"}, [](const settings& s) { return s.up == up_axis::minus_z; }}},
     {"--spz-version", {{"3"}, [](const settings& s) { return s.export_options.spz_version == 3; }}},
     {"--orbit-views", {{"3"}, [](const settings& s) { return s.orbit_views == 3; }}},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -9,7 +10,9 @@
 #include <vector>
 
 #include "edit/edit.hpp"
+#include "engine/engine.hpp"
 #include "model/spherical_harmonics.hpp"
+#include "scene/look_at.hpp"
 
 namespace {
 
@@ -167,6 +170,40 @@ TEST_CASE("edit: the learned background turns with the model") {
     for (std::size_t k = 0; k < gs::sky_width; ++k)
         CHECK(turned.sky[k] ==
               doctest::Approx(k < 3 ? turned.sh_constant[k] : turned.sh_rest[k - 3]).epsilon(1e-5));
+}
+
+TEST_CASE(
+    "edit: Gaussians in place of the learned background look like it in all directions from the center") {
+    gs::gaussians model = row_of_gaussians(5);
+    model.sky.assign(gs::sky_width, 0.0f);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> uniform(-0.1f, 0.1f);
+    for (float& coefficient : model.sky) coefficient = uniform(random);
+    const gs::gaussians with = edit::with_sky_gaussians(model);
+    CHECK(with.count() == model.count() + edit::sky_count);
+    CHECK(with.sky.empty());
+    CHECK(std::equal(model.mean.begin(), model.mean.end(), with.mean.begin()));
+
+    const auto engine = gs::train::make_cpu_engine();
+    for (const glm::dvec3& target : {glm::dvec3(9, 1, 0), glm::dvec3(-9, 2, 3), glm::dvec3(2, 9, -9)}) {
+        const gs::camera c = gs::look_at({2, 0.1, 0}, target, {0, 0, 1}, 64, 60);
+        engine->set_model(model);
+        const std::vector<float> before = engine->render(c, {0, 0, 0});
+        engine->set_model(with);
+        const std::vector<float> after = engine->render(c, {0, 0, 0});
+        double squares = 0;
+        for (std::size_t i = 0; i < before.size(); ++i)
+            squares += std::pow(std::clamp(before[i], 0.0f, 1.0f) - std::clamp(after[i], 0.0f, 1.0f), 2);
+        CHECK(squares / static_cast<double>(before.size()) < 1e-4);  // 40 dB
+    }
+}
+
+TEST_CASE("edit: a model without a learned background gets no Gaussians for it, an empty one does") {
+    const gs::gaussians model = row_of_gaussians(3);
+    CHECK(edit::with_sky_gaussians(model).mean == model.mean);
+    gs::gaussians empty;
+    empty.sky.assign(gs::sky_width, 0.1f);
+    CHECK(edit::with_sky_gaussians(empty).count() == edit::sky_count);
 }
 
 TEST_CASE("edit: upright turns any axis to -y by a rotation") {
