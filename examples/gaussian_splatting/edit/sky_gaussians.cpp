@@ -20,7 +20,7 @@ constexpr double relative_radius = 4, almost_all = 0.999;
 /// The standard deviation along the sphere, in units of the distance between neighbors, at which
 /// less than a hundredth of the light passes between them.
 constexpr double relative_deviation = 0.8;
-constexpr float opacity = 6;  // a logit
+constexpr float sky_opacity = 6;  // a logit
 
 struct sphere {
     glm::dvec3 center{0};
@@ -77,7 +77,7 @@ gaussians with_sky_gaussians(gaussians model) {
         append(model.mean, place.x, place.y, place.z);
         append(model.log_scale, size, size, size);
         append(model.quaternion, 1, 0, 0, 0);
-        append(model.opacity, opacity);
+        append(model.opacity, sky_opacity);
         append(model.sh_constant, color.x, color.y, color.z);
     }
     model.sh_rest.resize(model.count() * static_cast<std::size_t>(model.rest_width()), 0.0f);
