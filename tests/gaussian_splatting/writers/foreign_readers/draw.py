@@ -25,7 +25,8 @@ import sys
 import threading
 import typing
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "pages"))
+TESTS = pathlib.Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(TESTS / "support"), str(TESTS / "gaussian_splatting/pages")]
 from browser import Browser  # noqa: E402
 from pages_in_browser import psnr, read_png  # noqa: E402
 
