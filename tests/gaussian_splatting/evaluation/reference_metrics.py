@@ -36,15 +36,16 @@ def interior_ssim():
 
 
 def lpips():
-    """The parts of the distance that come from each layer, by the number of black and the size."""
+    """The parts of the distance that come from each layer, by the number of black and the size. Computes in double
+    precision, because convolutions in single precision differ between processors by more than the tolerance."""
     import torch
 
-    weights = {name: torch.from_numpy(values) for name, values in patterns.lpips_weights().items()}
-    shift = torch.tensor([-0.030, -0.088, -0.188]).view(1, 3, 1, 1)
-    scale = torch.tensor([0.458, 0.448, 0.450]).view(1, 3, 1, 1)
+    weights = {name: torch.from_numpy(values).double() for name, values in patterns.lpips_weights().items()}
+    shift = torch.tensor([-0.030, -0.088, -0.188], dtype=torch.double).view(1, 3, 1, 1)
+    scale = torch.tensor([0.458, 0.448, 0.450], dtype=torch.double).view(1, 3, 1, 1)
 
     def features(planes, black):
-        x = (black + (1 - black) * torch.from_numpy(planes)[None] - shift) / scale
+        x = (black + (1 - black) * torch.from_numpy(planes).double()[None] - shift) / scale
         for layer, indices in enumerate(patterns.CONVOLUTIONS):
             if layer:
                 x = torch.nn.functional.max_pool2d(x, 2)
@@ -68,7 +69,7 @@ def differences(expected, found):
     for key in expected.keys() | found.keys():
         one, other = expected.get(key), found.get(key)
         pairs = zip(one, other) if isinstance(one, list) and isinstance(other, list) else [(one, other)]
-        if not all(a and b and math.isclose(a, b, rel_tol=1e-5) for a, b in pairs):
+        if not all(a and b and math.isclose(a, b, rel_tol=1e-9) for a, b in pairs):
             yield f"{key}: the file has {one}, but the reference computes {other}"
 
 
