@@ -5,9 +5,10 @@
 /// @file
 /// Scatter of rows: adds each row of an array to the record of a table that the row's key names, as
 /// in the gradient of an embedding. `scatter_narrow_rows` is for rows of up to 16 values and
-/// `scatter_wide_rows` for wider rows. With fixed-point sums the result has the same bits for any
-/// order of the rows.
+/// `scatter_wide_rows` for wider rows. `scatter_in_blocks` makes them fast if few keys are frequent.
+/// With fixed-point sums the result has the same bits for any order of the rows.
 
+#include "detail/copied_pieces.hpp"
 #include "fixed_point.hpp"
 #include "match_reduce_atomic.hpp"
 
@@ -161,12 +162,12 @@ WARPAGG_HD void combine_joined(const W& w, V (&v)[4], lane_bits_t<W> joined) {
 
 /// Combines rows of 4 values by key and commits each record with one instruction, in which 4 lanes
 /// share the record's sector. A lane per record would touch each sector 4 times. The summands have 64
-/// bits, and `convert` returns them. Cost: rows whose keys do not fall from lane to lane take fewer
-/// shuffles than others, and the same atomics.
+/// bits, and `convert` returns them. Records with copies are added there. Cost: rows whose keys do not
+/// fall from lane to lane take fewer shuffles than others, and the same atomics.
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Op, class W, class T, class Convert, class V>
+template <class Op, class W, class T, class Convert, class V, class Copies>
 WARPAGG_HD void add_fours(const W& w, V* table, unsigned key, T (&values)[4], const Convert& convert,
-                          bool active) {
+                          bool active, const Copies& copies) {
     using bits = lane_bits_t<W>;
     const bits everyone = w.ballot(active);
     const bool has_next = w.lane() + 1 < W::size;
@@ -191,14 +192,33 @@ WARPAGG_HD void add_fours(const W& w, V* table, unsigned key, T (&values)[4], co
         leaders = w.ballot(active && math::countr_zero(peers) == w.lane());
         transpose_fours(w, sums);
     }
+    const bits copied = copies.find(w, key, (leaders >> w.lane() & 1) != 0);
     WARPAGG_UNROLL
     for (unsigned i = 0; i < 4; ++i) {
         constexpr bits every_fourth = ~bits{0} / 15;
         if ((leaders >> i & every_fourth) == 0) continue;
         const unsigned row = (w.lane() & ~3u) + i;
         const unsigned key_of_row = w.shfl(key, row);
+        copies.add(w, key_of_row, w.lane() & 3u, sums[i], (copied >> row & 1) != 0);
         w.atomic(Op{}, component_of_four<V>{table, w.lane() & 3u}, key_of_row, sums[i],
-                 (leaders >> row & 1) != 0);
+                 ((leaders & ~copied) >> row & 1) != 0);
+    }
+}
+
+/// Combines pieces of N values by their numbers, and adds each to its copy or to the table.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, class W, class V, int N, class Copies>
+WARPAGG_HD void add_pieces(const W& w, V* table, unsigned piece, V (&sums)[N], bool active,
+                           const Copies& copies) {
+    using bits = lane_bits_t<W>;
+    const bits peers = math::select(active, w.match(piece) & w.ballot(active), bits{0});
+    combine_peers<Op>(w, sums, peers);
+    const bool leads = active && math::countr_zero(peers) == w.lane();
+    const bool is_copied = (copies.find(w, piece, leads) >> w.lane() & 1) != 0;
+    WARPAGG_UNROLL
+    for (unsigned i = 0; i < N; ++i) {
+        copies.add(w, piece, i, sums[i], is_copied);
+        w.atomic(Op{}, component_by_key<V*, N>{table, i}, piece, sums[i], leads && !is_copied);
     }
 }
 
@@ -227,34 +247,75 @@ struct scatter_narrow_rows {
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        (*this)(w, index, detail::no_copies{});
+    }
+
+    /// What `scatter_in_blocks` needs.
+    /// @{
+    using sum = typename Rows::sum;
+    template <warp W>
+    using copies_of = detail::copied_pieces<Each, sum, typename Rows::operation>;
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <warp W>
+    WARPAGG_HD void nominate(const W& w, unsigned index, const copies_of<W>& copies) const {
+        place own = place_in(w, index);
+        const unsigned piece = piece_at(w, own);
+        copies.nominate(w, piece, index * W::size + w.lane(), own.inside);
+    }
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <warp W, class Copies>
+    WARPAGG_HD void operator()(const W& w, unsigned index, const Copies& copies) const {
         using value = typename Rows::value;
-        using sum = typename Rows::sum;
         using operation = typename Rows::operation;
+        constexpr bool have_copies = !std::is_same_v<Copies, detail::no_copies>;
         const auto convert = rows.convert(w);
+        place own = place_in(w, index);
+        value v[Each];
+        if constexpr (Each == 4)
+            w.load_packed(rows.values + own.first * rows.width, w.lane() * 4, v, own.inside);
+        else
+            v[0] = w.load(rows.values + own.first * rows.width, w.lane(), own.inside);
+        const unsigned piece = piece_at(w, own);
+        if constexpr (Each == 4 && sizeof(sum) == 8 && W::size % 4 == 0) {
+            detail::add_fours<operation>(w, rows.table, piece, v, convert, own.inside, copies);
+        } else {
+            sum sums[Each];
+            WARPAGG_UNROLL
+            for (unsigned i = 0; i < Each; ++i) sums[i] = convert(v[i]);
+            if constexpr (have_copies)
+                detail::add_pieces<operation>(w, rows.table, piece, sums, own.inside, copies);
+            else if constexpr (std::is_same_v<operation, warpagg::operation::sum>)
+                warp_match_reduce_atomic(w, rows.table, piece, sums, own.inside);
+            else
+                warp_match_reduce_atomic(w, rows.table, piece, sums, own.inside, policy{operation{}});
+        }
+    }
+    /// @}
+
+  private:
+    /// The values that a lane takes: part `part` of row `first + row`.
+    struct place {
+        std::size_t first;
+        unsigned row, part;
+        bool inside;
+    };
+    template <class W>
+    WARPAGG_HD place place_in(const W& w, unsigned index) const {
         const unsigned parts = rows.width / Each;
         // For i up to 64, i / parts = (i inverse) / 65536.
         const unsigned inverse = 65536 / parts + 1;
         const unsigned in_tile = W::size * inverse >> 16;
         const std::size_t first = std::size_t{index} * in_tile;
         const unsigned row = w.lane() * inverse >> 16, part = w.lane() - row * parts;
-        bool inside = row < in_tile && first + row < rows.n;
-        value v[Each];
-        if constexpr (Each == 4)
-            w.load_packed(rows.values + first * rows.width, w.lane() * 4, v, inside);
-        else
-            v[0] = w.load(rows.values + first * rows.width, w.lane(), inside);
-        const unsigned key = rows.keys(w, first + row, inside) * parts + part;
-        if constexpr (Each == 4 && sizeof(sum) == 8 && W::size % 4 == 0) {
-            detail::add_fours<operation>(w, rows.table, key, v, convert, inside);
-        } else {
-            sum sums[Each];
-            WARPAGG_UNROLL
-            for (unsigned i = 0; i < Each; ++i) sums[i] = convert(v[i]);
-            if constexpr (std::is_same_v<operation, warpagg::operation::sum>)
-                warp_match_reduce_atomic(w, rows.table, key, sums, inside);
-            else
-                warp_match_reduce_atomic(w, rows.table, key, sums, inside, policy{operation{}});
-        }
+        return {first, row, part, row < in_tile && first + row < rows.n};
+    }
+    /// Returns the number of the piece of `Each` values in the table, and clears `inside` if the row is
+    /// left out.
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W>
+    WARPAGG_HD unsigned piece_at(const W& w, place& own) const {
+        return rows.keys(w, own.first + own.row, own.inside) * (rows.width / Each) + own.part;
     }
 };
 
@@ -280,11 +341,32 @@ struct scatter_wide_rows {
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
-        using sum = typename Rows::sum;
+        (*this)(w, index, detail::no_copies{});
+    }
+
+    /// What `scatter_in_blocks` needs. Precondition: the table has at most 2^32 stripes of records.
+    /// @{
+    using sum = typename Rows::sum;
+    template <warp W>
+    using copies_of = detail::copied_pieces<W::size * PerLane, sum, typename Rows::operation>;
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <warp W>
+    WARPAGG_HD void nominate(const W& w, unsigned index, const copies_of<W>& copies) const {
+        const unsigned all = stripes(W::size);
+        const std::size_t row = std::size_t{index / all} * W::size + w.lane();
+        bool inside = row < rows.n;
+        const unsigned key = rows.keys(w, row, inside);
+        copies.nominate(w, key * all + index % all, static_cast<unsigned>(row), inside);
+    }
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <warp W, class Copies>
+    WARPAGG_HD void operator()(const W& w, unsigned index, const Copies& copies) const {
         using operation = typename Rows::operation;
         const auto convert = rows.convert(w);
-        const std::size_t first = std::size_t{index / stripes(W::size)} * W::size;
-        const unsigned column = index % stripes(W::size) * (W::size * PerLane);
+        const unsigned all = stripes(W::size), stripe = index % all;
+        const std::size_t first = std::size_t{index / all} * W::size;
+        const unsigned column = stripe * (W::size * PerLane);
 
         bool inside = w.lane() < rows.n - first;
         const unsigned key = rows.keys(w, first + w.lane(), inside);
@@ -297,6 +379,7 @@ struct scatter_wide_rows {
         const bool is_last = w.lane() + 1 == count || key_after != key_of_row;
         // The places in sorted order where a key has its last row.
         const lane_bits_t<W> ends = w.ballot(w.lane() < count && is_last);
+        const lane_bits_t<W> copied = copies.find(w, key_of_row * all + stripe, w.lane() < count);
 
         sum so_far[PerLane];
         clear(so_far);
@@ -318,12 +401,18 @@ struct scatter_wide_rows {
                 for (unsigned k = 0; k < PerLane; ++k)
                     so_far[k] = operation::combine(so_far[k], convert(v[j][k]));
                 if ((ends >> (begin + j) & 1) == 0) continue;
-                const std::size_t record = w.shfl(key_of_row, begin + j);
-                sum* to = rows.table + (record * rows.width + column);
-                WARPAGG_UNROLL
-                for (unsigned k = 0; k < PerLane; ++k)
-                    w.atomic(operation{}, detail::element_at<sum>{to}, lane_column(w, k), so_far[k],
-                             column + lane_column(w, k) < rows.width);
+                const unsigned record = w.shfl(key_of_row, begin + j);
+                if ((copied >> (begin + j) & 1) != 0) {
+                    WARPAGG_UNROLL
+                    for (unsigned k = 0; k < PerLane; ++k)
+                        copies.add(w, record * all + stripe, lane_column(w, k), so_far[k], true);
+                } else {
+                    sum* to = rows.table + (std::size_t{record} * rows.width + column);
+                    WARPAGG_UNROLL
+                    for (unsigned k = 0; k < PerLane; ++k)
+                        w.atomic(operation{}, detail::element_at<sum>{to}, lane_column(w, k), so_far[k],
+                                 column + lane_column(w, k) < rows.width);
+                }
                 clear(so_far);
             }
         }
@@ -359,6 +448,56 @@ struct scatter_wide_rows {
             }
         }
         return mine;
+    }
+};
+
+/// The part of a block of warps in a scatter whose frequent keys are combined before they are
+/// committed. The block copies records to its shared memory: a sample of its rows decides which. Rows
+/// of these records are added to the copies, and each copy to the table once. The others are committed
+/// as without copies. Use it for sums of 64-bit integers where few keys are frequent; otherwise it
+/// costs little. Launch no more blocks than the GPU can run at a time, each with many tiles.
+///
+/// Shared memory per block: `memory_size` sums. Atomics to the table: those of `Kernel` for the records
+/// without copies, and those of one row per copy.
+///
+/// @snippet scatter_rows.cpp in blocks
+///
+/// @tparam Kernel  a `scatter_narrow_rows` or `scatter_wide_rows` whose sums are 64-bit integers
+template <class Kernel>
+struct scatter_in_blocks {
+    using sum = typename Kernel::sum;  ///< type of the table's values
+    Kernel kernel;                     ///< adds a tile of rows
+    unsigned slots;                    ///< copies per block
+    unsigned blocks;                   ///< number of blocks
+    unsigned warps;                    ///< warps per block
+
+    /// Returns the number of sums that a block needs in shared memory.
+    template <warp W>
+    static constexpr WARPAGG_HD unsigned memory_size(unsigned slots) {
+        return slots * (1 + Kernel::template copies_of<W>::values);
+    }
+
+    /// Adds the tiles of warp `warp` of block `block`. All lanes of all warps of the block call this.
+    /// @param memory   memory of the block, the same for all its warps
+    /// @param barrier  `barrier()` waits for all warps of the block, as `__syncthreads()`
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <warp W, class Barrier>
+    WARPAGG_HD void operator()(const W& w, unsigned block, unsigned warp, sum* memory,
+                               const Barrier& barrier) const {
+        warp = w.shfl(warp, 0u);  // so that the compiler knows that all lanes loop alike
+        const typename Kernel::template copies_of<W> copies{memory, memory + slots, slots};
+        const unsigned tiles = kernel.tiles(W::size), first = block * warps + warp, step = blocks * warps;
+        const unsigned own = first < tiles ? (tiles - 1 - first) / step + 1 : 0;
+        // The last tiles come first: if the rows were read before, the cache holds their end.
+        const auto tile = [&](unsigned i) { return tiles - 1 - first - i * step; };
+        copies.clear(w, warp, warps);
+        barrier();
+        const unsigned wanted = (2 * slots / W::size) / warps + 1, samples = math::min(wanted, own);
+        for (unsigned i = 0; i < samples; ++i) kernel.nominate(w, tile(own / samples * i), copies);
+        barrier();
+        for (unsigned i = 0; i < own; ++i) kernel(w, tile(i), copies);
+        barrier();
+        copies.flush(w, kernel.rows.table, kernel.rows.width, warp, warps);
     }
 };
 
