@@ -15,6 +15,23 @@
 
 #include "scatter_kernel.hpp"
 
+/// Adds integers of 64 bits in shared memory by two atomics of 32 bits and not by a loop.
+struct warp_with_halves : warpagg::cuda_warp {
+    template <class Op, class Dst, class Index, class T>
+    __device__ __forceinline__ void atomic(Op op, Dst dst, Index index, T v, bool active) const {
+        if constexpr (sizeof(T) == 8 && warpagg::operation::is_sum<Op> &&
+                      std::is_same_v<warpagg::operation::scope_of<Op>, warpagg::scope::block>) {
+            if (!active) return;
+            auto* const half = reinterpret_cast<unsigned*>(dst(index));
+            const auto low = static_cast<unsigned>(v), high = static_cast<unsigned>(v >> 32);
+            const unsigned before = atomicAdd_block(half, low);
+            atomicAdd_block(half + 1, high + (before + low < low));
+        } else {
+            warpagg::cuda_warp::atomic(op, dst, index, v, active);
+        }
+    }
+};
+
 namespace {
 
 constexpr unsigned warps_per_block = threads / 32;
@@ -75,23 +92,6 @@ struct with_copies {
         run<<<blocks, Threads, bytes>>>(scatter{{rows}, slots, blocks, Threads / 32});
     }
 };
-/// Adds integers of 64 bits in shared memory by two atomics of 32 bits and not by a loop.
-struct warp_with_halves : warpagg::cuda_warp {
-    template <class Op, class Dst, class Index, class T>
-    [[maybe_unused]] __device__ __forceinline__ void atomic(Op op, Dst dst, Index index, T v, bool active) const {
-        if constexpr (sizeof(T) == 8 && warpagg::operation::is_sum<Op> &&
-                      std::is_same_v<warpagg::operation::scope_of<Op>, warpagg::scope::block>) {
-            if (!active) return;
-            auto* const half = reinterpret_cast<unsigned*>(dst(index));
-            const auto low = static_cast<unsigned>(v), high = static_cast<unsigned>(v >> 32);
-            const unsigned before = atomicAdd_block(half, low);
-            atomicAdd_block(half + 1, high + (before + low < low));
-        } else {
-            warpagg::cuda_warp::atomic(op, dst, index, v, active);
-        }
-    }
-};
-
 /// Warps combine rows by key and add the sums as floats, in any order.
 template <int Width>
 void add_in_any_order(const scatter_memory<Width>& of) {

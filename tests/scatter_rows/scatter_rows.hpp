@@ -352,8 +352,8 @@ namespace {
 /// Blocks whose copies collide, and blocks that have copies of all records.
 std::vector<in_blocks> ways_to_divide() {
     std::vector<in_blocks> all;
-    for (const unsigned slots : {1u, 3u, 200u})
-        for (const unsigned warps : {1u, backend::most_warps}) all.push_back({slots, 2, warps});
+    for (const unsigned slots : {1u, 3u, 200u}) all.push_back({slots, 2, backend::most_warps});
+    all.push_back({3, 5, 1});
     return all;
 }
 
@@ -372,27 +372,26 @@ std::vector<std::uint64_t> bits_of(const std::vector<double>& values) {
 
 TEST_CASE("in blocks: rows of each width and order are added to the records of their keys") {
     std::mt19937_64 random(7);
-    for (const unsigned width : widths)
-        for (const key_order order : key_orders)
-            for (const unsigned n : {1u, 260u}) {
-                CAPTURE(width);
-                CAPTURE(static_cast<int>(order));
-                CAPTURE(n);
-                auto keys = draw_keys(order, n, random);
-                if (order == key_order::frequent) keys[n / 2] = -1, keys[n - 1] = std::int64_t{1} << 32;
-                const auto values = draw_whole_numbers<std::int64_t>(std::size_t{n} * width, random);
-                const auto expected = combined_in_order<operation::sum>(width, keys, values, std::int64_t{5});
-                const auto largest =
-                    combined_in_order<operation::maximum>(width, keys, values, std::int64_t{-200});
-                for (const in_blocks& add : ways_to_divide()) {
-                    CAPTURE(add.slots);
-                    CAPTURE(add.warps);
-                    CHECK(combined_by_kernel<operation::sum>(width, keys, values, std::int64_t{5}, add) ==
-                          expected);
+    for (const unsigned width : {1u, 3u, 4u, 12u, 20u, 100u})
+        for (const key_order order :
+             {key_order::random, key_order::sorted, key_order::equal, key_order::frequent}) {
+            CAPTURE(width);
+            CAPTURE(static_cast<int>(order));
+            auto keys = draw_keys(order, 200, random);
+            if (order == key_order::frequent) keys[100] = -1, keys[199] = std::int64_t{1} << 32;
+            const auto values = draw_whole_numbers<std::int64_t>(std::size_t{200} * width, random);
+            const auto sums = combined_in_order<operation::sum>(width, keys, values, std::int64_t{5});
+            const auto largest =
+                combined_in_order<operation::maximum>(width, keys, values, std::int64_t{-200});
+            for (const in_blocks& add : ways_to_divide()) {
+                CAPTURE(add.slots);
+                CAPTURE(add.warps);
+                CHECK(combined_by_kernel<operation::sum>(width, keys, values, std::int64_t{5}, add) == sums);
+                if (order == key_order::frequent)
                     CHECK(combined_by_kernel<operation::maximum>(width, keys, values, std::int64_t{-200},
                                                                  add) == largest);
-                }
             }
+        }
 }
 
 TEST_CASE_TEMPLATE("in blocks: fixed-point sums have the bits that they have without blocks", T, float,
@@ -430,6 +429,7 @@ struct use_of_copies {
         copies.clear(w, 0, 1);
         w.sync();
         const lane_bits_t<W> in_empty_slot = copies.find(w, 0, true);
+        w.sync();
         copies.nominate(w, piece, w.lane(), true);
         w.sync();
         const lane_bits_t<W> mine = copies.find(w, piece, true);
