@@ -34,9 +34,8 @@ struct row_keys {
     }
 };
 
-/// Conversions of values to summands. A conversion is called with a warp once, when a kernel
-/// starts.
-/// @{
+/// The conversion of values that are summands themselves; `to_fixed_point` is another one. A
+/// conversion is called with a warp once, when a kernel starts.
 struct unchanged {
     /// The conversion.
     struct convert {
@@ -52,33 +51,6 @@ struct unchanged {
         return {};
     }
 };
-/// Limb `limb` of the format for sums of up to `n` values, of which `largest_exponent` found
-/// `*largest`.
-template <class T>
-struct to_fixed_point {
-    const magnitudes* largest;  ///< result of `largest_exponent`
-    int bits_per_value;         ///< see `fixed_point::bits_per_value`
-    int limb;                   ///< number of the limb
-
-    /// Describes limb `i` of sums of up to `n` values.
-    WARPAGG_HD to_fixed_point(const magnitudes* all, std::uint64_t n, int i = 0)
-        : largest(all), bits_per_value(fixed_point<T>::bits_per_value(n)), limb(i) {}
-
-    /// The conversion.
-    struct convert {
-        fixed_point<T> format;  ///< the format that fits the values
-        int limb;               ///< number of the limb
-        /// Returns the limb of a value.
-        WARPAGG_HD std::int64_t operator()(T x) const { return format.limb(x, limb); }
-    };
-    /// Returns the conversion.
-    WARPAGG_EXEC_CHECK_DISABLE
-    template <warp W>
-    WARPAGG_HD convert operator()(const W& w) const {
-        return {fixed_point<T>::of(w.load(&largest->exponent, 0u, true), bits_per_value), limb};
-    }
-};
-/// @}
 
 /// The rows of a scatter and its table.
 ///
