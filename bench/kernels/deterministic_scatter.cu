@@ -11,26 +11,9 @@
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_reduce.cuh>
 #include <numeric>
-#include <warpagg/scatter_rows.hpp>
+#include <warpagg/scatter_in_blocks.hpp>
 
 #include "scatter_kernel.hpp"
-
-/// Adds integers of 64 bits in shared memory by two atomics of 32 bits and not by a loop.
-struct warp_with_halves : warpagg::cuda_warp {
-    template <class Op, class Dst, class Index, class T>
-    __device__ __forceinline__ void atomic(Op op, Dst dst, Index index, T v, bool active) const {
-        if constexpr (sizeof(T) == 8 && warpagg::operation::is_sum<Op> &&
-                      std::is_same_v<warpagg::operation::scope_of<Op>, warpagg::scope::block>) {
-            if (!active) return;
-            auto* const half = reinterpret_cast<unsigned*>(dst(index));
-            const auto low = static_cast<unsigned>(v), high = static_cast<unsigned>(v >> 32);
-            const unsigned before = atomicAdd_block(half, low);
-            atomicAdd_block(half + 1, high + (before + low < low));
-        } else {
-            warpagg::cuda_warp::atomic(op, dst, index, v, active);
-        }
-    }
-};
 
 namespace {
 
@@ -48,23 +31,26 @@ __global__ void __launch_bounds__(threads) each_warp(Kernel kernel) {
            std::size_t{gridDim.x} * warps_per_block);
 }
 
+constexpr unsigned block_threads = 1024;  // of blocks that have copies of records
+
+template <class Scatter>
+__global__ void __launch_bounds__(block_threads) each_block(Scatter scatter) {
+    extern __shared__ std::int64_t memory[];
+    scatter(warpagg::cuda_warp{}, blockIdx.x, threadIdx.x / 32, memory, [] { __syncthreads(); });
+}
+
 int multiprocessors() {
     int count = 0;
     check(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, 0));
     return count;
 }
 
-template <class W, unsigned Threads, class Scatter>
-__global__ void __launch_bounds__(Threads) each_block(Scatter scatter) {
-    extern __shared__ std::int64_t memory[];
-    scatter(W{}, blockIdx.x, threadIdx.x / 32, memory, [] { __syncthreads(); });
-}
-
 template <int Width, class Rows>
 using scatter_of = std::conditional_t<Width == 4, warpagg::scatter_narrow_rows<4, Rows>,
                                       warpagg::scatter_wide_rows<2, Rows>>;
+
 /// A warp adds a tile.
-struct without_copies {
+struct each_tile_alone {
     template <int Width, class Rows>
     static void launch(const Rows& rows) {
         const scatter_of<Width, Rows> scatter{rows};
@@ -72,31 +58,30 @@ struct without_copies {
         each_tile<<<(tiles - 1) / warps_per_block + 1, threads>>>(scatter, tiles);
     }
 };
-/// As many blocks as the GPU can run at a time have copies of records.
-template <class W, unsigned Threads, unsigned NarrowSlots, unsigned WideSlots>
-struct with_copies {
+/// As many blocks as the GPU can run at a time have copies of frequent records.
+struct in_blocks {
     template <int Width, class Rows>
     static void launch(const Rows& rows) {
-        using kernel = scatter_of<Width, Rows>;
-        using scatter = warpagg::scatter_in_blocks<kernel>;
-        constexpr unsigned slots = Width == 4 ? NarrowSlots : WideSlots;
+        using scatter = warpagg::scatter_in_blocks<scatter_of<Width, Rows>>;
+        constexpr unsigned slots = Width == 4 ? 1024 : 128;
         constexpr int bytes =
-            static_cast<int>(scatter::template memory_size<W>(slots) * sizeof(std::int64_t));
-        const auto run = each_block<W, Threads, scatter>;
+            static_cast<int>(scatter::template memory_size<warpagg::cuda_warp>(slots) * sizeof(std::int64_t));
+        const auto run = each_block<scatter>;
         static const unsigned blocks = [=] {
             int per_processor = 0;
             check(cudaFuncSetAttribute(run, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes));
-            check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, run, Threads, bytes));
+            check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, run, block_threads, bytes));
             return static_cast<unsigned>(per_processor * multiprocessors());
         }();
-        run<<<blocks, Threads, bytes>>>(scatter{{rows}, slots, blocks, Threads / 32});
+        run<<<blocks, block_threads, bytes>>>(scatter{{rows}, slots, blocks, block_threads / 32});
     }
 };
+
 /// Warps combine rows by key and add the sums as floats, in any order.
 template <int Width>
 void add_in_any_order(const scatter_memory<Width>& of) {
     using rows = warpagg::scatter_rows<float, float, warpagg::row_keys<unsigned>>;
-    without_copies::launch<Width>(
+    each_tile_alone::launch<Width>(
         rows{of.values.data(), of.rows, Width, {of.key.data(), of.segments}, of.sums.data()});
 }
 
@@ -232,10 +217,8 @@ kernel_case with_rows_of(keys how, const char* input) {
     of.variants = {
         memory::template variant_of<1>("plain atomics", rows, plain_atomics{}),
         {"default", [=] { add_in_any_order(*rows); }},
-        deterministic("deterministic", without_copies{}),
-        deterministic("few copies, loop", with_copies<warpagg::cuda_warp, 1024, 1024, 128>{}),
-        deterministic("few copies", with_copies<warp_with_halves, 1024, 1024, 128>{}),
-        deterministic("many copies", with_copies<warp_with_halves, 1024, 2048, 256>{}),
+        deterministic("deterministic", each_tile_alone{}),
+        deterministic("deterministic in blocks", in_blocks{}),
         {"sort and reduce by key", [=] { (*sorted)(*rows); }},
     };
     return of;

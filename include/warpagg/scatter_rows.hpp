@@ -5,8 +5,8 @@
 /// @file
 /// Scatter of rows: adds each row of an array to the record of a table that the row's key names, as
 /// in the gradient of an embedding. `scatter_narrow_rows` is for rows of up to 16 values and
-/// `scatter_wide_rows` for wider rows. `scatter_in_blocks` makes them fast if few keys are frequent.
-/// With fixed-point sums the result has the same bits for any order of the rows.
+/// `scatter_wide_rows` for wider rows. With fixed-point sums the result has the same bits for any
+/// order of the rows. If few keys are frequent, see `scatter_in_blocks.hpp`.
 
 #include "detail/copied_pieces.hpp"
 #include "fixed_point.hpp"
@@ -420,56 +420,6 @@ struct scatter_wide_rows {
             }
         }
         return mine;
-    }
-};
-
-/// The part of a block of warps in a scatter whose frequent keys are combined before they are
-/// committed. The block copies records to its shared memory: a sample of its rows decides which. Rows
-/// of these records are added to the copies, and each copy to the table once. The others are committed
-/// as without copies. Use it for sums of 64-bit integers where few keys are frequent; otherwise it
-/// costs little. Launch no more blocks than the GPU can run at a time, each with many tiles.
-///
-/// Shared memory per block: `memory_size` sums. Atomics to the table: those of `Kernel` for the records
-/// without copies, and those of one row per copy.
-///
-/// @snippet scatter_rows.cpp in blocks
-///
-/// @tparam Kernel  a `scatter_narrow_rows` or `scatter_wide_rows` whose sums are 64-bit integers
-template <class Kernel>
-struct scatter_in_blocks {
-    using sum = typename Kernel::sum;  ///< type of the table's values
-    Kernel kernel;                     ///< adds a tile of rows
-    unsigned slots;                    ///< copies per block
-    unsigned blocks;                   ///< number of blocks
-    unsigned warps;                    ///< warps per block
-
-    /// Returns the number of sums that a block needs in shared memory.
-    template <warp W>
-    static constexpr WARPAGG_HD unsigned memory_size(unsigned slots) {
-        return slots * (1 + Kernel::template copies_of<W>::values);
-    }
-
-    /// Adds the tiles of warp `warp` of block `block`. All lanes of all warps of the block call this.
-    /// @param memory   memory of the block, the same for all its warps
-    /// @param barrier  `barrier()` waits for all warps of the block, as `__syncthreads()`
-    WARPAGG_EXEC_CHECK_DISABLE
-    template <warp W, class Barrier>
-    WARPAGG_HD void operator()(const W& w, unsigned block, unsigned warp, sum* memory,
-                               const Barrier& barrier) const {
-        warp = w.shfl(warp, 0u);  // so that the compiler knows that all lanes loop alike
-        const typename Kernel::template copies_of<W> copies{memory, memory + slots, slots};
-        const unsigned tiles = kernel.tiles(W::size), first = block * warps + warp, step = blocks * warps;
-        const unsigned own = first < tiles ? (tiles - 1 - first) / step + 1 : 0;
-        // The last tiles come first: if the rows were read before, the cache holds their end.
-        const auto tile = [&](unsigned i) { return tiles - 1 - first - i * step; };
-        copies.clear(w, warp, warps);
-        barrier();
-        const unsigned wanted = (2 * slots / W::size) / warps + 1, samples = math::min(wanted, own);
-        for (unsigned i = 0; i < samples; ++i) kernel.nominate(w, tile(own / samples * i), copies);
-        barrier();
-        for (unsigned i = 0; i < own; ++i) kernel(w, tile(i), copies);
-        barrier();
-        copies.flush(w, kernel.rows.table, kernel.rows.width, warp, warps);
     }
 };
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 #include <vector>
-#include <warpagg/scatter_rows.hpp>
+#include <warpagg/scatter_in_blocks.hpp>
 
 #include "../support/backends/cuda.hpp"
 

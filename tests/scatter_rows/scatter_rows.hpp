@@ -12,7 +12,7 @@
 #include <numeric>
 #include <random>
 #include <vector>
-#include <warpagg/scatter_rows.hpp>
+#include <warpagg/scatter_in_blocks.hpp>
 
 namespace {
 

@@ -8,8 +8,8 @@
 namespace warpagg::detail {
 
 /// A block's copies of the pieces of records that its rows name often. A piece is `Values` neighboring
-/// values of a record, and each record has `pieces` of them. A piece can have its copy in one slot
-/// only, and the piece that `nominate` has found most often gets the slot.
+/// values of a record. It can have its copy in one slot only, and the piece that most lanes of a warp
+/// have nominated gets the slot.
 template <unsigned Values, class Sum, class Op>
 struct copied_pieces {
     static_assert(std::is_integral_v<Sum> && sizeof(Sum) == 8, "copies are of 64-bit integers");
@@ -25,9 +25,9 @@ struct copied_pieces {
     template <class W>
     WARPAGG_HD void clear(const W& w, unsigned warp, unsigned warps) const {
         for (unsigned i = warp * W::size + w.lane(); i < slots; i += warps * W::size)
-            w.store(tags, i, Sum{0}, true);
+            w.store(tags, i, Sum{0}, true);  // mutate: copies_keep_old_tags
         for (unsigned i = warp * W::size + w.lane(); i < slots * Values; i += warps * W::size)
-            w.store(copies, i, Op::template identity<Sum>(), true);
+            w.store(copies, i, Op::template identity<Sum>(), true);  // mutate: copies_start_at_zero
     }
     /// Proposes the piece of each active lane. The piece that most lanes have wins its slot, and
     /// `place` decides between equals.
@@ -35,6 +35,7 @@ struct copied_pieces {
     template <class W>
     WARPAGG_HD void nominate(const W& w, unsigned piece, unsigned place, bool active) const {
         const lane_bits_t<W> peers = w.match(piece) & w.ballot(active);
+        // mutate: copies_of_rare_pieces
         const std::uint64_t priority = std::uint64_t{math::popcount(peers)} << 24 | (place & 0xffffffu);
         w.atomic(in_block<operation::maximum>{}, commit::contiguous_record<Sum>{tags}, slot_of(piece),
                  static_cast<Sum>(priority << 32 | piece), active && math::countr_zero(peers) == w.lane());
@@ -44,7 +45,10 @@ struct copied_pieces {
     template <class W>
     WARPAGG_HD lane_bits_t<W> find(const W& w, unsigned piece, bool active) const {
         const Sum tag = w.load(tags, slot_of(piece), active);
-        return w.ballot(tag != 0 && static_cast<std::uint32_t>(tag) == piece);
+        // mutate: copy_in_an_empty_slot
+        const bool is_taken = tag != 0;
+        // mutate: copy_of_another_piece
+        return w.ballot(is_taken && static_cast<std::uint32_t>(tag) == piece);
     }
     /// Adds to value `i` of the copy of a piece, in active lanes.
     WARPAGG_EXEC_CHECK_DISABLE
@@ -65,9 +69,10 @@ struct copied_pieces {
             const Sum tag = w.load(tags, i / Values, exists);
             const auto piece = static_cast<std::uint32_t>(tag);
             const unsigned column = piece % pieces * Values + i % Values;
-            w.atomic(Op{},
-                     commit::contiguous_record<Sum>{table + (std::size_t{piece / pieces} * width + column)},
-                     0u, w.load(copies, i, exists), tag != 0 && column < width);
+            Sum* to = table + (std::size_t{piece / pieces} * width + column);
+            // mutate: copies_flushed_past_record
+            const bool inside = tag != 0 && column < width;
+            w.atomic(Op{}, commit::contiguous_record<Sum>{to}, 0u, w.load(copies, i, exists), inside);
         }
     }
 
