@@ -52,12 +52,12 @@ struct scatter_in_blocks {
         // The last tiles come first: if the rows were read before, the cache holds their end.
         const auto tile = [&](unsigned i) { return tiles - 1 - first - i * step; };
         copies.clear(w, warp, warps);
-        barrier();
+        barrier();  // mutate: copies_nominated_before_cleared
         const unsigned wanted = (2 * slots / W::size) / warps + 1, samples = math::min(wanted, own);
         for (unsigned i = 0; i < samples; ++i) kernel.nominate(w, tile(own / samples * i), copies);
-        barrier();
+        barrier();  // mutate: copies_used_before_nominated
         for (unsigned i = 0; i < own; ++i) kernel(w, tile(i), copies);
-        barrier();
+        barrier();  // mutate: copies_flushed_before_complete
         copies.flush(w, kernel.rows.table, kernel.rows.width, warp, warps);
     }
 };

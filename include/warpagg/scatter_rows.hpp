@@ -173,6 +173,7 @@ WARPAGG_HD void add_fours(const W& w, V* table, unsigned key, T (&values)[4], co
         const unsigned key_of_row = w.shfl(key, row);
         copies.add(w, key_of_row, w.lane() & 3u, sums[i], (copied >> row & 1) != 0);
         w.atomic(Op{}, component_of_four<V>{table, w.lane() & 3u}, key_of_row, sums[i],
+                 // mutate: copied_fours_added_twice
                  ((leaders & ~copied) >> row & 1) != 0);
     }
 }
@@ -190,6 +191,7 @@ WARPAGG_HD void add_pieces(const W& w, V* table, unsigned piece, V (&sums)[N], b
     WARPAGG_UNROLL
     for (unsigned i = 0; i < N; ++i) {
         copies.add(w, piece, i, sums[i], is_copied);
+        // mutate: copied_piece_added_twice
         w.atomic(Op{}, component_by_key<V*, N>{table, i}, piece, sums[i], leads && !is_copied);
     }
 }
