@@ -28,7 +28,7 @@ template <class Kernel>
 struct scatter_in_blocks {
     using sum = typename Kernel::sum;  ///< type of the table's values
     Kernel kernel;                     ///< adds a tile of rows
-    unsigned slots;                    ///< copies per block
+    unsigned slots;                    ///< copies per block, at least one
     unsigned blocks;                   ///< number of blocks
     unsigned warps;                    ///< warps per block
 
@@ -38,8 +38,11 @@ struct scatter_in_blocks {
         return slots * (1 + Kernel::template copies_of<W>::values);
     }
 
-    /// Adds the tiles of warp `warp` of block `block`. All lanes of all warps of the block call this.
-    /// @param memory   memory of the block, the same for all its warps
+    /// Adds the tiles of a warp. All lanes of all warps of the block call this.
+    /// @param w        the warp
+    /// @param block    index of the block, from 0
+    /// @param warp     index of the warp in its block, from 0
+    /// @param memory   `memory_size` sums in the block's shared memory, with any content
     /// @param barrier  `barrier()` waits for all warps of the block, as `__syncthreads()`
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W, class Barrier>

@@ -52,7 +52,7 @@ TEST_CASE("in blocks") {
     using scatter = scatter_in_blocks<scatter_narrow_rows<1, rows>>;
     constexpr unsigned slots = 16, blocks = 2, warps = 4;
     const scatter add{{{values.data(), 1000, 1, {keys.data(), 3}, table.data()}}, slots, blocks, warps};
-    // On a GPU, with blocks of a __global__ function, __shared__ memory and __syncthreads().
+    // On a GPU, a kernel does this with __shared__ memory and __syncthreads().
     emulator::launch({.blocks = blocks, .threads = warps * 32}, [&](const emulator::checked& w) {
         const auto memory = w.shared<std::int64_t>(scatter::memory_size<emulator::checked>(slots));
         add(w, w.block_index(), w.thread_index() / 32, memory.data(), [&] { w.barrier(); });
