@@ -66,6 +66,7 @@ def match(result):
 
 RATIOS = {  # columns of tables of kernels: two variants
     "deterministic / plain atomics": ("deterministic", "plain atomics"),
+    "deterministic in blocks / deterministic": ("deterministic in blocks", "deterministic"),
     "sort and reduce by key / deterministic": ("sort and reduce by key", "deterministic"),
 }
 

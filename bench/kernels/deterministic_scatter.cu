@@ -11,7 +11,7 @@
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_reduce.cuh>
 #include <numeric>
-#include <warpagg/scatter_rows.hpp>
+#include <warpagg/scatter_in_blocks.hpp>
 
 #include "scatter_kernel.hpp"
 
@@ -31,13 +31,12 @@ __global__ void __launch_bounds__(threads) each_warp(Kernel kernel) {
            std::size_t{gridDim.x} * warps_per_block);
 }
 
-template <int Width, class Rows>
-void launch_scatter(const Rows& rows) {
-    using kernel = std::conditional_t<Width == 4, warpagg::scatter_narrow_rows<4, Rows>,
-                                      warpagg::scatter_wide_rows<2, Rows>>;
-    const kernel scatter{rows};
-    const unsigned tiles = scatter.tiles(32);
-    each_tile<<<(tiles - 1) / warps_per_block + 1, threads>>>(scatter, tiles);
+constexpr unsigned block_threads = 1024;  // of blocks that have copies of records
+
+template <class Scatter>
+__global__ void __launch_bounds__(block_threads) each_block(Scatter scatter) {
+    extern __shared__ std::int64_t memory[];
+    scatter(warpagg::cuda_warp{}, blockIdx.x, threadIdx.x / 32, memory, [] { __syncthreads(); });
 }
 
 int multiprocessors() {
@@ -46,26 +45,57 @@ int multiprocessors() {
     return count;
 }
 
+template <int Width, class Rows>
+using scatter_of = std::conditional_t<Width == 4, warpagg::scatter_narrow_rows<4, Rows>,
+                                      warpagg::scatter_wide_rows<2, Rows>>;
+
+/// A warp adds a tile.
+struct each_tile_alone {
+    template <int Width, class Rows>
+    static void launch(const Rows& rows) {
+        const scatter_of<Width, Rows> scatter{rows};
+        const unsigned tiles = scatter.tiles(32);
+        each_tile<<<(tiles - 1) / warps_per_block + 1, threads>>>(scatter, tiles);
+    }
+};
+/// As many blocks as the GPU can run at a time have copies of frequent records.
+struct in_blocks {
+    template <int Width, class Rows>
+    static void launch(const Rows& rows) {
+        using scatter = warpagg::scatter_in_blocks<scatter_of<Width, Rows>>;
+        constexpr unsigned slots = Width == 4 ? 1024 : 128;
+        constexpr int bytes =
+            static_cast<int>(scatter::template memory_size<warpagg::cuda_warp>(slots) * sizeof(std::int64_t));
+        const auto run = each_block<scatter>;
+        static const unsigned blocks = [=] {
+            int per_processor = 0;
+            check(cudaFuncSetAttribute(run, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes));
+            check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_processor, run, block_threads, bytes));
+            return static_cast<unsigned>(per_processor * multiprocessors());
+        }();
+        run<<<blocks, block_threads, bytes>>>(scatter{{rows}, slots, blocks, block_threads / 32});
+    }
+};
+
 /// Warps combine rows by key and add the sums as floats, in any order.
 template <int Width>
 void add_in_any_order(const scatter_memory<Width>& of) {
     using rows = warpagg::scatter_rows<float, float, warpagg::row_keys<unsigned>>;
-    launch_scatter<Width>(
+    each_tile_alone::launch<Width>(
         rows{of.values.data(), of.rows, Width, {of.key.data(), of.segments}, of.sums.data()});
 }
 
 /// Fixed-point sums, which have the same bits for every order of the rows.
-template <int Width>
+template <int Width, class Launch>
 class in_fixed_point {
   public:
     void operator()(const scatter_memory<Width>& of) const {
         check(cudaMemsetAsync(limbs_.data(), 0, limbs_.size() * sizeof(std::int64_t)));
-        check(cudaMemsetAsync(largest_.data(), 0, sizeof(warpagg::magnitudes)));
         each_warp<<<4 * processors_, threads>>>(
-            warpagg::largest_exponent<float>{of.values.data(), of.values.size(), largest_.data()});
-        const rows all{of.values.data(),          of.rows, Width, {of.key.data(), of.segments}, limbs_.data(),
-                       {largest_.data(), of.rows}};
-        launch_scatter<Width>(all);
+            warpagg::largest_exponent<float>{of.values.data(), of.values.size(), largest_});
+        const rows all{of.values.data(),   of.rows, Width, {of.key.data(), of.segments}, limbs_.data(),
+                       {largest_, of.rows}};
+        Launch::template launch<Width>(all);
         each_warp<<<8 * processors_, threads>>>(
             warpagg::add_fixed_point<rows>{all, of.sums.size(), of.sums.data()});
     }
@@ -74,8 +104,10 @@ class in_fixed_point {
     using rows = warpagg::scatter_rows<float, std::int64_t, warpagg::row_keys<unsigned>,
                                        warpagg::to_fixed_point<float>>;
 
-    device_array<std::int64_t> limbs_{std::size_t{scatter_memory<Width>::segments} * Width};
-    device_array<warpagg::magnitudes> largest_{1};
+    static constexpr std::size_t sums = std::size_t{scatter_memory<Width>::segments} * Width;
+
+    device_array<std::int64_t> limbs_{sums + 1};  // and the magnitudes, which one call clears with them
+    warpagg::magnitudes* largest_ = reinterpret_cast<warpagg::magnitudes*>(limbs_.data() + sums);
     int processors_ = multiprocessors();
 };
 
@@ -176,13 +208,17 @@ template <int Width>
 kernel_case with_rows_of(keys how, const char* input) {
     using memory = scatter_memory<Width>;
     const auto rows = std::make_shared<memory>(how);
-    const auto in_fixed_point_sums = std::make_shared<const in_fixed_point<Width>>();
+    const auto deterministic = [&]<class Launch>(const char* name, Launch) -> variant {
+        const auto sums = std::make_shared<const in_fixed_point<Width, Launch>>();
+        return {name, [=] { (*sums)(*rows); }};
+    };
     const auto sorted = std::make_shared<const by_sorting<Width>>(*rows);
     kernel_case of = memory::case_of("deterministic scatter", input, rows);
     of.variants = {
         memory::template variant_of<1>("plain atomics", rows, plain_atomics{}),
         {"default", [=] { add_in_any_order(*rows); }},
-        {"deterministic", [=] { (*in_fixed_point_sums)(*rows); }},
+        deterministic("deterministic", each_tile_alone{}),
+        deterministic("deterministic in blocks", in_blocks{}),
         {"sort and reduce by key", [=] { (*sorted)(*rows); }},
     };
     return of;

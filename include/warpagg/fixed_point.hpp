@@ -179,4 +179,31 @@ struct largest_exponent {
     }
 };
 
+/// A conversion of values to summands, for `scatter_rows`: limb `limb` of the format for sums of up to
+/// `n` values, of which `largest_exponent` found `*largest`.
+template <class T>
+struct to_fixed_point {
+    const magnitudes* largest;  ///< result of `largest_exponent`
+    int bits_per_value;         ///< see `fixed_point::bits_per_value`
+    int limb;                   ///< number of the limb
+
+    /// Describes limb `i` of sums of up to `n` values.
+    WARPAGG_HD to_fixed_point(const magnitudes* all, std::uint64_t n, int i = 0)
+        : largest(all), bits_per_value(fixed_point<T>::bits_per_value(n)), limb(i) {}
+
+    /// The conversion.
+    struct convert {
+        fixed_point<T> format;  ///< the format that fits the values
+        int limb;               ///< number of the limb
+        /// Returns the limb of a value.
+        WARPAGG_HD std::int64_t operator()(T x) const { return format.limb(x, limb); }
+    };
+    /// Returns the conversion.
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <warp W>
+    WARPAGG_HD convert operator()(const W& w) const {
+        return {fixed_point<T>::of(w.load(&largest->exponent, 0u, true), bits_per_value), limb};
+    }
+};
+
 }  // namespace warpagg

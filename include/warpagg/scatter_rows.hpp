@@ -6,8 +6,9 @@
 /// Scatter of rows: adds each row of an array to the record of a table that the row's key names, as
 /// in the gradient of an embedding. `scatter_narrow_rows` is for rows of up to 16 values and
 /// `scatter_wide_rows` for wider rows. With fixed-point sums the result has the same bits for any
-/// order of the rows.
+/// order of the rows. If few keys are frequent, see `scatter_in_blocks.hpp`.
 
+#include "detail/copied_pieces.hpp"
 #include "fixed_point.hpp"
 #include "match_reduce_atomic.hpp"
 
@@ -33,9 +34,8 @@ struct row_keys {
     }
 };
 
-/// Conversions of values to summands. A conversion is called with a warp once, when a kernel
-/// starts.
-/// @{
+/// The conversion of values that are summands themselves; `to_fixed_point` is another one. A
+/// conversion is called with a warp once, when a kernel starts.
 struct unchanged {
     /// The conversion.
     struct convert {
@@ -51,33 +51,6 @@ struct unchanged {
         return {};
     }
 };
-/// Limb `limb` of the format for sums of up to `n` values, of which `largest_exponent` found
-/// `*largest`.
-template <class T>
-struct to_fixed_point {
-    const magnitudes* largest;  ///< result of `largest_exponent`
-    int bits_per_value;         ///< see `fixed_point::bits_per_value`
-    int limb;                   ///< number of the limb
-
-    /// Describes limb `i` of sums of up to `n` values.
-    WARPAGG_HD to_fixed_point(const magnitudes* all, std::uint64_t n, int i = 0)
-        : largest(all), bits_per_value(fixed_point<T>::bits_per_value(n)), limb(i) {}
-
-    /// The conversion.
-    struct convert {
-        fixed_point<T> format;  ///< the format that fits the values
-        int limb;               ///< number of the limb
-        /// Returns the limb of a value.
-        WARPAGG_HD std::int64_t operator()(T x) const { return format.limb(x, limb); }
-    };
-    /// Returns the conversion.
-    WARPAGG_EXEC_CHECK_DISABLE
-    template <warp W>
-    WARPAGG_HD convert operator()(const W& w) const {
-        return {fixed_point<T>::of(w.load(&largest->exponent, 0u, true), bits_per_value), limb};
-    }
-};
-/// @}
 
 /// The rows of a scatter and its table.
 ///
@@ -161,12 +134,12 @@ WARPAGG_HD void combine_joined(const W& w, V (&v)[4], lane_bits_t<W> joined) {
 
 /// Combines rows of 4 values by key and commits each record with one instruction, in which 4 lanes
 /// share the record's sector. A lane per record would touch each sector 4 times. The summands have 64
-/// bits, and `convert` returns them. Cost: rows whose keys do not fall from lane to lane take fewer
-/// shuffles than others, and the same atomics.
+/// bits, and `convert` returns them. Records with copies are added there. Cost: rows whose keys do not
+/// fall from lane to lane take fewer shuffles than others, and the same atomics.
 WARPAGG_EXEC_CHECK_DISABLE
-template <class Op, class W, class T, class Convert, class V>
+template <class Op, class W, class T, class Convert, class V, class Copies>
 WARPAGG_HD void add_fours(const W& w, V* table, unsigned key, T (&values)[4], const Convert& convert,
-                          bool active) {
+                          bool active, const Copies& copies) {
     using bits = lane_bits_t<W>;
     const bits everyone = w.ballot(active);
     const bool has_next = w.lane() + 1 < W::size;
@@ -191,14 +164,35 @@ WARPAGG_HD void add_fours(const W& w, V* table, unsigned key, T (&values)[4], co
         leaders = w.ballot(active && math::countr_zero(peers) == w.lane());
         transpose_fours(w, sums);
     }
+    const bits copied = copies.find(w, key, (leaders >> w.lane() & 1) != 0);
     WARPAGG_UNROLL
     for (unsigned i = 0; i < 4; ++i) {
         constexpr bits every_fourth = ~bits{0} / 15;
         if ((leaders >> i & every_fourth) == 0) continue;
         const unsigned row = (w.lane() & ~3u) + i;
         const unsigned key_of_row = w.shfl(key, row);
+        copies.add(w, key_of_row, w.lane() & 3u, sums[i], (copied >> row & 1) != 0);
         w.atomic(Op{}, component_of_four<V>{table, w.lane() & 3u}, key_of_row, sums[i],
-                 (leaders >> row & 1) != 0);
+                 // mutate: copied_fours_added_twice
+                 ((leaders & ~copied) >> row & 1) != 0);
+    }
+}
+
+/// Combines pieces of N values by their numbers, and adds each to its copy or to the table.
+WARPAGG_EXEC_CHECK_DISABLE
+template <class Op, class W, class V, int N, class Copies>
+WARPAGG_HD void add_pieces(const W& w, V* table, unsigned piece, V (&sums)[N], bool active,
+                           const Copies& copies) {
+    using bits = lane_bits_t<W>;
+    const bits peers = math::select(active, w.match(piece) & w.ballot(active), bits{0});
+    combine_peers<Op>(w, sums, peers);
+    const bool leads = active && math::countr_zero(peers) == w.lane();
+    const bool is_copied = (copies.find(w, piece, leads) >> w.lane() & 1) != 0;
+    WARPAGG_UNROLL
+    for (unsigned i = 0; i < N; ++i) {
+        copies.add(w, piece, i, sums[i], is_copied);
+        // mutate: copied_piece_added_twice
+        w.atomic(Op{}, component_by_key<V*, N>{table, i}, piece, sums[i], leads && !is_copied);
     }
 }
 
@@ -227,34 +221,75 @@ struct scatter_narrow_rows {
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
+        (*this)(w, index, detail::no_copies{});
+    }
+
+    /// What `scatter_in_blocks` needs.
+    /// @{
+    using sum = typename Rows::sum;
+    template <warp W>
+    using copies_of = detail::copied_pieces<Each, sum, typename Rows::operation>;
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <warp W>
+    WARPAGG_HD void nominate(const W& w, unsigned index, const copies_of<W>& copies) const {
+        place own = place_in(w, index);
+        const unsigned piece = piece_at(w, own);
+        copies.nominate(w, piece, index * W::size + w.lane(), own.inside);
+    }
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <warp W, class Copies>
+    WARPAGG_HD void operator()(const W& w, unsigned index, const Copies& copies) const {
         using value = typename Rows::value;
-        using sum = typename Rows::sum;
         using operation = typename Rows::operation;
+        constexpr bool have_copies = !std::is_same_v<Copies, detail::no_copies>;
         const auto convert = rows.convert(w);
+        place own = place_in(w, index);
+        value v[Each];
+        if constexpr (Each == 4)
+            w.load_packed(rows.values + own.first * rows.width, w.lane() * 4, v, own.inside);
+        else
+            v[0] = w.load(rows.values + own.first * rows.width, w.lane(), own.inside);
+        const unsigned piece = piece_at(w, own);
+        if constexpr (Each == 4 && sizeof(sum) == 8 && W::size % 4 == 0) {
+            detail::add_fours<operation>(w, rows.table, piece, v, convert, own.inside, copies);
+        } else {
+            sum sums[Each];
+            WARPAGG_UNROLL
+            for (unsigned i = 0; i < Each; ++i) sums[i] = convert(v[i]);
+            if constexpr (have_copies)
+                detail::add_pieces<operation>(w, rows.table, piece, sums, own.inside, copies);
+            else if constexpr (std::is_same_v<operation, warpagg::operation::sum>)
+                warp_match_reduce_atomic(w, rows.table, piece, sums, own.inside);
+            else
+                warp_match_reduce_atomic(w, rows.table, piece, sums, own.inside, policy{operation{}});
+        }
+    }
+    /// @}
+
+  private:
+    /// The values that a lane takes: part `part` of row `first + row`.
+    struct place {
+        std::size_t first;
+        unsigned row, part;
+        bool inside;
+    };
+    template <class W>
+    WARPAGG_HD place place_in(const W& w, unsigned index) const {
         const unsigned parts = rows.width / Each;
         // For i up to 64, i / parts = (i inverse) / 65536.
         const unsigned inverse = 65536 / parts + 1;
         const unsigned in_tile = W::size * inverse >> 16;
         const std::size_t first = std::size_t{index} * in_tile;
         const unsigned row = w.lane() * inverse >> 16, part = w.lane() - row * parts;
-        bool inside = row < in_tile && first + row < rows.n;
-        value v[Each];
-        if constexpr (Each == 4)
-            w.load_packed(rows.values + first * rows.width, w.lane() * 4, v, inside);
-        else
-            v[0] = w.load(rows.values + first * rows.width, w.lane(), inside);
-        const unsigned key = rows.keys(w, first + row, inside) * parts + part;
-        if constexpr (Each == 4 && sizeof(sum) == 8 && W::size % 4 == 0) {
-            detail::add_fours<operation>(w, rows.table, key, v, convert, inside);
-        } else {
-            sum sums[Each];
-            WARPAGG_UNROLL
-            for (unsigned i = 0; i < Each; ++i) sums[i] = convert(v[i]);
-            if constexpr (std::is_same_v<operation, warpagg::operation::sum>)
-                warp_match_reduce_atomic(w, rows.table, key, sums, inside);
-            else
-                warp_match_reduce_atomic(w, rows.table, key, sums, inside, policy{operation{}});
-        }
+        return {first, row, part, row < in_tile && first + row < rows.n};
+    }
+    /// Returns the number of the piece of `Each` values in the table, and clears `inside` if the row is
+    /// left out.
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W>
+    WARPAGG_HD unsigned piece_at(const W& w, place& own) const {
+        return rows.keys(w, own.first + own.row, own.inside) * (rows.width / Each) + own.part;
     }
 };
 
@@ -280,11 +315,32 @@ struct scatter_wide_rows {
     WARPAGG_EXEC_CHECK_DISABLE
     template <warp W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
-        using sum = typename Rows::sum;
+        (*this)(w, index, detail::no_copies{});
+    }
+
+    /// What `scatter_in_blocks` needs. Precondition: the table has at most 2^32 stripes of records.
+    /// @{
+    using sum = typename Rows::sum;
+    template <warp W>
+    using copies_of = detail::copied_pieces<W::size * PerLane, sum, typename Rows::operation>;
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <warp W>
+    WARPAGG_HD void nominate(const W& w, unsigned index, const copies_of<W>& copies) const {
+        const unsigned all = stripes(W::size);
+        const std::size_t row = std::size_t{index / all} * W::size + w.lane();
+        bool inside = row < rows.n;
+        const unsigned key = rows.keys(w, row, inside);
+        copies.nominate(w, key * all + index % all, static_cast<unsigned>(row), inside);
+    }
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <warp W, class Copies>
+    WARPAGG_HD void operator()(const W& w, unsigned index, const Copies& copies) const {
         using operation = typename Rows::operation;
         const auto convert = rows.convert(w);
-        const std::size_t first = std::size_t{index / stripes(W::size)} * W::size;
-        const unsigned column = index % stripes(W::size) * (W::size * PerLane);
+        const unsigned all = stripes(W::size), stripe = index % all;
+        const std::size_t first = std::size_t{index / all} * W::size;
+        const unsigned column = stripe * (W::size * PerLane);
 
         bool inside = w.lane() < rows.n - first;
         const unsigned key = rows.keys(w, first + w.lane(), inside);
@@ -297,6 +353,7 @@ struct scatter_wide_rows {
         const bool is_last = w.lane() + 1 == count || key_after != key_of_row;
         // The places in sorted order where a key has its last row.
         const lane_bits_t<W> ends = w.ballot(w.lane() < count && is_last);
+        const lane_bits_t<W> copied = copies.find(w, key_of_row * all + stripe, w.lane() < count);
 
         sum so_far[PerLane];
         clear(so_far);
@@ -318,12 +375,18 @@ struct scatter_wide_rows {
                 for (unsigned k = 0; k < PerLane; ++k)
                     so_far[k] = operation::combine(so_far[k], convert(v[j][k]));
                 if ((ends >> (begin + j) & 1) == 0) continue;
-                const std::size_t record = w.shfl(key_of_row, begin + j);
-                sum* to = rows.table + (record * rows.width + column);
-                WARPAGG_UNROLL
-                for (unsigned k = 0; k < PerLane; ++k)
-                    w.atomic(operation{}, detail::element_at<sum>{to}, lane_column(w, k), so_far[k],
-                             column + lane_column(w, k) < rows.width);
+                const unsigned record = w.shfl(key_of_row, begin + j);
+                if ((copied >> (begin + j) & 1) != 0) {
+                    WARPAGG_UNROLL
+                    for (unsigned k = 0; k < PerLane; ++k)
+                        copies.add(w, record * all + stripe, lane_column(w, k), so_far[k], true);
+                } else {
+                    sum* to = rows.table + (std::size_t{record} * rows.width + column);
+                    WARPAGG_UNROLL
+                    for (unsigned k = 0; k < PerLane; ++k)
+                        w.atomic(operation{}, detail::element_at<sum>{to}, lane_column(w, k), so_far[k],
+                                 column + lane_column(w, k) < rows.width);
+                }
                 clear(so_far);
             }
         }

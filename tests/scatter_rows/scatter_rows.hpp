@@ -12,7 +12,7 @@
 #include <numeric>
 #include <random>
 #include <vector>
-#include <warpagg/scatter_rows.hpp>
+#include <warpagg/scatter_in_blocks.hpp>
 
 namespace {
 
@@ -40,19 +40,58 @@ struct only_warp {
     }
 };
 
-/// Adds rows by the kernel for their width. `width` is what the kernels for narrow rows accept.
-template <class Rows>
-void add_rows(const Rows& rows) {
+/// One block takes the part of each block.
+template <class Scatter>
+struct every_block {
+    Scatter scatter;
+    typename Scatter::sum* memory;
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W>
+    WARPAGG_HD void operator()(const W& w, unsigned warp) const {
+        const auto barrier = [&] { backend::barrier(w); };
+        for (unsigned block = 0; block < scatter.blocks; ++block) {
+            scatter(w, block, warp, memory, barrier);
+            barrier();
+        }
+    }
+};
+
+/// Passes the kernel for the rows' width, as the kernels for narrow rows accept it.
+template <class Rows, class F>
+void with_kernel(const Rows& rows, const F& f) {
     constexpr unsigned lanes = backend::warp::size;
     if (rows.width % 4 == 0 && rows.width <= 16 && rows.width / 4 <= lanes)
-        backend::launch(every_tile<scatter_narrow_rows<4, Rows>>{{rows}});
+        f(scatter_narrow_rows<4, Rows>{rows});
     else if (rows.width < 16 && rows.width <= lanes)
-        backend::launch(every_tile<scatter_narrow_rows<1, Rows>>{{rows}});
+        f(scatter_narrow_rows<1, Rows>{rows});
     else if (rows.width <= 32)
-        backend::launch(every_tile<scatter_wide_rows<1, Rows>>{{rows}});
+        f(scatter_wide_rows<1, Rows>{rows});
     else
-        backend::launch(every_tile<scatter_wide_rows<2, Rows>>{{rows}});
+        f(scatter_wide_rows<2, Rows>{rows});
 }
+struct each_tile_alone {
+    template <class Rows>
+    void operator()(const Rows& rows) const {
+        with_kernel(rows, [](const auto& kernel) {
+            backend::launch(every_tile<std::remove_cvref_t<decltype(kernel)>>{kernel});
+        });
+    }
+};
+struct in_blocks {
+    unsigned slots, blocks, warps;
+
+    template <class Rows>
+    void operator()(const Rows& rows) const {
+        with_kernel(rows, [this](const auto& kernel) {
+            using scatter = scatter_in_blocks<std::remove_cvref_t<decltype(kernel)>>;
+            const unsigned size = scatter::template memory_size<backend::warp>(slots);
+            typename backend::template memory<typename scatter::sum> memory(
+                std::vector<typename scatter::sum>(size, -1));  // with no defined content
+            backend::launch_block(warps, every_block<scatter>{{kernel, slots, blocks, warps}, memory.data()});
+        });
+    }
+};
 
 constexpr unsigned widths[] = {1, 2, 3, 4, 5, 8, 12, 15, 16, 20, 33, 64, 100};
 constexpr unsigned records = 40;
@@ -91,12 +130,12 @@ std::vector<T> draw_whole_numbers(std::size_t size, std::mt19937_64& random) {
 }
 
 /// The table after a scatter of whole numbers; it starts with `start`.
-template <class Op, class T, class Key>
+template <class Op, class T, class Key, class Add = each_tile_alone>
 std::vector<T> combined_by_kernel(unsigned width, const std::vector<Key>& keys, const std::vector<T>& values,
-                                  T start) {
+                                  T start, const Add& add = {}) {
     typename backend::template memory<Key> key_memory(keys);
     typename backend::template memory<T> value_memory(values), table(std::vector<T>(records * width, start));
-    add_rows(scatter_rows<T, T, row_keys<Key>, unchanged, Op>{
+    add(scatter_rows<T, T, row_keys<Key>, unchanged, Op>{
         value_memory.data(), keys.size(), width, {key_memory.data(), records}, table.data()});
     return table.download();
 }
@@ -174,9 +213,9 @@ TEST_CASE("keys may be 32-bit numbers, and there may be no rows") {
 namespace {
 
 /// The table after a scatter with fixed-point sums.
-template <class T>
+template <class T, class Add = each_tile_alone>
 std::vector<T> fixed_point_sums(unsigned width, const std::vector<std::int64_t>& keys,
-                                const std::vector<T>& values, T start) {
+                                const std::vector<T>& values, T start, const Add& add = {}) {
     using rows = scatter_rows<T, std::int64_t, row_keys<std::int64_t>, to_fixed_point<T>>;
     constexpr int limbs = fixed_point<T>::limbs;
     const std::size_t size = records * width;
@@ -191,7 +230,7 @@ std::vector<T> fixed_point_sums(unsigned width, const std::vector<std::int64_t>&
     for (int i = 0; i < limbs; ++i) {
         all.convert.limb = i;
         all.table = sums.data() + i * size;
-        add_rows(all);
+        add(all);
     }
     all.table = sums.data();
     backend::launch(only_warp<add_fixed_point<rows>>{{all, size, table.data()}});
@@ -306,4 +345,132 @@ TEST_CASE("fixed point: the kernels compute the sums of the format") {
     std::int64_t limbs[1] = {0};
     for (const float v : values) limbs[0] += format.limb(v, 0);
     CHECK(sums[7] == static_cast<float>(format.value(limbs)));
+}
+
+namespace {
+
+/// Blocks whose copies collide, and blocks that have copies of all records.
+std::vector<in_blocks> ways_to_divide() {
+    std::vector<in_blocks> all;
+    for (const unsigned slots : {1u, 3u, 200u}) all.push_back({slots, 2, backend::most_warps});
+    all.push_back({3, 5, 1});
+    return all;
+}
+
+std::vector<std::uint64_t> bits_of(const std::vector<float>& values) {
+    std::vector<std::uint64_t> bits;
+    for (const float v : values) bits.push_back(std::bit_cast<std::uint32_t>(v));
+    return bits;
+}
+std::vector<std::uint64_t> bits_of(const std::vector<double>& values) {
+    std::vector<std::uint64_t> bits;
+    for (const double v : values) bits.push_back(std::bit_cast<std::uint64_t>(v));
+    return bits;
+}
+
+}  // namespace
+
+TEST_CASE("in blocks: rows of each width and order are added to the records of their keys") {
+    std::mt19937_64 random(7);
+    for (const unsigned width : {1u, 3u, 4u, 12u, 20u, 100u})
+        for (const key_order order :
+             {key_order::random, key_order::sorted, key_order::equal, key_order::frequent}) {
+            CAPTURE(width);
+            CAPTURE(static_cast<int>(order));
+            auto keys = draw_keys(order, 200, random);
+            if (order == key_order::frequent) keys[100] = -1, keys[199] = std::int64_t{1} << 32;
+            const auto values = draw_whole_numbers<std::int64_t>(std::size_t{200} * width, random);
+            const auto sums = combined_in_order<operation::sum>(width, keys, values, std::int64_t{5});
+            const auto largest =
+                combined_in_order<operation::maximum>(width, keys, values, std::int64_t{-200});
+            for (const in_blocks& add : ways_to_divide()) {
+                CAPTURE(add.slots);
+                CAPTURE(add.warps);
+                CHECK(combined_by_kernel<operation::sum>(width, keys, values, std::int64_t{5}, add) == sums);
+                if (order == key_order::frequent)
+                    CHECK(combined_by_kernel<operation::maximum>(width, keys, values, std::int64_t{-200},
+                                                                 add) == largest);
+            }
+        }
+}
+
+TEST_CASE_TEMPLATE("in blocks: fixed-point sums have the bits that they have without blocks", T, float,
+                   double) {
+    using limits = std::numeric_limits<T>;
+    std::mt19937_64 random(8);
+    for (const unsigned width : {1u, 4u, 8u, 64u}) {
+        CAPTURE(width);
+        const auto keys = draw_keys(key_order::frequent, 300, random);
+        auto values = draw_floats<T>(std::size_t{300} * width, 30, random);
+        for (const bool is_finite : {true, false}) {
+            CAPTURE(is_finite);
+            if (!is_finite) values[5] = limits::infinity(), values[70] = limits::quiet_NaN();
+            const auto expected = bits_of(fixed_point_sums(width, keys, values, T(0.1)));
+            for (const in_blocks& add : ways_to_divide())
+                CHECK(bits_of(fixed_point_sums(width, keys, values, T(0.1), add)) == expected);
+        }
+    }
+}
+
+namespace {
+
+using copies_of_two = detail::copied_pieces<2, std::int64_t, operation::sum>;
+
+/// Lane i has the piece 9 if i is a multiple of 4, and a piece of its own otherwise.
+struct use_of_copies {
+    copies_of_two copies;
+    lane_bits_t<backend::warp>* found;
+    std::int64_t* table;
+
+    WARPAGG_EXEC_CHECK_DISABLE
+    template <class W>
+    WARPAGG_HD void operator()(const W& w) const {
+        const unsigned piece = w.lane() % 4 == 0 ? 9 : 10 + w.lane();
+        copies.clear(w, 0, 1);
+        w.sync();
+        const lane_bits_t<W> in_empty_slot = copies.find(w, 0, true);
+        w.sync();
+        copies.nominate(w, piece, w.lane(), true);
+        w.sync();
+        const lane_bits_t<W> mine = copies.find(w, piece, true);
+        const lane_bits_t<W> inactive = copies.find(w, piece, false);
+        if (w.lane() == 0) found[0] = in_empty_slot, found[1] = mine, found[2] = inactive;
+        copies.add(w, piece, 1, 3, (mine >> w.lane() & 1) != 0);
+        w.sync();
+        copies.flush(w, table, 3, 0, 1);  // piece 9 has the last value of record 4
+    }
+};
+
+}  // namespace
+
+TEST_CASE("in blocks: the piece that most lanes have gets the slot, and only its lanes use the copy") {
+    using bits = lane_bits_t<backend::warp>;
+    typename backend::template memory<std::int64_t> memory(std::vector<std::int64_t>(1 + 2, -1)),
+        table(std::vector<std::int64_t>(6 * 3));
+    typename backend::template memory<bits> found(std::vector<bits>(3));
+    backend::launch(use_of_copies{{memory.data(), memory.data() + 1, 1}, found.data(), table.data()});
+    const bits every_fourth = backend::warp::size == 1 ? 1 : ~bits{0} / 15;
+    CHECK(found.download() == std::vector<bits>{0, every_fourth, 0});
+    const auto content = memory.download();
+    CHECK(static_cast<std::uint32_t>(content[0]) == 9);
+    CHECK(content[1] == 0);
+    CHECK(content[2] == 3 * std::int64_t{(backend::warp::size + 3) / 4});
+    CHECK(table.download() == std::vector<std::int64_t>(6 * 3, 0));  // the second value is past the record
+}
+
+TEST_CASE("in blocks: frequent keys reach the table by their copies") {
+    // The copy of the only key has the sum of all rows.
+    using rows = scatter_rows<std::int64_t, std::int64_t, row_keys<unsigned>>;
+    using scatter = scatter_in_blocks<scatter_narrow_rows<4, rows>>;
+    std::mt19937_64 random(9);
+    const auto values = draw_whole_numbers<std::int64_t>(300 * 4, random);
+    typename backend::template memory<unsigned> keys(std::vector<unsigned>(300, 2));
+    typename backend::template memory<std::int64_t> of_rows(values), table(std::vector<std::int64_t>(16)),
+        memory(std::vector<std::int64_t>(scatter::memory_size<backend::warp>(5)));
+    const scatter add{{{of_rows.data(), 300, 4, {keys.data(), 4}, table.data()}}, 5, 1, backend::most_warps};
+    backend::launch_block(backend::most_warps, every_block<scatter>{add, memory.data()});
+    const auto content = memory.download();
+    const auto sums = table.download();
+    const auto copy = std::ranges::search(content, std::vector(sums.begin() + 8, sums.begin() + 12));
+    CHECK(copy.size() == 4);
 }

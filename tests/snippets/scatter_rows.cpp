@@ -3,7 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <vector>
-#include <warpagg/scatter_rows.hpp>
+#include <warpagg/scatter_in_blocks.hpp>
+#include <warpagg/warp/checked.hpp>
 #include <warpagg/warp/serial.hpp>
 
 using namespace warpagg;
@@ -39,4 +40,24 @@ TEST_CASE("fixed point") {
     // table: 1, 0, 3, for any order of the rows
     //! [fixed point]
     CHECK(table == std::vector<float>{1, 0, 3});
+}
+
+TEST_CASE("in blocks") {
+    //! [in blocks]
+    std::vector<unsigned> keys(1000, 2);  // a frequent key
+    keys[500] = 0;
+    const std::vector<std::int64_t> values(1000, 5);  // rows of 1
+    std::vector<std::int64_t> table(3);
+    using rows = scatter_rows<std::int64_t, std::int64_t, row_keys<unsigned>>;
+    using scatter = scatter_in_blocks<scatter_narrow_rows<1, rows>>;
+    constexpr unsigned slots = 16, blocks = 2, warps = 4;
+    const scatter add{{{values.data(), 1000, 1, {keys.data(), 3}, table.data()}}, slots, blocks, warps};
+    // On a GPU, a kernel does this with __shared__ memory and __syncthreads().
+    emulator::launch({.blocks = blocks, .threads = warps * 32}, [&](const emulator::checked& w) {
+        const auto memory = w.shared<std::int64_t>(scatter::memory_size<emulator::checked>(slots));
+        add(w, w.block_index(), w.thread_index() / 32, memory.data(), [&] { w.barrier(); });
+    });
+    // table: 5, 0, 4995
+    //! [in blocks]
+    CHECK(table == std::vector<std::int64_t>{5, 0, 4995});
 }

@@ -32,10 +32,16 @@ struct checked_backend {
     }
     static void barrier(const warp& w) { w.barrier(); }
 
+    static constexpr unsigned most_warps = 3;
+    template <class F>
+    static void launch_block(unsigned warps, const F& f) {
+        const auto report = warpagg::emulator::try_launch<Warp>(
+            {.threads = warps * Warp::size}, [&](const Warp& w) { f(w, w.thread_index() / Warp::size); });
+        if (!report.ok()) throw std::runtime_error(report.text());
+    }
     template <class F>
     static void launch(const F& f) {
-        const auto report = warpagg::emulator::try_launch<Warp>({.threads = Warp::size}, f);
-        if (!report.ok()) throw std::runtime_error(report.text());
+        launch_block(1, [&](const Warp& w, unsigned) { f(w); });
     }
 };
 

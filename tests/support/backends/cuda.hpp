@@ -61,6 +61,11 @@ __global__ void one_warp(F f) {
     f(warpagg::cuda_warp{});
 }
 
+template <class F>
+__global__ void one_block(F f) {
+    f(warpagg::cuda_warp{}, threadIdx.x / 32);
+}
+
 __global__ void nothing() {}
 
 /// The compute capability that the running code was compiled for, times ten.
@@ -97,6 +102,13 @@ struct backend {
         __syncthreads();
     }
 
+    static constexpr unsigned most_warps = 32;
+    template <class F>
+    static void launch_block(unsigned warps, const F& f) {
+        one_block<<<1, warps * 32>>>(f);
+        check_cuda(cudaGetLastError(), "launch");
+        check_cuda(cudaDeviceSynchronize(), "kernel");
+    }
     template <class F>
     static void launch(const F& f) {
         one_warp<<<1, 32>>>(f);

@@ -37,6 +37,11 @@ struct backend {
     static void barrier(const W&) {}
     /// @}
 
+    static constexpr unsigned most_warps = 1;
+    template <class F>
+    static void launch_block(unsigned, const F& f) {
+        f(warp{}, 0u);
+    }
     template <class F>
     static void launch(const F& f) {
         f(warp{});
