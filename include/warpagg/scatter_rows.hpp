@@ -224,7 +224,7 @@ struct scatter_narrow_rows {
         (*this)(w, index, detail::no_copies{});
     }
 
-    /// What `scatter_in_blocks` needs.
+    /// The members that `scatter_in_blocks` uses.
     /// @{
     using sum = typename Rows::sum;
     template <warp W>
@@ -318,7 +318,8 @@ struct scatter_wide_rows {
         (*this)(w, index, detail::no_copies{});
     }
 
-    /// What `scatter_in_blocks` needs. Precondition: the table has at most 2^32 stripes of records.
+    /// The members that `scatter_in_blocks` uses. Precondition: the table has at most 2^32 stripes of
+    /// records.
     /// @{
     using sum = typename Rows::sum;
     template <warp W>

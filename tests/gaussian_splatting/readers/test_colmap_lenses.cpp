@@ -128,8 +128,8 @@ TEST_CASE("the area scale of a lens is the determinant of its derivative") {
 }
 
 TEST_CASE("what a strong lens folds over stays outside of the pinhole camera's view") {
-    // r (1 - 0.3 r^2) grows up to r = 1.054 only; the photo's corners, at 1.25, still hold what lies farther
-    // out.
+    // r (1 - 0.3 r^2) grows up to r = 1.054 only; the photo's corners, at 1.25, still show points
+    // farther out.
     const gs::lens lens{-0.3, 0, 0, 0};
     gs::camera camera;
     camera.width = 400;
