@@ -7,7 +7,9 @@
 #include <warpagg/atomic.hpp>
 
 #include "../render/geometry/list_capacity.hpp"
+#include "comparison_totals.hpp"
 #include "ssim_strip.hpp"
+#include "ssim_terms.hpp"
 #include "target_pixels.hpp"
 
 namespace gs::train {
@@ -86,16 +88,6 @@ struct sum_and_difference {
     }
 };
 
-/// The totals of a comparison over all pixels and color channels. `total_values` is the number of
-/// values.
-enum comparison_total {
-    total_absolute_error,
-    total_square_error,
-    total_ssim,
-    total_values,
-    comparison_total_count
-};
-
 /// Second pass: computes the SSIM at each pixel and the coefficients of its derivative. Adds to
 /// `totals` unless the tile lists of the view did not fit. Masked pixels do not count. One warp per
 /// strip.
@@ -125,36 +117,23 @@ struct ssim_compare {
         for (int below = strip.first - radius; below < strip.last + radius; ++below, at += planes.pitch()) {
             const Real* const values[] = {maps.sum + at, maps.difference + at};
             moments<real> along[2];
-            window.moments_along(w, values, along);
+            window.moments_along(map_values<W, Real, 2>{w, values}, along);
             window.add_row(sums, along[0]);
             window.add_row(differences, along[1]);
             if (below < strip.first + radius) continue;
 
-            // With the means m, variances v and covariance cov of x and y under the window (Wang et
-            // al. 2004),
-            //     SSIM = (2 mx my + C1) (2 cov + C2) / ((mx^2 + my^2 + C1) (vx + vy + C2)).
-            // This code uses the moments of u = 2 (x + y) and v = 2 (x - y). Rounding then keeps
-            // each of the two factors in [-1, 1].
-            constexpr auto C1 = static_cast<Real>(8 * 0.01 * 0.01), C2 = static_cast<Real>(8 * 0.03 * 0.03);
-            const real mu = sums[size - 1].mean, mv = differences[size - 1].mean;
-            const real vu = sums[size - 1].square, vv = differences[size - 1].square;
-            const real r1 = Real(1) / (fma(mu, mu, mv * mv) + C1), r2 = Real(1) / (vu + vv + C2);
-            const real t1 = (mv + mv) * r1, lost1 = mv * t1, factor1 = Real(1) - lost1;
-            const real lost2 = (vv + vv) * r2, factor2 = Real(1) - lost2;
-            const real scale = Real(8) * factor1 * r2;
-            const real by_u = scale * lost2, by_v = scale * (lost2 - Real(2));
-            const real by_mean = (t1 + t1) * factor2 * (fma(mu, t1, lost1) - Real(2));
+            const ssim_terms<real> terms = ssim_terms<real>::of(sums[size - 1], differences[size - 1]);
             const std::ptrdiff_t pixel = at - radius * planes.pitch();
-            w.store_row(maps.constant, pixel, by_mean - Real(0.5) * fma(by_u, mu, by_v * mv), strip.inside);
-            w.store_row(maps.by_sum, pixel, by_u, strip.inside);
-            w.store_row(maps.by_difference, pixel, by_v, strip.inside);
+            w.store_row(maps.constant, pixel, terms.constant, strip.inside);
+            w.store_row(maps.by_sum, pixel, terms.by_sum, strip.inside);
+            w.store_row(maps.by_difference, pixel, terms.by_difference, strip.inside);
 
             const real error = w.load_row(maps.difference, pixel, strip.inside);
             absolute += warpagg::math::max(error, -error);
             square = fma(error, error, square);
-            real counted2 = factor2;
-            if constexpr (Masked) counted2 = counted(w, strip, below - radius, factor2, excluded);
-            ssim = fma(factor1, counted2, ssim);
+            real counted2 = terms.factor2;
+            if constexpr (Masked) counted2 = counted(w, strip, below - radius, terms.factor2, excluded);
+            ssim = fma(terms.factor1, counted2, ssim);
         }
         if (capacity.exceeded()) return;
         using warpagg::math::convert;

@@ -7,7 +7,7 @@
 
 #include "../device/device.hpp"
 #include "comparison_kernels.hpp"
-#include "image_quality.hpp"
+#include "comparison_totals.hpp"
 #include "target_image.hpp"
 
 namespace gs::train {
@@ -22,10 +22,7 @@ class image_comparison {
     template <class T>
     using buffer = typename Device::template buffer<T>;
 
-    explicit image_comparison(Device& device) : device_(device) {
-        totals_.resize(comparison_total_count);
-        device_.zero(totals_.data(), comparison_total_count);
-    }
+    explicit image_comparison(Device& device) : device_(device), totals_(device) {}
 
     /// Returns the size of the maps of a pixel.
     static constexpr std::size_t bytes_per_pixel() { return comparison_maps<Real>::count * sizeof(Real); }
@@ -47,16 +44,10 @@ class image_comparison {
     }
 
     /// Returns the totals since the last `take`, on the device: one sum per `comparison_total`.
-    std::span<const double> totals() const { return {totals_.data(), totals_.size()}; }
+    std::span<const double> totals() const { return totals_.sums(); }
     /// Returns the means over all renders since the last call, and sets the totals to zero. Waits
     /// for the device.
-    image_quality take() {
-        double totals[comparison_total_count];
-        device_.download(totals, totals_.data(), comparison_total_count);
-        device_.zero(totals_.data(), comparison_total_count);
-        const double n = totals[total_values];
-        return {totals[total_absolute_error] / n, totals[total_square_error] / n, totals[total_ssim] / n};
-    }
+    image_quality take() { return totals_.take(); }
 
     /// The results of the last `compare` that a gradient of the SSIM needs.
     /// @{
@@ -90,7 +81,7 @@ class image_comparison {
     target_image target_;
     comparison_maps<Real> maps_{};
     buffer<Real> memory_;
-    buffer<double> totals_;
+    comparison_totals<Device> totals_;
 };
 
 }  // namespace gs::train

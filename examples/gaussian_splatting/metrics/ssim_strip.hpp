@@ -31,8 +31,8 @@ struct framed_planes {
     std::size_t size() const { return static_cast<std::size_t>(lines() * pitch() + alignment); }
 };
 
-/// The part of an image that one warp processes: `W::size` columns and some rows of one channel.
-template <class W>
+/// The part of an image that one warp processes: some columns and rows of one channel.
+template <class W, int Columns = static_cast<int>(W::size)>
 struct ssim_strip {
     int channel, left, first, last;  ///< the rows are [first, last)
     mask_t<W> inside;                ///< lanes whose column is in the image
@@ -51,7 +51,7 @@ struct ssim_strip {
     WARPAGG_HD ssim_strip(const W& w, unsigned index, int width, int height, int rows) {
         const auto chunks = static_cast<unsigned>((height + rows - 1) / rows);
         const auto columns = static_cast<unsigned>(across(width));
-        left = static_cast<int>(index % columns * W::size);
+        left = static_cast<int>(index % columns) * Columns;
         first = static_cast<int>(index / columns % chunks) * rows;
         last = first + rows < height ? first + rows : height;
         channel = static_cast<int>(index / columns / chunks);
@@ -60,7 +60,8 @@ struct ssim_strip {
 
   private:
     static WARPAGG_HD std::size_t across(int width) {
-        return (static_cast<unsigned>(width) + W::size - 1) / W::size;
+        constexpr auto columns = static_cast<unsigned>(Columns);
+        return (static_cast<unsigned>(width) + columns - 1) / columns;
     }
 };
 

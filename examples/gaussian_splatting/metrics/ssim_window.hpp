@@ -67,43 +67,39 @@ struct ssim_window {
                 fma(V(by.between) * delta, delta, fma(V(by.weight), group.square, before.square))};
     }
 
-    /// Computes the moments along a row of *twice* the values from from[-radius] to from[radius],
-    /// for each of N maps and for the pixel of each lane. Reads all maps together, so that a GPU
+    /// Computes the moments along a row of *twice* the values from at(m, -radius) to at(m, radius),
+    /// for each of N maps m and for the pixel of each lane. Reads all maps together, so that a GPU
     /// waits for their loads only once.
     WARPAGG_EXEC_CHECK_DISABLE
-    template <class W, int N>
-    WARPAGG_HD void moments_along(const W& w, const Real* const (&from)[N],
-                                  moments<value_t<W, Real>> (&all)[N]) const {
-        using real = value_t<W, Real>;
+    template <class V, int N, class At>
+    WARPAGG_HD void moments_along(const At& at, moments<V> (&all)[N]) const {
         WARPAGG_UNROLL
         for (int m = 0; m < N; ++m) {
-            const real center = w.load_row(from[m], 0);
-            all[m] = {center + center, real(0)};  // mutate: variance_by_difference_2
+            const V center = at(m, 0);
+            all[m] = {center + center, V(0)};  // mutate: variance_by_difference_2
         }
         WARPAGG_UNROLL
         for (int t = 1; t <= radius; ++t) {
             WARPAGG_UNROLL
             for (int m = 0; m < N; ++m) {
-                const real left = w.load_row(from[m], -t), right = w.load_row(from[m], t);
-                const real apart = right - left;
+                const V left = at(m, -t), right = at(m, t);
+                const V apart = right - left;
                 // mutate: variance_by_difference_3
                 all[m] = merge(pair[t], all[m], {left + right, apart * apart});
             }
         }
     }
-    /// Computes the weighted mean of the values from from[-radius] to from[radius], for each of N
-    /// maps.
+    /// Computes the weighted mean of the values from at(m, -radius) to at(m, radius), for each of N
+    /// maps m.
     WARPAGG_EXEC_CHECK_DISABLE
-    template <class W, int N>
-    WARPAGG_HD void mean_along(const W& w, const Real* const (&from)[N], value_t<W, Real> (&mean)[N]) const {
-        using real = value_t<W, Real>;
+    template <class V, int N, class At>
+    WARPAGG_HD void mean_along(const At& at, V (&mean)[N]) const {
         WARPAGG_UNROLL
-        for (int m = 0; m < N; ++m) mean[m] = w.load_row(from[m], 0) * real(tap[0]);
+        for (int m = 0; m < N; ++m) mean[m] = at(m, 0) * V(tap[0]);
         WARPAGG_UNROLL
         for (int t = 1; t <= radius; ++t) {
             WARPAGG_UNROLL
-            for (int m = 0; m < N; ++m)
-                mean[m] = fma(real(tap[t]), w.load_row(from[m], -t) + w.load_row(from[m], t), mean[m]);
+            for (int m = 0; m < N; ++m) mean[m] = fma(V(tap[t]), at(m, -t) + at(m, t), mean[m]);
         }
     }
 
@@ -121,6 +117,15 @@ struct ssim_window {
         for (int k = size - 1; k > 0; --k) windows[k] = fma(V(row[k].weight), value, windows[k - 1]);
         windows[0] = V(row[0].weight) * value;
     }
+};
+
+/// Reads the values of N maps near the pixel of each lane from memory, for `ssim_window`.
+template <class W, class Real, int N>
+struct map_values {
+    const W& w;
+    const Real* const (&from)[N];  ///< each map's value at the pixel of lane 0
+
+    WARPAGG_HD value_t<W, Real> operator()(int map, int tap) const { return w.load_row(from[map], tap); }
 };
 
 }  // namespace gs::train

@@ -19,7 +19,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCES = HERE.parent.parent.parent / "examples" / "gaussian_splatting"
-EFFECT_STATEMENTS = 9
+EFFECT_STATEMENTS = 13
 STATEMENT = re.compile(r"^ *if constexpr \((?:Effects\.\w+|Masked)\)\s[^;]*;\n", re.MULTILINE)
 
 CHOICE = re.compile(r"std::conditional_t<Effects\.\w+, [^,]*, ([^,]*)>;")
@@ -31,7 +31,7 @@ def compiled(command, sources, effects):
     if done.returncode != 0:
         raise SystemExit(done.stderr)
     # Mangled names hold the parameters' values.
-    return re.sub(r"\S*(effect_set|sum_and_difference|ssim_compare|loss_gradient)\S*", "", done.stdout)
+    return re.sub(r"\S*(effect_set|sum_and_difference|ssim_compare|l1_ssim_gradient|fused_l1_ssim)\S*", "", done.stdout)
 
 
 def without_effects(folder):

@@ -9,6 +9,7 @@
 #include <warpagg/warp/simd.hpp>
 #endif
 
+#include "losses/l1_ssim/fused_l1_ssim.hpp"
 #include "losses/l1_ssim/l1_ssim_kernels.hpp"
 #include "optimize/adam.hpp"
 #include "render/project/project.hpp"
@@ -36,6 +37,9 @@ extern "C" __global__ void second_pass(gs::train::ssim_compare<float, masked> ke
 extern "C" __global__ void last_pass(gs::train::l1_ssim_gradient<float, masked> kernel) {
     kernel(warp{}, blockIdx.x);
 }
+extern "C" __global__ void only_pass(gs::train::fused_l1_ssim<float, masked> kernel) {
+    kernel(warp{}, blockIdx.x);
+}
 #else
 using warp = warpagg::emulator::narrow_lanes<8>;
 
@@ -55,5 +59,8 @@ extern "C" void second_pass(const gs::train::ssim_compare<float, masked>& kernel
 }
 extern "C" void last_pass(const gs::train::l1_ssim_gradient<float, masked>& kernel, unsigned index) {
     kernel(warp{}, index);
+}
+extern "C" void only_pass(const gs::train::fused_l1_ssim<float, masked>& kernel, unsigned index) {
+    kernel(warpagg::emulator::lanes{}, index);
 }
 #endif

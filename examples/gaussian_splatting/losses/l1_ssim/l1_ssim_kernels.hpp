@@ -43,7 +43,7 @@ struct l1_ssim_gradient {
         for (int below = strip.first - radius; below < strip.last + radius; ++below, at += planes.pitch()) {
             const Real* const derivatives[] = {maps.constant + at, maps.by_sum + at, maps.by_difference + at};
             real mean[3];
-            window.mean_along(w, derivatives, mean);
+            window.mean_along(map_values<W, Real, 3>{w, derivatives}, mean);
             WARPAGG_UNROLL
             for (int m = 0; m < 3; ++m) window.add_row(spread[m], mean[m]);
             if (below < strip.first + radius) continue;
