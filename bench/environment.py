@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """The machine and the sources that figures belong to, and the command line of the scripts."""
 import os
+import re
 import subprocess
 import sys
 
@@ -21,6 +22,16 @@ def environment(commit):
             "nvcc": nvcc and nvcc.split(" V")[-1],
             "compiler": first_line("c++", "--version"),
             "processor": processor and f"{processor}, {os.cpu_count()} processors"}
+
+
+def compilers_of(build):
+    """The compilers of a CMake build folder. Programs may have been built on another machine."""
+    found = {}
+    for key, language in ("compiler", "CXX"), ("nvcc", "CUDA"):
+        for file in build.glob(f"CMakeFiles/*/CMake{language}Compiler.cmake"):
+            values = dict(re.findall(rf'set\(CMAKE_{language}_COMPILER_(ID|VERSION) "(.*)"\)', file.read_text()))
+            found[key] = values["VERSION"] if language == "CUDA" else f"{values['ID']} {values['VERSION']}"
+    return found
 
 
 def own_and_passed_on():

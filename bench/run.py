@@ -23,7 +23,7 @@ import tempfile
 import time
 import tomllib
 
-from environment import environment
+from environment import compilers_of, environment
 from markdown_tables import parse_tables
 
 BENCH = pathlib.Path(__file__).resolve().parent
@@ -92,7 +92,8 @@ def main():
     if unknown:
         raise SystemExit(f"error: profile '{arguments.profile}' has no measurement '{sorted(unknown)[0]}'")
     output = arguments.output or BENCH / "results" / f"{arguments.profile}.json"
-    results = load(output, environment(arguments.commit), arguments.fresh)
+    about = {**environment(arguments.commit), **compilers_of(arguments.build)}
+    results = load(output, about, arguments.fresh)
     variables = {"BUILD": str(arguments.build.resolve()), "DATA": str(arguments.data.resolve()),
                  "DEVICE": "cpu" if arguments.profile == "cpu" else "cuda"}
 
