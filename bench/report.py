@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "reference" / "benchmarks.md"
 README = ROOT / "README.md"
 README_TABLE = re.compile(r"(<!-- benchmarks -->\n\n?).*?(\n?<!-- end of benchmarks -->)", re.DOTALL)
-PROFILES = {"h200": "On a GPU", "cpu": "On a CPU"}
+PROFILES = {"gpu": "On a GPU", "cpu": "On a CPU"}
 
 # A number with the unit of something that was measured.
 MEASURED = re.compile(r"\b\d[\d,.]*\s?(?:dB|ms|µs|it/s|MiB|GiB|GB/s|(?:times|×) (?:as fast|faster|the time))(?!\w)")
@@ -86,12 +86,12 @@ def training_rows(result, measurement, device, title, schedule, scenes):
 def readme_table(results):
     """Medians of three seeds, from the training tables of the page."""
     rows = []
-    if "h200" in results:
-        gpu = results["h200"]["about"]["gpu_and_driver"].split(",")[0]
+    if "gpu" in results:
+        gpu = results["gpu"]["about"]["gpu_and_driver"].split(",")[0]
         photos = {"lego": "lego, 400×400", "fern": "fern, 696×521", "train": "train, 800×444"}
-        rows += training_rows(results["h200"], "training", gpu, "`--quality fast`", "`--quality fast`", photos)
-        rows += training_rows(results["h200"], "training", gpu, "7,000 iterations (the default)", "7,000 iterations", photos)
-        rows += training_rows(results["h200"], "training", gpu, "30,000 iterations", "30,000 iterations", photos)
+        rows += training_rows(results["gpu"], "training", gpu, "`--quality fast`", "`--quality fast`", photos)
+        rows += training_rows(results["gpu"], "training", gpu, "7,000 iterations (the default)", "7,000 iterations", photos)
+        rows += training_rows(results["gpu"], "training", gpu, "30,000 iterations", "30,000 iterations", photos)
     if "cpu" in results:
         cores = re.search(r"(\d+) processors", results["cpu"]["about"]["processor"]).group(1)
         rows += training_rows(results["cpu"], "training_cpu", f"CPU, {cores} cores", "1,500 iterations (the demo)", "1,500 iterations",

@@ -4,7 +4,7 @@
 """Runs the measurements of bench/suite.toml and keeps their tables as one result set.
 
     cmake --preset bench && cmake --build --preset bench
-    bench/run.py --profile h200 --build build/bench --data SCENES
+    bench/run.py --profile gpu --build build/bench --data SCENES
     bench/report.py
 
 A measurement is a list of shell commands. The Markdown tables that they print are its result. The
@@ -77,7 +77,7 @@ def measure(measurement, variables):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--profile", required=True, help="cpu or h200")
+    parser.add_argument("--profile", required=True, help="cpu or gpu")
     parser.add_argument("--build", default="build/bench", type=pathlib.Path, help="build folder (default: build/bench)")
     parser.add_argument("--data", default="scenes", type=pathlib.Path, help="folder of the real scenes (default: scenes)")
     parser.add_argument("--output", type=pathlib.Path, help="result set (default: bench/results/PROFILE.json)")

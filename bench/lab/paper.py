@@ -5,9 +5,9 @@
 and measures the gradient kernel on what came of it.
 
     bench/lab/paper.py run --build build/bench --data ../shared/data --scenes lego truck --seconds 60 \\
-        --output bench/results/paper_h200.json -- --device cuda
-    bench/lab/paper.py table bench/results/paper_h200.json
-    bench/lab/paper.py plot bench/results/paper_h200.json docs/images/paper_h200.svg      # needs matplotlib
+        --output bench/results/paper_gpu.json -- --device cuda
+    bench/lab/paper.py table bench/results/paper_gpu.json
+    bench/lab/paper.py plot bench/results/paper_gpu.json docs/images/paper_gpu.svg      # needs matplotlib
 
 The options after -- are those of every training; --images, --resolution and --device are those of `lab paper`, too. They name
 no iterations: all rungs train for --iterations, and some for as many as fill --seconds in the loop, within 5 %. Seconds
