@@ -25,7 +25,7 @@ KEPT = ["psnr", "ssim", "training_psnr", "gaussians", "iterations", "iterations_
 def train_into(folder, program, data, scene, seed, options):
     """One run, whose results stay in the folder: what metrics.json says of it, and the seconds of the whole process."""
     source = scene if scene.startswith("synthetic:") else str(pathlib.Path(data) / scene)
-    command = [program, "train", "-d", source, "-o", folder, "--overwrite", "--eval", "-q",
+    command = [program, "train", "-d", source, "-o", folder, "--eval", "-q",
                "--seed", str(seed), *options]
     start = time.monotonic()
     subprocess.run(command, check=True)

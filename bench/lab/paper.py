@@ -74,7 +74,7 @@ def measure(arguments, scene, bench_options):
     program = str(build / "bench" / "lab" / "lab")
 
     def options(rung, iterations):
-        return arguments.data, scene, arguments.seed, [*arguments.options, "--gradient", rung, "-i", str(iterations)]
+        return arguments.data, scene, arguments.seed, [*arguments.options, "--gradient", rung, "-i", str(iterations), "--overwrite"]
 
     def told(run, what):
         print(scene, run["gradient"], what, f"{run['iterations']} iterations, {run['seconds']['train']:.2f} s, {run['psnr']:.2f} dB", flush=True)
