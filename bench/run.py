@@ -25,6 +25,7 @@ import tomllib
 
 from environment import compilers_of, environment
 from markdown_tables import parse_tables
+from result_file import load, save
 
 BENCH = pathlib.Path(__file__).resolve().parent
 SUITE = BENCH / "suite.toml"
@@ -40,22 +41,6 @@ def measurements_of(profile):
 def definition_of(measurement):
     """Changes whenever the commands of a measurement change."""
     return hashlib.sha256(json.dumps(measurement["run"]).encode()).hexdigest()[:16]
-
-
-def load(output, about, fresh):
-    if fresh or not output.exists():
-        return {"about": about, "measurements": {}}
-    results = json.loads(output.read_text())
-    differing = [key for key, value in about.items() if results["about"].get(key) != value]
-    if differing:
-        raise SystemExit(f"error: {output} has results of another {' and '.join(differing)}; pass --fresh to discard them")
-    return results
-
-
-def save(output, results):
-    part = output.with_name(output.name + ".part")
-    part.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")
-    part.replace(output)
 
 
 def measure(measurement, variables):
@@ -93,7 +78,7 @@ def main():
         raise SystemExit(f"error: profile '{arguments.profile}' has no measurement '{sorted(unknown)[0]}'")
     output = arguments.output or BENCH / "results" / f"{arguments.profile}.json"
     about = {**environment(arguments.commit), **compilers_of(arguments.build)}
-    results = load(output, about, arguments.fresh)
+    results = load(output, about, arguments.fresh) or {"about": about, "measurements": {}}
     variables = {"BUILD": str(arguments.build.resolve()), "DATA": str(arguments.data.resolve()),
                  "DEVICE": "cpu" if arguments.profile == "cpu" else "cuda"}
 
