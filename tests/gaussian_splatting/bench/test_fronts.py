@@ -44,15 +44,24 @@ if given.max_cap and (here / "pair.txt").exists():
         if time.monotonic() > deadline:
             sys.exit("no other training began")
         time.sleep(0.01)
-older = "older" in sys.argv[0]
-seconds = int(given.i) / (100 if older else 200)
-gaussians = int(given.max_cap or given.i)
-psnr = 20 + gaussians / 1000 - older + [0, 0.5, 0.125][int(given.seed)]
-metrics = {"psnr": psnr, "gaussians": gaussians, "seconds": {"train": seconds}, "device": "cpu, 8 lanes"}
+seconds = int(given.i) / (100 if "older" in sys.argv[0] else 200)
+metrics = {"psnr": 20 + seconds, "gaussians": int(given.max_cap or 7), "seconds": {"train": seconds}, "device": "cpu, 8 lanes"}
 (pathlib.Path(given.o) / "metrics.json").write_text(json.dumps(metrics))
 if given.max_cap is None:
     timed.rmdir()
 """
+
+
+def given(seeds=(0, 1, 2), programs=("now", "before")):
+    """A result whose older program takes twice the time for 1 dB less."""
+    budgets = {"seconds": (400, 200), "gaussians": (1000, 2000)}
+    runs = [{"front": front, "scene": scene, "seed": seed, "budget": budget, "program": name,
+             "seconds": budget / (200 if name == "now" else 100), "gaussians": budget, "device": "cuda, a GPU",
+             "psnr": 20 + budget / 1000 - (name == "before") + [0, 0.5, 0.125][seed]}
+            for front in budgets for scene in ("lego", "fern") for seed in seeds for budget in budgets[front] for name in programs]
+    about = {"commit": "new", "before_commit": "old" if "before" in programs else None, "processor": " a CPU",
+             "gpu_and_driver": "a GPU, 5.8"}
+    return {"about": about, "runs": runs}
 
 
 def python_with_matplotlib():
@@ -63,7 +72,7 @@ def python_with_matplotlib():
     return None
 
 
-class WithTrainers(unittest.TestCase):
+class Run(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -71,7 +80,7 @@ class WithTrainers(unittest.TestCase):
         self.file = self.folder / "fronts.json"
         for name in "newer", "older":
             program = self.folder / name
-            program.write_text(f"#!{sys.executable}\n{TRAINER}")
+            program.write_text(f"#!{sys.executable} -IS\n{TRAINER}")
             program.chmod(0o755)
 
     def calls(self):
@@ -88,8 +97,6 @@ class WithTrainers(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(self.file.read_text())
 
-
-class Run(WithTrainers):
     def test_programs_take_turns_with_each_budget(self):
         result = self.result("--", "--device", "cpu")
         self.assertEqual([(r["front"], r["budget"], r["program"]) for r in result["runs"] if r["scene"] == "fern"],
@@ -99,7 +106,7 @@ class Run(WithTrainers):
         self.assertRegex(first, "^newer train -d scenes/lego -o .* --eval -q --seed 0 --device cpu -i 400$")
         self.assertRegex(last, "^older train -d scenes/fern -o .* --eval -q --seed 0 --device cpu -i 7000 --max-cap 1000$")
         self.assertEqual(result["runs"][1], {"front": "seconds", "scene": "lego", "seed": 0, "budget": 400, "program": "before",
-                                             "seconds": 4.0, "psnr": 19.4, "gaussians": 400, "device": "cpu, 8 lanes"})
+                                             "seconds": 4.0, "psnr": 24.0, "gaussians": 7, "device": "cpu, 8 lanes"})
 
     def test_stopped_run_goes_on(self):
         (self.folder / "fail.txt").write_text("4")
@@ -138,46 +145,46 @@ class Run(WithTrainers):
         self.assertIn("--before and --before-commit belong together", refused.stderr)
 
 
-class Tables(WithTrainers):
+class Tables(unittest.TestCase):
     def test_medians_of_seeds(self):
-        result = self.result(seeds=(0, 1, 2))
-        result["about"]["processor"] = " a CPU"
-        text = fronts.tables(result)
-        self.assertIn("Budgets of iterations; a CPU, commits new (now) and old (before), seeds 0, 1, 2; median (least to most)\n\n"
+        text = fronts.tables(given())
+        self.assertIn("Budgets of iterations; a GPU, driver 5.8, commits new (now) and old (before), seeds 0, 1, 2; median (least to most)\n\n"
                       "| scene | iterations | seconds, now | seconds, before | PSNR, now | PSNR, before | Gaussians, now | Gaussians, before |\n",
                       text)
         self.assertIn("| lego | 200 | 1.00 (1.00 to 1.00) | 2.00 (2.00 to 2.00) | 20.32 (20.20 to 20.70) | 19.32 (19.20 to 19.70) | "
                       "200 (200 to 200) | 200 (200 to 200) |\n| lego | 400 |", text)
-        self.assertIn("Limits of Gaussians, 7,000 iterations; a CPU,", text)
+        self.assertIn("Limits of Gaussians, 7,000 iterations; a GPU,", text)
         self.assertIn("| fern | 1,000 | 21.12 (21.00 to 21.50) | 20.12 (20.00 to 20.50) | 1,000 (1,000 to 1,000) | 1,000 (1,000 to 1,000) |", text)
 
     def test_one_program_has_columns_of_its_own(self):
-        result = self.result(before=False)
-        result["about"]["gpu_and_driver"] = "a GPU, 5.8"
+        result = given((0,), ("now",))
         for run in result["runs"]:
-            run["device"] = "cuda, a GPU"
+            run["device"] = "cpu, 8 lanes"
         text = fronts.tables(result)
-        self.assertIn("; a GPU, driver 5.8, commit new, seeds 0; median", text)
+        self.assertIn("; a CPU, commit new, seeds 0; median", text)
         self.assertIn("| scene | iterations | seconds, now | PSNR, now | Gaussians, now |\n", text)
         self.assertIn("| lego | 200 | 1.00 | 20.20 | 200 |\n", text)
 
     def test_budget_without_older_training_is_empty(self):
-        result = self.result()
+        result = given((0,))
         result["runs"] = [r for r in result["runs"] if (r["budget"], r["program"]) != (400, "before")]
         self.assertIn("| lego | 400 | 2.00 |  | 20.40 |  | 400 |  |\n", fronts.tables(result))
 
 
-class Pictures(WithTrainers):
+class Pictures(unittest.TestCase):
     def setUp(self):
-        super().setUp()
         self.python = python_with_matplotlib()
         if self.python is None:
             self.skipTest("matplotlib is not installed")
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
 
     def pictures(self, result):
         """The two files by front, drawn from a result."""
-        self.file.write_text(json.dumps(result))
-        subprocess.run([self.python, BENCH / "fronts.py", "plot", self.file, self.folder / "picture"], check=True)
+        file = self.folder / "fronts.json"
+        file.write_text(json.dumps(result))
+        subprocess.run([self.python, BENCH / "fronts.py", "plot", file, self.folder / "picture"], check=True)
         return {front: (self.folder / f"picture_{front}.svg").read_text() for front in fronts.FRONTS}
 
     def curve(self, svg, name):
@@ -186,13 +193,7 @@ class Pictures(WithTrainers):
         return found and [tuple(map(float, point.split())) for point in re.split("[ML]", found.group(1))[1:]]
 
     def test_both_show_each_scene_and_program(self):
-        result = self.result(seeds=(0, 1, 2))
-        result["about"]["gpu_and_driver"] = "a GPU, 5.8"
-        for run in result["runs"]:
-            run["device"] = "cuda, a GPU"
-        # A second limit, so that both fronts have curves of two points.
-        result["runs"] += [{**r, "budget": 2 * r["budget"], "gaussians": 2 * r["gaussians"]}
-                           for r in result["runs"] if r["front"] == "gaussians"]
+        result = given()
         pictures = self.pictures(result)
         self.assertEqual(pictures, self.pictures(result))  # the same bytes
         for front, svg in pictures.items():
@@ -204,7 +205,7 @@ class Pictures(WithTrainers):
                 self.assertEqual(len(self.curve(svg, name)), 2, f"{front}: {name}")
 
     def test_curves_are_medians_at_their_places(self):
-        result = self.result(seeds=(0, 1, 2))
+        result = given()
         curve = {name: self.curve(self.pictures(result)["seconds"], f"lego {name}") for name in ("now", "before")}
         (x0, y0), (x1, y1) = curve["now"]
         (u0, v0), (u1, v1) = curve["before"]
@@ -221,7 +222,7 @@ class Pictures(WithTrainers):
         self.assertAlmostEqual(lift, (20.7 - 19.325) / 0.2, 2)
 
     def test_one_program_has_one_curve(self):
-        for svg in self.pictures(self.result(before=False)).values():
+        for svg in self.pictures(given(programs=("now",))).values():
             self.assertIsNone(self.curve(svg, "lego before"))
             self.assertNotIn(">before<", svg)
             self.assertIsNotNone(self.curve(svg, "lego now"))
