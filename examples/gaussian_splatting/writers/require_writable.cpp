@@ -7,6 +7,7 @@
 #include <string>
 
 #include "../core/error.hpp"
+#include "../core/parallel.hpp"
 
 namespace gs {
 namespace {
@@ -43,12 +44,12 @@ void require_writable(const std::filesystem::path& file, const gaussians& model,
 gaussians sized_model(std::size_t count, int sh_degree) {
     gaussians model;
     model.sh_degree = sh_degree;
-    model.mean.resize(3 * count);
-    model.log_scale.resize(3 * count);
-    model.quaternion.resize(4 * count);
-    model.opacity.resize(count);
-    model.sh_constant.resize(3 * count);
-    model.sh_rest.resize(count * static_cast<std::size_t>(model.rest_width()));
+    assign_zeros(model.mean, 3 * count);
+    assign_zeros(model.log_scale, 3 * count);
+    assign_zeros(model.quaternion, 4 * count);
+    assign_zeros(model.opacity, count);
+    assign_zeros(model.sh_constant, 3 * count);
+    assign_zeros(model.sh_rest, count * static_cast<std::size_t>(model.rest_width()));
     return model;
 }
 

@@ -15,6 +15,7 @@
 #include "../../core/atomic_file_write.hpp"
 #include "../../core/error.hpp"
 #include "../../core/file_bytes.hpp"
+#include "../../core/parallel.hpp"
 #include "../../core/ply_scalar.hpp"
 #include "../ply_comments.hpp"
 #include "../ply_header.hpp"
@@ -89,7 +90,7 @@ constexpr std::string_view elements[] = {"vertex"};
 /// Reads one file.
 class reader {
   public:
-    explicit reader(const std::filesystem::path& file) : file_(file) {}
+    explicit reader(const std::filesystem::path& file) : file_(file), rows_(file) {}
 
     gaussians read() {
         read_rows(read_layout());
@@ -131,20 +132,20 @@ class reader {
     void read_rows(const layout& l) {
         model_.sh_degree = l.sh_degree;
         for (const column& c : l.columns)
-            (model_.*c.to.array).resize(l.count * static_cast<std::size_t>(c.to.width));
+            if (c.to.offset == 0)
+                assign_zeros(model_.*c.to.array, l.count * static_cast<std::size_t>(c.to.width));
 
         // Reads few rows at a time. The bound on memory, four times the size of the file, leaves
         // little memory besides the floats if each value takes one byte in the file.
         constexpr std::size_t bytes_at_once = 1 << 14;
-        const std::size_t rows_at_once = std::min(l.count, bytes_at_once / l.stride + 1);
-        std::vector<char> rows(rows_at_once * l.stride);
-        file_.in.seekg(static_cast<std::streamoff>(l.offset));
-        for (std::size_t first = 0; first < l.count; first += rows_at_once) {
-            const std::size_t read = std::min(rows_at_once, l.count - first);
-            file_.in.read(rows.data(), static_cast<std::streamsize>(read * l.stride));
-            if (!file_.in) throw error("cannot read " + file_.name);
-            for (const column& c : l.columns) copy_column(c, l.stride, rows.data(), read, first);
-        }
+        const std::size_t rows_at_once = bytes_at_once / l.stride + 1;
+        for_each_in_parallel((l.count + rows_at_once - 1) / rows_at_once, [&](std::size_t block) {
+            const std::size_t first = block * rows_at_once;
+            const std::size_t count = std::min(rows_at_once, l.count - first);
+            std::vector<char> rows(count * l.stride);
+            rows_.read(l.offset + first * l.stride, rows.data(), rows.size());
+            for (const column& c : l.columns) copy_column(c, l.stride, rows.data(), count, first);
+        });
     }
 
     void copy_column(const column& c, std::size_t stride, const char* rows, std::size_t count,
@@ -164,6 +165,7 @@ class reader {
     }
 
     opened_file file_;
+    shared_file rows_;
     gaussians model_;
 };
 
