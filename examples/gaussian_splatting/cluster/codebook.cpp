@@ -9,6 +9,8 @@
 #include <queue>
 #include <vector>
 
+#include "../core/parallel.hpp"
+
 namespace gs::cluster {
 namespace {
 
@@ -42,7 +44,7 @@ class sorted_values {
   public:
     explicit sorted_values(std::span<const float> values)
         : values_(sample_of(values)), sums_(values_.size() + 1), squares_(values_.size() + 1) {
-        std::ranges::sort(values_);
+        sort_in_parallel(values_);
         // Sums start in the middle, so that outliers at the ends do not cost other ranges precision.
         const std::size_t middle = values_.size() / 2;
         for (std::size_t i = middle; i < values_.size(); ++i) add(i + 1, i, 1, values_[i]);

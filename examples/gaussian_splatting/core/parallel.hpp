@@ -34,6 +34,32 @@ void for_each_in_parallel(std::size_t count, const Body& body) {
     if (lowest_failed < count) std::rethrow_exception(failures[lowest_failed]);
 }
 
+/// Does the same for calls that take too short to be distributed one by one.
+template <class Body>
+void for_each_index_in_parallel(std::size_t count, const Body& body) {
+    constexpr std::size_t at_once = 4096;
+    for_each_in_parallel((count + at_once - 1) / at_once, [&](std::size_t block) {
+        const std::size_t end = std::min(count, (block + 1) * at_once);
+        for (std::size_t i = block * at_once; i < end; ++i) body(i);
+    });
+}
+
+/// Sorts in parallel. The result does not depend on the number of threads, but the order of equal
+/// values is unspecified.
+template <class T>
+void sort_in_parallel(std::vector<T>& values) {
+    constexpr std::size_t parts = 16;
+    const auto begin_of = [&](std::size_t part) {
+        return values.begin() + static_cast<std::ptrdiff_t>(part * values.size() / parts);
+    };
+    for_each_in_parallel(parts, [&](std::size_t i) { std::sort(begin_of(i), begin_of(i + 1)); });
+    for (std::size_t sorted = 1; sorted < parts; sorted *= 2)
+        for_each_in_parallel(parts / (2 * sorted), [&](std::size_t i) {
+            const std::size_t first = 2 * i * sorted;
+            std::inplace_merge(begin_of(first), begin_of(first + sorted), begin_of(first + 2 * sorted));
+        });
+}
+
 /// Makes `values` hold `count` zeros. All threads touch the new memory first, because Linux provides
 /// and clears a page when it is first written, which takes one thread longer than reading a file of
 /// this size.

@@ -119,15 +119,11 @@ gaussians remove_floaters(const gaussians& model, std::span<const camera> camera
     const normalization whole = normalization_of(model);
     const bool counts_views = cameras.size() >= least_floater_views;
     std::vector<char> kept(model.count());
-    constexpr std::size_t at_once = 1024;
-    for_each_in_parallel((model.count() + at_once - 1) / at_once, [&](std::size_t block) {
-        const std::size_t end = std::min(model.count(), (block + 1) * at_once);
-        for (std::size_t i = block * at_once; i < end; ++i) {
-            const double size = std::exp(sorted_log_scales(model, i)[2]);
-            const bool is_veil = size > whole.scale && size > glm::distance(center(model, i), whole.origin);
-            kept[i] = opacity(model, i) >= least_floater_opacity && !is_veil &&
-                      (!counts_views || is_seen_often(center(model, i), cameras));
-        }
+    for_each_index_in_parallel(model.count(), [&](std::size_t i) {
+        const double size = std::exp(sorted_log_scales(model, i)[2]);
+        const bool is_veil = size > whole.scale && size > glm::distance(center(model, i), whole.origin);
+        kept[i] = opacity(model, i) >= least_floater_opacity && !is_veil &&
+                  (!counts_views || is_seen_often(center(model, i), cameras));
     });
     return filtered(model, [&](std::size_t i) { return kept[i] != 0; });
 }

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "../core/parallel.hpp"
+
 namespace gs {
 namespace {
 
@@ -34,13 +36,13 @@ std::vector<std::uint32_t> morton_order(const std::vector<float>& positions) {
         }
         const double cells = (std::uint64_t{1} << bits_per_axis) - 1;
         const double scale = high > low ? cells / (high - low) : 0;
-        for (std::size_t i = 0; i < count; ++i) {
+        for_each_index_in_parallel(count, [&](std::size_t i) {
             const double x = positions[3 * i + axis];
             keys[i].first |= spread(static_cast<std::uint64_t>((x - low) * scale)) << axis;
             keys[i].second = static_cast<std::uint32_t>(i);
-        }
+        });
     }
-    std::ranges::sort(keys);
+    sort_in_parallel(keys);
     std::vector<std::uint32_t> order(count);
     for (std::size_t i = 0; i < count; ++i) order[i] = keys[i].second;
     return order;

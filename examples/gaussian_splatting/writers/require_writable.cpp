@@ -15,11 +15,12 @@ namespace {
 /// Throws `error` if one of the first `checked` of each `width` values is not finite.
 void require_finite(const std::filesystem::path& file, const std::vector<float>& values, std::size_t width,
                     std::size_t checked, const char* what) {
-    for (std::size_t first = 0; first < values.size(); first += width)
+    for_each_index_in_parallel(values.size() / width, [&](std::size_t i) {
         for (std::size_t k = 0; k < checked; ++k)
-            if (!std::isfinite(values[first + k]))
+            if (!std::isfinite(values[i * width + k]))
                 throw error("cannot write " + file.string() + ": the " + what + " of Gaussian " +
-                            std::to_string(first / width) + " is not finite");
+                            std::to_string(i) + " is not finite");
+    });
 }
 
 }  // namespace
@@ -34,11 +35,12 @@ void require_writable(const std::filesystem::path& file, const gaussians& model,
         require_finite(file, model.sh_rest, static_cast<std::size_t>(model.rest_width()),
                        static_cast<std::size_t>(3 * (sh_coefficients(sh_degree) - 1)),
                        "view-dependent color");
-    for (std::size_t i = 0; i < model.count(); ++i)
+    for_each_index_in_parallel(model.count(), [&](std::size_t i) {
         if (std::all_of(&model.quaternion[4 * i], &model.quaternion[4 * i] + 4,
                         [](float x) { return x == 0; }))
             throw error("cannot write " + file.string() + ": the rotation of Gaussian " + std::to_string(i) +
                         " is zero");
+    });
 }
 
 gaussians sized_model(std::size_t count, int sh_degree) {

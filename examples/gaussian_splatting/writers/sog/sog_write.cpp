@@ -32,15 +32,6 @@ constexpr std::size_t entries_per_row = 64;  ///< of the image of the palette
 constexpr std::size_t largest_side = 16383;  ///< of WebP images
 constexpr std::uint8_t first_rotation_tag = 252, opaque = 255;
 
-/// Calls `f(i)` for each i in [0, count), in parallel.
-void for_each_index_in_parallel(std::size_t count, const auto& f) {
-    constexpr std::size_t at_once = 4096;
-    for_each_in_parallel((count + at_once - 1) / at_once, [&](std::size_t block) {
-        const std::size_t end = std::min(count, (block + 1) * at_once);
-        for (std::size_t i = block * at_once; i < end; ++i) f(i);
-    });
-}
-
 double log_transform(float x) { return std::copysign(std::log1p(std::abs(double(x))), double(x)); }
 
 /// Returns the number of entries of the palette: all colors of small models, and a power of two times
@@ -199,12 +190,13 @@ void require_clusterable(const std::filesystem::path& file, const gaussians& mod
     constexpr float end = 1e9f;
     const auto stride = static_cast<std::size_t>(model.rest_width());
     const auto width = static_cast<std::size_t>(3 * (sh_coefficients(sh_degree) - 1));
-    for (std::size_t i = 0; i < model.count(); ++i)
+    for_each_index_in_parallel(model.count(), [&](std::size_t i) {
         for (std::size_t k = 0; k < width; ++k)
             if (std::abs(model.sh_rest[i * stride + k]) >= end)
                 throw error("cannot write " + file.string() + ": the view-dependent color of Gaussian " +
                             std::to_string(i) + " is beyond the range of SOG files, which ends at 10^9; " +
                             "use another format or --max-sh-degree 0");
+    });
 }
 
 constexpr std::string_view endings[] = {".sog"};

@@ -26,15 +26,6 @@ constexpr double color_scale = 0.15;  ///< bytes per SH coefficient, divided by 
 /// Step of SH bytes. With the 8 and 16 that other programs use, glossy surfaces lose their reflections.
 constexpr int sh_step = 2;
 
-/// Calls `f(i)` for each i in [0, count), in parallel.
-void for_each_gaussian(std::size_t count, const auto& f) {
-    constexpr std::size_t at_once = 4096;
-    for_each_in_parallel((count + at_once - 1) / at_once, [&](std::size_t block) {
-        const std::size_t end = std::min(count, (block + 1) * at_once);
-        for (std::size_t i = block * at_once; i < end; ++i) f(i);
-    });
-}
-
 /// Returns the number of fractional bits. Positions have 12, as other programs write them, unless
 /// they need more bits before the point, or the model is so small that it would have less than 2^16
 /// steps.
@@ -114,10 +105,10 @@ spz_content pack(const std::filesystem::path& file, const gaussians& model, int 
                         .fractional_bits = fractional_bits_of(file, model),
                         .antialiased = model.antialiased};
     for (std::size_t i = 0; i < spz_attributes; ++i)
-        content.streams[i].resize(model.count() * content.width(static_cast<spz_attribute>(i)));
+        assign_zeros(content.streams[i], model.count() * content.width(static_cast<spz_attribute>(i)));
     using enum spz_attribute;
     const auto sh_model = static_cast<std::size_t>(model.rest_width()), sh_file = content.width(sh);
-    for_each_gaussian(model.count(), [&](std::size_t i) {
+    for_each_index_in_parallel(model.count(), [&](std::size_t i) {
         pack_position(&model.mean[3 * i], content.fractional_bits, &content[position][9 * i]);
         pack_rotation(&model.quaternion[4 * i], &content[rotation][4 * i]);
         content[alpha][i] = opacity_to_byte(model.opacity[i]);
@@ -147,7 +138,7 @@ gaussians read_spz(const std::filesystem::path& file) {
     model.antialiased = content.antialiased;
     using enum spz_attribute;
     const auto sh_model = static_cast<std::size_t>(model.rest_width()), sh_file = content.width(sh);
-    for_each_gaussian(model.count(), [&](std::size_t i) {
+    for_each_index_in_parallel(model.count(), [&](std::size_t i) {
         unpack_position(&content[position][9 * i], content.fractional_bits, &model.mean[3 * i]);
         if (content.version == 2)
             unpack_rotation_of_version_2(&content[rotation][3 * i], &model.quaternion[4 * i]);
