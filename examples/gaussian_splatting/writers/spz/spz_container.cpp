@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "../../core/error.hpp"
+#include "../../core/parallel.hpp"
 #include "../../model/gaussians.hpp"
 
 namespace gs {
@@ -65,18 +66,23 @@ common_header header_of(const spz_content& content) {
     return h;
 }
 
-std::vector<std::uint8_t> compressed_by_zstd(const std::vector<std::uint8_t>& bytes) {
+/// Compressed bytes. The memory beyond `size` is never touched.
+struct compressed_stream {
+    std::unique_ptr<std::uint8_t[]> bytes;
+    std::size_t size = 0;
+};
+
+compressed_stream compressed_by_zstd(const std::vector<std::uint8_t>& bytes) {
     const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
     if (!context) throw std::bad_alloc();
     ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, zstd_level);
     // With one worker or more, the result does not depend on their number.
     ZSTD_CCtx_setParameter(context.get(), ZSTD_c_nbWorkers,
                            static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U)));
-    std::vector<std::uint8_t> result(ZSTD_compressBound(bytes.size()));
-    const std::size_t size =
-        ZSTD_compress2(context.get(), result.data(), result.size(), bytes.data(), bytes.size());
-    if (ZSTD_isError(size)) throw std::bad_alloc();  // the only failure with valid parameters
-    result.resize(size);
+    const std::size_t most = ZSTD_compressBound(bytes.size());
+    compressed_stream result{std::make_unique_for_overwrite<std::uint8_t[]>(most)};
+    result.size = ZSTD_compress2(context.get(), result.bytes.get(), most, bytes.data(), bytes.size());
+    if (ZSTD_isError(result.size)) throw std::bad_alloc();  // the only failure with valid parameters
     return result;
 }
 
@@ -127,19 +133,19 @@ void write_gzip(std::ostream& out, const spz_content& content) {
 }
 
 void write_zstd(std::ostream& out, const spz_content& content) {
-    std::array<std::vector<std::uint8_t>, spz_attributes> compressed;
+    std::array<compressed_stream, spz_attributes> compressed;
     std::array<stream_sizes, spz_attributes> sizes;
-    for (std::size_t i = 0; i < spz_attributes; ++i) {
+    for_each_in_parallel(spz_attributes, [&](std::size_t i) {
         compressed[i] = compressed_by_zstd(content.streams[i]);
-        sizes[i] = {compressed[i].size(), content.streams[i].size()};
-    }
+        sizes[i] = {compressed[i].size, content.streams[i].size()};
+    });
     common_header header = header_of(content);
     header.streams = spz_attributes;
     const zstd_header second{.table_offset = sizeof header + sizeof(zstd_header)};
     write_raw(out, &header, 1);
     write_raw(out, &second, 1);
     write_raw(out, sizes.data(), sizes.size());
-    for (const auto& stream : compressed) write_raw(out, stream.data(), stream.size());
+    for (const compressed_stream& stream : compressed) write_raw(out, stream.bytes.get(), stream.size);
 }
 
 class container_input {
