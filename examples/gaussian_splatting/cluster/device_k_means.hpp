@@ -169,6 +169,7 @@ class device_k_means {
         device_.download(labels.data(), labels_.data(), labels.size());
         device_.download(slots.data(), centroids_.data(), slots.size());
         clustering all;
+        all.centroids.reserve(slots.size());
         std::uint32_t number = 0;
         for (const segment& s : segments)
             for (std::size_t slot = s.first_group * group; slot < s.first_group * group + s.centroids;

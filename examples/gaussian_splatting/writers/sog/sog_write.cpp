@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <functional>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
@@ -44,7 +44,7 @@ std::size_t palette_size(std::size_t count) {
 class sog_output {
   public:
     sog_output(const gaussians& model, int sh_degree, cluster::k_means_function k_means)
-        : model_(model), sh_degree_(sh_degree), k_means_(k_means), order_(morton_order(model.mean)) {
+        : model_(model), sh_degree_(sh_degree), k_means_(k_means) {
         const double side = std::sqrt(static_cast<double>(std::max<std::size_t>(model.count(), 1)));
         width_ = 4 * static_cast<std::size_t>(std::ceil(side / 4));
         height_ = 4 * ((std::max<std::size_t>(model.count(), 1) + 4 * width_ - 1) / (4 * width_));
@@ -58,17 +58,22 @@ class sog_output {
             meta_["antialias"] = true;
             meta_["model"] = "antialiased";  // newer programs read only this
         }
+        // The palette takes longest, and on a GPU it leaves the CPU idle. A codebook takes mostly one
+        // thread. So they run beside the work on positions and images.
+        const bool has_palette = sh_degree_ > 0 && model_.count() > 0;
+        std::future<cluster::clustering> colors;
+        if (has_palette) colors = std::async(std::launch::async, [this] { return clustered_colors(); });
+        auto scale_book = begin_codebook(model_.log_scale), color_book = begin_codebook(model_.sh_constant);
+        order_ = morton_order(model_.mean);
         add_means();
-        add_scales();
+        add_scales(scale_book.get());
         add_rotations();
-        add_colors();
-        if (sh_degree_ > 0 && model_.count() > 0) add_palette();
-        std::vector<bundled_file> files(1 + images_.size());
-        files[0] = {"meta.json", meta_.dump()};
-        for_each_in_parallel(images_.size(), [&](std::size_t i) {
-            files[1 + i] = {images_[i].name, webp_of(images_[i].image)};
-        });
-        return zip_of(files);
+        add_colors(color_book.get());
+        encode_images();
+        if (has_palette) add_palette(colors.get());
+        encode_images();
+        files_[0] = {"meta.json", meta_.dump()};
+        return zip_of(files_);
     }
 
   private:
@@ -76,6 +81,20 @@ class sog_output {
         std::string name;
         rgba_image image;
     };
+
+    static std::future<cluster::codebook> begin_codebook(const std::vector<float>& values) {
+        return std::async(std::launch::async, [&values] { return cluster::codebook(values); });
+    }
+
+    /// Moves the images to the files.
+    void encode_images() {
+        const std::size_t first = files_.size();
+        files_.resize(first + images_.size());
+        for_each_in_parallel(images_.size(), [&](std::size_t i) {
+            files_[first + i] = {images_[i].name, webp_of(images_[i].image)};
+        });
+        images_.clear();
+    }
 
     /// Adds an image with a pixel for each Gaussian, which `fill(i, pixel)` sets.
     void add_image(const std::string& name, const auto& fill) {
@@ -111,8 +130,7 @@ class sog_output {
         meta_["means"] = {{"mins", low}, {"maxs", high}, {"files", {"means_l.webp", "means_u.webp"}}};
     }
 
-    void add_scales() {
-        const cluster::codebook book(model_.log_scale);
+    void add_scales(const cluster::codebook& book) {
         add_image("scales.webp", [&](std::size_t i, std::uint8_t* pixel) {
             for (std::size_t k = 0; k < 3; ++k) pixel[k] = book.nearest(model_.log_scale[3 * i + k]);
             pixel[3] = opaque;
@@ -130,8 +148,7 @@ class sog_output {
         meta_["quats"] = {{"files", {"quats.webp"}}};
     }
 
-    void add_colors() {
-        const cluster::codebook book(model_.sh_constant);
+    void add_colors(const cluster::codebook& book) {
         add_image("sh0.webp", [&](std::size_t i, std::uint8_t* pixel) {
             for (std::size_t k = 0; k < 3; ++k) pixel[k] = book.nearest(model_.sh_constant[3 * i + k]);
             pixel[3] = opacity_to_byte(model_.opacity[i]);
@@ -139,18 +156,18 @@ class sog_output {
         meta_["sh0"] = {{"codebook", book.values()}, {"files", {"sh0.webp"}}};
     }
 
-    void add_palette() {
-        const auto coefficients = static_cast<std::size_t>(sh_coefficients(sh_degree_) - 1);
-        const std::size_t width = 3 * coefficients;
-        const cluster::clustering colors = k_means_(sh_of_model(width), width, palette_size(model_.count()));
-        const std::size_t entries = colors.centroids.size() / width;
+    std::size_t coefficients() const { return static_cast<std::size_t>(sh_coefficients(sh_degree_) - 1); }
+
+    void add_palette(const cluster::clustering& colors) {
+        const std::size_t entries = colors.centroids.size() / (3 * coefficients());
         const cluster::codebook book(colors.centroids);
-        rgba_image palette(entries_per_row * coefficients, (entries + entries_per_row - 1) / entries_per_row);
-        for (std::size_t i = 0; i < entries * coefficients; ++i) {
+        rgba_image palette(entries_per_row * coefficients(),
+                           (entries + entries_per_row - 1) / entries_per_row);
+        for_each_index_in_parallel(entries * coefficients(), [&](std::size_t i) {
             for (std::size_t k = 0; k < 3; ++k)
                 palette.pixel(i)[k] = book.nearest(colors.centroids[3 * i + k]);
             palette.pixel(i)[3] = opaque;
-        }
+        });
         images_.push_back({"shN_centroids.webp", std::move(palette)});
         add_image("shN_labels.webp", [&](std::size_t i, std::uint8_t* pixel) {
             pixel[0] = static_cast<std::uint8_t>(colors.labels[i] & 255);
@@ -163,17 +180,18 @@ class sog_output {
                         {"files", {"shN_centroids.webp", "shN_labels.webp"}}};
     }
 
-    /// Returns the first `width` SH coefficients of each Gaussian.
-    std::vector<float> sh_of_model(std::size_t width) const {
+    /// Clusters the SH coefficients up to the degree of the file.
+    cluster::clustering clustered_colors() const {
         const auto stride = static_cast<std::size_t>(model_.rest_width());
-        if (stride == width) return model_.sh_rest;
+        const std::size_t width = 3 * coefficients(), most = palette_size(model_.count());
+        if (stride == width) return k_means_(model_.sh_rest, width, most);
         std::vector<float> sh;
         sh.reserve(width * model_.count());
         for (std::size_t i = 0; i < model_.count(); ++i) {
             const auto first = model_.sh_rest.begin() + static_cast<std::ptrdiff_t>(i * stride);
             sh.insert(sh.end(), first, first + static_cast<std::ptrdiff_t>(width));
         }
-        return sh;
+        return k_means_(sh, width, most);
     }
 
     const gaussians& model_;
@@ -182,7 +200,8 @@ class sog_output {
     std::vector<std::uint32_t> order_;
     std::size_t width_ = 0, height_ = 0;
     json meta_;
-    std::vector<named_image> images_;
+    std::vector<named_image> images_;     ///< to be encoded
+    std::vector<bundled_file> files_{1};  ///< the first one is for the meta data
 };
 
 /// Throws `error` for colors up to `sh_degree` that `k_means` cannot cluster.
