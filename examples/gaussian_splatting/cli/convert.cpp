@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
 #include <filesystem>
+#include <future>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../core/byte_size.hpp"
@@ -68,10 +70,13 @@ void convert(const settings& s) {
         throw error("convert would replace its own input " + s.ply + ": give OUT another name");
     require_known_ending(s.output);
     require_spz_for_its_options(s);
-    const bool uses_cuda = context.can_use_cuda();  // refuses an unusable device first
-    const gaussians model = edited(read_model(s.ply), s, context);
+    // The first use of a GPU takes long: it happens beside the reading, and only for formats that need it.
+    auto uses_cuda =
+        std::async(std::launch::async, [&] { return clusters_colors(s.output) && context.can_use_cuda(); });
+    gaussians model = read_model(s.ply);
     write_options options = s.export_options;
-    if (uses_cuda) options.k_means = cluster::k_means_on_cuda;
+    if (uses_cuda.get()) options.k_means = cluster::k_means_on_cuda;  // refuses an unusable device
+    model = edited(std::move(model), s, context);
     write_model(s.output, model, options);
     for (const std::string& part : left_out(s.output, model, options)) context.warn(part);
     context.say(s.output + ": " + std::to_string(model.count()) + " Gaussians, " +

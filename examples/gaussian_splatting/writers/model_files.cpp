@@ -74,6 +74,10 @@ bool holds_sky(const std::filesystem::path& file, writer_table writers) {
     return known_writer_of(file, writers).holds_sky;
 }
 
+bool clusters_colors(const std::filesystem::path& file, writer_table writers) {
+    return known_writer_of(file, writers).clusters_colors;
+}
+
 bool has_ending(const std::filesystem::path& file, const writer& format, writer_table writers) {
     return writer_of(file, writers) == &format;
 }

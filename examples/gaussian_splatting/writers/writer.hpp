@@ -45,6 +45,7 @@ struct writer {
     int max_sh_degree = 3;           ///< the highest SH degree that its files hold
     bool holds_antialiasing = true;  ///< whether its files mark antialiased models
     bool holds_sky = true;           ///< whether its files hold a learned background
+    bool clusters_colors = false;    ///< whether `write` uses `write_options::k_means`
 };
 
 /// Returns all writers.
@@ -65,6 +66,10 @@ std::vector<std::string> left_out(const std::filesystem::path& file, const gauss
 
 /// Returns `writer::holds_sky` of the format of the file's ending. Throws `error` like `left_out`.
 bool holds_sky(const std::filesystem::path& file, std::span<const writer* const> writers = all_writers());
+
+/// Returns `writer::clusters_colors` in the same way.
+bool clusters_colors(const std::filesystem::path& file,
+                     std::span<const writer* const> writers = all_writers());
 
 /// Returns whether the ending of the file, in upper or lower case, selects this writer.
 bool has_ending(const std::filesystem::path& file, const writer& format,

@@ -237,7 +237,11 @@ void write_sog(const std::filesystem::path& file, const gaussians& model, const 
     });
 }
 
-constinit const writer sog_writer{
-    .name = "SOG", .endings = endings, .write = write_sog, .read = read_sog, .holds_sky = false};
+constinit const writer sog_writer{.name = "SOG",
+                                  .endings = endings,
+                                  .write = write_sog,
+                                  .read = read_sog,
+                                  .holds_sky = false,
+                                  .clusters_colors = true};
 
 }  // namespace gs
