@@ -70,9 +70,10 @@ void convert(const settings& s) {
         throw error("convert would replace its own input " + s.ply + ": give OUT another name");
     require_known_ending(s.output);
     require_spz_for_its_options(s);
-    // The first use of a GPU takes long: it happens beside the reading, and only for formats that need it.
-    auto uses_cuda =
-        std::async(std::launch::async, [&] { return clusters_colors(s.output) && context.can_use_cuda(); });
+    // The first use of a GPU takes long, so it happens while this thread reads, and only if colors will
+    // be clustered.
+    const bool clusters = clusters_colors(s.output) && s.export_options.max_sh_degree > 0;
+    auto uses_cuda = std::async(std::launch::async, [&] { return clusters && context.can_use_cuda(); });
     gaussians model = read_model(s.ply);
     write_options options = s.export_options;
     if (uses_cuda.get()) options.k_means = cluster::k_means_on_cuda;  // refuses an unusable device

@@ -34,7 +34,8 @@ void for_each_in_parallel(std::size_t count, const Body& body) {
     if (lowest_failed < count) std::rethrow_exception(failures[lowest_failed]);
 }
 
-/// Does the same for calls that take too short to be distributed one by one.
+/// Calls `body(i)` for each i in [0, count), in parallel and in blocks, for calls that take so little
+/// time that handing out each of them would take longer. Throws like `for_each_in_parallel`.
 template <class Body>
 void for_each_index_in_parallel(std::size_t count, const Body& body) {
     constexpr std::size_t at_once = 4096;
@@ -60,9 +61,9 @@ void sort_in_parallel(std::vector<T>& values) {
         });
 }
 
-/// Makes `values` hold `count` zeros. All threads touch the new memory first, because Linux provides
-/// and clears a page when it is first written, which takes one thread longer than reading a file of
-/// this size.
+/// Makes `values` hold `count` zeros. All threads write to the new memory first: Linux provides and
+/// clears a page at the first write to it, and one thread takes long for that. The writes are to
+/// reserved memory, before the vector's values begin to exist.
 template <class T>
 void assign_zeros(std::vector<T>& values, std::size_t count) {
     static_assert(std::is_trivial_v<T>);

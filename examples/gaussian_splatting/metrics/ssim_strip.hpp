@@ -35,7 +35,7 @@ struct framed_planes {
 template <class W, int Columns = static_cast<int>(W::size)>
 struct ssim_strip {
     int channel, left, first, last;  ///< the rows are [first, last)
-    mask_t<W> inside;                ///< lanes whose column is in the image
+    mask_t<W> inside;                ///< with one column per lane: lanes whose column is in the image
 
     /// Returns the number of rows per strip for about `wanted` strips, at least 12. In lower
     /// strips, the rows above and below them would take too much of the time.

@@ -26,7 +26,8 @@ struct ssim_terms {
     ///
     ///     SSIM = (2 mx my + C1) (2 cov + C2) / ((mx^2 + my^2 + C1) (vx + vy + C2)).
     ///
-    /// In terms of u and v, rounding keeps each of the two factors in [-1, 1].
+    /// In terms of u and v, rounding keeps each of the two factors in [-1, 1]. The divisors are at
+    /// least C1 and C2, so they meet the preconditions of `warpagg::math::divide`.
     static WARPAGG_HD ssim_terms of(const moments<V>& u, const moments<V>& v) {
         using warpagg::math::divide;
         constexpr auto C1 = static_cast<Real>(8 * 0.01 * 0.01), C2 = static_cast<Real>(8 * 0.03 * 0.03);

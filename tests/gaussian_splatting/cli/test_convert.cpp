@@ -151,7 +151,8 @@ TEST_CASE("convert clusters colors on the device of --device") {
     check_refusal({"convert", c.file("in.ply"), c.file("b.sog"), "--device", "cuda"},
                   {"--device cuda", "GPU"});
     CHECK_FALSE(fs::exists(c.file("b.sog")));
-    CHECK(c.result_of({"--device", "cuda"}, "b.spz").count() == 5);  // needs no device
+    CHECK(c.result_of({"--device", "cuda"}, "b.spz").count() == 5);  // clusters no colors
+    CHECK(c.result_of({"--device", "cuda", "--max-sh-degree", "0"}, "b.sog").count() == 5);  // nor this
 #endif
 }
 

@@ -22,7 +22,7 @@ sources=("$trainer"/readers/colmap/colmap_{binary,records,text}.cpp "$trainer"/i
     "$trainer"/readers/transforms/transforms{,_pose}.cpp "$trainer"/readers/polycam/polycam_camera.cpp
     "$trainer"/readers/opensfm/opensfm_{files,record}.cpp
     "$trainer"/readers/{camera_models,json_events,json_text,point_cloud,scene_archive,validation}.cpp
-    "$trainer"/scene/{camera,undistort}.cpp "$trainer"/writers/{,*/}*.cpp
+    "$trainer"/scene/{camera,undistort}.cpp "$trainer"/{cluster,writers,writers/*}/*.cpp
     tests/gaussian_splatting/fuzz/{archive,budget,colmap,harness,harnesses,image,opensfm,point_cloud,polycam,transforms}.cpp)
 flags=(-std=c++20 -O1 -g -fno-omit-frame-pointer -I"$trainer" -Iinclude -Itests/gaussian_splatting/fuzz
     $(pkg-config --cflags libheif)
@@ -35,7 +35,7 @@ for source in "${sources[@]}"; do
 done
 for harness in "${harnesses[@]}"; do
     clang++ "${flags[@]}" -fsanitize=fuzzer -DWARPAGG_HARNESS="\"$harness\"" tests/gaussian_splatting/fuzz/entry.cpp "${objects[@]}" \
-        -lpng -ljpeg -lwebp -lwebpdemux -lheif -lexif -lz -lzip -o "$out/$harness"
+        -lpng -ljpeg -lwebp -lwebpdemux -lheif -lexif -lz -lzip -lzstd -o "$out/$harness"
 done
 
 failed=0

@@ -15,7 +15,7 @@ namespace gs::train {
 
 /// Computes the gradient of `l1_ssim` and adds to its totals in one pass without intermediate maps.
 /// The results are those of `sum_and_difference`, `ssim_compare` and `l1_ssim_gradient`, except for
-/// the rounding of the totals. One warp per strip.
+/// the rounding of the totals, and of products and sums that a compiler contracts. One warp per strip.
 ///
 /// A warp streams down its strip. Each step adds one row of the images to the moments under the
 /// windows that contain the row. It computes the coefficients of the derivative of the SSIM for the

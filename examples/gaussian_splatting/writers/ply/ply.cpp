@@ -135,7 +135,7 @@ class reader {
             if (c.to.offset == 0)
                 assign_zeros(model_.*c.to.array, l.count * static_cast<std::size_t>(c.to.width));
 
-        // Reads few rows at a time. The bound on memory, four times the size of the file, leaves
+        // A thread reads few rows at a time. The bound on memory, four times the size of the file, leaves
         // little memory besides the floats if each value takes one byte in the file.
         constexpr std::size_t bytes_at_once = 1 << 14;
         const std::size_t rows_at_once = bytes_at_once / l.stride + 1;

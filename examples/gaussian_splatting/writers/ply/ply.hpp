@@ -22,8 +22,8 @@ void write_ply(const std::filesystem::path& file, const gaussians& model, const 
 ///
 /// Throws `error` with the file and the field for: a file that is not PLY, ASCII or big-endian
 /// data, a header beyond 64 KiB, a missing property, a count that contradicts the size of the file,
-/// a value that is not finite. Allocates at most four times the size of the file plus 64 KiB, also
-/// for malformed files.
+/// a value that is not finite. Allocates at most four times the size of the file plus 64 KiB per
+/// thread, also for malformed files.
 gaussians read_ply(const std::filesystem::path& file);
 
 /// The writer of files with the ending .ply. It uses both functions.

@@ -58,8 +58,8 @@ class sog_output {
             meta_["antialias"] = true;
             meta_["model"] = "antialiased";  // newer programs read only this
         }
-        // The palette takes longest, and on a GPU it leaves the CPU idle. A codebook takes mostly one
-        // thread. So they run beside the work on positions and images.
+        // The palette takes longest, and a GPU that computes it leaves the CPU idle. A codebook mostly
+        // uses one thread. So all three are computed while this thread goes on with the other images.
         const bool has_palette = sh_degree_ > 0 && model_.count() > 0;
         std::future<cluster::clustering> colors;
         if (has_palette) colors = std::async(std::launch::async, [this] { return clustered_colors(); });

@@ -66,7 +66,7 @@ common_header header_of(const spz_content& content) {
     return h;
 }
 
-/// Compressed bytes. The memory beyond `size` is never touched.
+/// Compressed bytes. `bytes` may have room for more than `size`.
 struct compressed_stream {
     std::unique_ptr<std::uint8_t[]> bytes;
     std::size_t size = 0;
@@ -82,7 +82,7 @@ compressed_stream compressed_by_zstd(const std::vector<std::uint8_t>& bytes) {
     const std::size_t most = ZSTD_compressBound(bytes.size());
     compressed_stream result{std::make_unique_for_overwrite<std::uint8_t[]>(most)};
     result.size = ZSTD_compress2(context.get(), result.bytes.get(), most, bytes.data(), bytes.size());
-    if (ZSTD_isError(result.size)) throw std::bad_alloc();  // the only failure with valid parameters
+    if (ZSTD_isError(result.size)) throw std::bad_alloc();  // of working memory
     return result;
 }
 
