@@ -24,7 +24,7 @@ import pathlib
 import statistics
 import subprocess
 
-from environment import environment, own_and_passed_on
+from environment import compilers_of, environment, own_and_passed_on
 from markdown_tables import markdown
 from result_file import load, save
 from scenes import by, on_cpu, spread, train
@@ -78,6 +78,7 @@ def train_all(keys, jobs, one, keep):
 
 def run(arguments):
     about = {"bench": "fronts", "options": arguments.options, **environment(arguments.commit),
+             **compilers_of(pathlib.Path(arguments.program).resolve().parents[2]),
              "before_commit": arguments.before_commit}
     output = pathlib.Path(arguments.output)
     result = load(output, about, arguments.fresh) or {"about": about, "runs": []}
