@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
-"""Writes docs/reference/benchmarks.md and the README's table from the result sets of bench/run.py.
+"""Writes docs/reference/benchmarks.md and the README's table from the result sets of bench/run.py and bench/fronts.py.
 
 With --check it writes nothing, and fails if a page differs from the result sets, or if another page
 of the documentation contains a measured figure.
@@ -14,6 +14,7 @@ import sys
 import textwrap
 import tomllib
 
+import fronts
 from markdown_tables import markdown
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -21,6 +22,7 @@ PAGE = ROOT / "docs" / "reference" / "benchmarks.md"
 README = ROOT / "README.md"
 README_TABLE = re.compile(r"(<!-- benchmarks -->\n\n?).*?(\n?<!-- end of benchmarks -->)", re.DOTALL)
 PROFILES = {"gpu": "On a GPU", "cpu": "On a CPU"}
+FRONTS = ROOT / "bench" / "results" / "fronts.json"
 
 # A number with the unit of something that was measured.
 MEASURED = re.compile(r"\b\d[\d,.]*\s?(?:dB|ms|µs|it/s|MiB|GiB|GB/s|(?:times|×) (?:as fast|faster|the time))(?!\w)")
@@ -32,9 +34,21 @@ INTRODUCTION = """# Benchmarks
 <!-- Written by bench/report.py from bench/results. Do not edit. -->
 
 This page is for readers who want to know how fast and how accurate warpagg is, and who want to
-repeat a measurement. All figures of a section come from one run of `bench/run.py` on one machine,
-at one commit. [How we measure](../contributing/how_we_measure.md) explains the method, and
+repeat a measurement. The figures of the sections "On a GPU" and "On a CPU" come from one run of
+`bench/run.py` each, on one machine, at one commit. [How we measure](../contributing/how_we_measure.md) explains the method, and
 [bench/suite.toml](../../bench/suite.toml) lists the commands.
+
+"""
+
+BUDGETS = """## Quality by time and by number of Gaussians
+
+`bench/fronts.py` trains each scene with several numbers of iterations, and with several limits of
+Gaussians. `before` is an older version of the trainer, which takes turns with the current one
+(`now`). The captions name both commits.
+
+![Held-out PSNR against seconds of training, one panel per scene](../images/fronts_seconds.svg)
+
+![Held-out PSNR against the number of Gaussians, one panel per scene](../images/fronts_gaussians.svg)
 
 """
 
@@ -71,6 +85,8 @@ def page(results):
             if profile in measurement["profiles"] and found:
                 tables = "\n".join(titled(t) for t in found["tables"])
                 text += f"### {measurement['title']}\n\n{filled(measurement['reading'])}{tables}\n"
+    if FRONTS.exists():
+        text += BUDGETS + fronts.tables(json.loads(FRONTS.read_text()))
     return text.rstrip() + "\n"
 
 
