@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "../device/device.hpp"
@@ -19,23 +21,19 @@ class device_k_means {
     using buffer = typename Device::template buffer<T>;
 
   public:
-    clustering run(const std::vector<float>& points, std::size_t width, std::size_t most) {
+    clustering run(const std::vector<float>& points, std::size_t width, const std::vector<float>& weights,
+                   std::size_t most) {
         width_ = width;
         const std::size_t count = points.size() / width;
         if (count == 0) return {};
-        buffer<float> unsorted;
-        unsorted.resize(points.size());
-        device_.upload(unsorted.data(), points.data(), points.size());
+        upload(all_points_, points);
+        upload(all_weights_, weights);
+        const std::vector<std::uint32_t> heaviest_first = sorted_by_weight(weights);
         const std::size_t k = std::min(most, count);
-        const std::vector<std::uint32_t> coarse = coarse_labels(unsorted, count, k);
+        const std::vector<std::uint32_t> coarse = coarse_labels(heaviest_first, k);
 
-        const std::vector<std::uint32_t> order = sorted_by(coarse);
-        buffer<std::uint32_t> device_order;
-        upload(device_order, order);
-        points_.resize(points.size());
-        device_.for_each_index(points.size(),
-                               gather_points{unsorted.data(), device_order.data(), width, points_.data()});
-        device_.wait();  // before `unsorted` goes
+        const std::vector<std::uint32_t> order = sorted_by(coarse, heaviest_first);
+        gather(order);
         const std::vector<segment> segments = fine_segments(coarse, k);
         fit(segments, fine_iterations);
         return result(segments, order);
@@ -52,23 +50,44 @@ class device_k_means {
         device_.wait();
     }
 
+    /// Copies all points, or some, to `points_` and `weights_` in this order.
+    void gather(const std::vector<std::uint32_t>& order) {
+        upload(order_, order);
+        points_.resize(order.size() * width_);
+        weights_.resize(order.size());
+        device_.for_each_index(order.size() * width_,
+                               gather_points{all_points_.data(), order_.data(), width_, points_.data()});
+        device_.for_each_index(order.size(),
+                               gather_points{all_weights_.data(), order_.data(), 1, weights_.data()});
+    }
+
+    /// Returns the indices of the points, heaviest first.
+    std::vector<std::uint32_t> sorted_by_weight(const std::vector<float>& weights) {
+        std::vector<std::uint32_t> keys(weights.size()), order(weights.size());
+        std::ranges::transform(weights, keys.begin(),
+                               [](float w) { return ~std::bit_cast<std::uint32_t>(w); });
+        std::iota(order.begin(), order.end(), 0U);
+        upload(labels_, keys);
+        upload(list_, order);
+        device_.sort_pairs(labels_, list_, order.size());
+        device_.download(order.data(), list_.data(), order.size());
+        return order;
+    }
+
     /// Clusters a sample coarsely, and returns the coarse cluster of each point.
-    std::vector<std::uint32_t> coarse_labels(const buffer<float>& all, std::size_t count, std::size_t k) {
+    std::vector<std::uint32_t> coarse_labels(const std::vector<std::uint32_t>& heaviest_first,
+                                             std::size_t k) {
+        const std::size_t count = heaviest_first.size();
         const auto clusters = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(k))));
         std::vector<std::uint32_t> sample(std::min(count, sample_size));
-        for (std::size_t i = 0; i < sample.size(); ++i)
-            sample[i] = static_cast<std::uint32_t>(i * count / sample.size());
-        buffer<std::uint32_t> device_sample;
-        upload(device_sample, sample);
-        points_.resize(sample.size() * width_);
-        device_.for_each_index(sample.size() * width_,
-                               gather_points{all.data(), device_sample.data(), width_, points_.data()});
+        for (std::size_t i = 0; i < sample.size(); ++i) sample[i] = heaviest_first[i * count / sample.size()];
+        gather(sample);
         const std::vector<segment> one{
             {0, static_cast<std::uint32_t>(sample.size()), 0, groups_for(clusters), clusters}};
         fit(one, coarse_iterations);
         resize_labels(count);
         device_.zero(segment_of_point_.data(), count);
-        assign(all.data(), count);
+        assign(all_points_.data(), count);
         std::vector<std::uint32_t> labels(count);
         device_.download(labels.data(), labels_.data(), count);
         return labels;
@@ -78,15 +97,15 @@ class device_k_means {
         return static_cast<std::uint32_t>((centroids + group - 1) / group);
     }
 
-    /// Returns the indices of the points, sorted by label.
-    static std::vector<std::uint32_t> sorted_by(const std::vector<std::uint32_t>& labels) {
-        std::vector<std::uint32_t> starts(*std::ranges::max_element(labels) + 1), order(labels.size());
+    /// Returns the indices of the points, sorted by label. Points of one label stay in this order.
+    static std::vector<std::uint32_t> sorted_by(const std::vector<std::uint32_t>& labels,
+                                                const std::vector<std::uint32_t>& order) {
+        std::vector<std::uint32_t> starts(*std::ranges::max_element(labels) + 1), sorted(labels.size());
         for (const std::uint32_t label : labels) ++starts[label];
         std::uint32_t first = 0;
         for (std::uint32_t& start : starts) first += std::exchange(start, first);
-        for (std::size_t i = 0; i < labels.size(); ++i)
-            order[starts[labels[i]]++] = static_cast<std::uint32_t>(i);
-        return order;
+        for (const std::uint32_t i : order) sorted[starts[labels[i]]++] = i;
+        return sorted;
     }
 
     /// Distributes `k` centroids to the coarse clusters in proportion to their points. Each gets at
@@ -146,8 +165,9 @@ class device_k_means {
         for (int i = 0; i < iterations; ++i) {
             device_.sort_pairs(labels_, list_, count);
             device_.for_each_index(slots_ + 1, find_starts{labels_.data(), count, starts_.data()});
-            device_.for_each_index(slots_ * width_, move_centroids{points_.data(), width_, list_.data(),
-                                                                   starts_.data(), centroids_.data()});
+            device_.for_each_index(slots_ * width_,
+                                   move_centroids{points_.data(), width_, weights_.data(), list_.data(),
+                                                  starts_.data(), centroids_.data()});
             assign(points_.data(), count);
         }
     }
@@ -185,9 +205,11 @@ class device_k_means {
 
     Device device_;
     std::size_t width_ = 0, slots_ = 0;
-    buffer<float> points_, centroids_, half_squares_;
+    buffer<float> all_points_, all_weights_;  ///< in the order of the caller
+    buffer<float> points_, weights_;          ///< those that are clustered, segment by segment
+    buffer<float> centroids_, half_squares_;
     buffer<segment> segments_;
-    buffer<std::uint32_t> segment_of_point_, segment_of_group_, labels_, list_, starts_;
+    buffer<std::uint32_t> order_, segment_of_point_, segment_of_group_, labels_, list_, starts_;
 };
 
 }  // namespace gs::cluster

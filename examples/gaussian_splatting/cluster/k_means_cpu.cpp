@@ -29,8 +29,9 @@ class restored_denormals {
 }  // namespace
 
 /// Clusters with the instruction set that this file is compiled for. See k_means.cpp.
-extern "C" void WARPAGG_K_MEANS(const std::vector<float>& points, std::size_t width, std::size_t most,
+extern "C" void WARPAGG_K_MEANS(const std::vector<float>& points, std::size_t width,
+                                const std::vector<float>& weights, std::size_t most,
                                 gs::cluster::clustering& result) {
     [[maybe_unused]] const restored_denormals restored;
-    result = gs::cluster::device_k_means<gs::device::cpu>().run(points, width, most);
+    result = gs::cluster::device_k_means<gs::device::cpu>().run(points, width, weights, most);
 }

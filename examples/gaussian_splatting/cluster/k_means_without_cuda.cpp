@@ -5,7 +5,7 @@
 
 namespace gs::cluster {
 
-clustering k_means_on_cuda(const std::vector<float>&, std::size_t, std::size_t) {
+clustering k_means_on_cuda(const std::vector<float>&, std::size_t, const std::vector<float>&, std::size_t) {
     throw error("this program was built without CUDA");
 }
 

@@ -34,7 +34,8 @@ struct gather_points {
     WARPAGG_HD void operator()(std::size_t i) const { to[i] = from[order[i / width] * width + i % width]; }
 };
 
-/// Makes evenly spaced points of each segment its first centroids. One index per slot of a centroid.
+/// Makes the first points of each segment, which are the heaviest, its first centroids. One index per
+/// slot of a centroid.
 struct seed_centroids {
     const float* points;
     std::size_t width;
@@ -46,10 +47,8 @@ struct seed_centroids {
         const segment s = segments[segment_of_group[c / group]];
         const std::size_t k = c - s.first_group * group;
         if (k >= s.centroids) return;
-        const std::size_t count = s.end_point - s.first_point;
-        const std::size_t point = s.first_point + (2 * k + 1) * count / (2 * std::size_t{s.centroids});
         for (std::size_t j = 0; j < width; ++j)
-            centroids[centroid_index(c, j, width)] = points[point * width + j];
+            centroids[centroid_index(c, j, width)] = points[(s.first_point + k) * width + j];
     }
 };
 
@@ -179,21 +178,24 @@ struct find_starts {
     }
 };
 
-/// Moves each centroid to the mean of its points, which are added in a fixed order. Centroids
-/// without points stay. One index per slot and value.
+/// Moves each centroid to the weighted mean of its points, which are added in a fixed order. Centroids
+/// without weight stay. One index per slot and value.
 struct move_centroids {
     const float* points;
     std::size_t width;
+    const float* weights;
     const std::uint32_t* list;  ///< points, sorted by label
     const std::uint32_t* starts;
     float* centroids;
 
     WARPAGG_HD void operator()(std::size_t i) const {
         const std::size_t c = i / width, j = i % width, first = starts[c], end = starts[c + 1];
-        if (first == end) return;
-        float sum = 0;
-        for (std::size_t k = first; k < end; ++k) sum += points[list[k] * width + j];
-        centroids[centroid_index(c, j, width)] = sum / static_cast<float>(end - first);
+        float sum = 0, weight = 0;
+        for (std::size_t k = first; k < end; ++k) {
+            sum += weights[list[k]] * points[list[k] * width + j];
+            weight += weights[list[k]];
+        }
+        if (weight > 0) centroids[centroid_index(c, j, width)] = sum / weight;
     }
 };
 

@@ -13,6 +13,7 @@
 
 #include "../../support/temporary_folder.hpp"
 #include "round_trip.hpp"
+#include "writers/morton_order.hpp"
 #include "writers/sog/sog.hpp"
 #include "writers/sog/sog_images.hpp"
 #include "writers/sog/zip_bundle.hpp"
@@ -173,14 +174,46 @@ TEST_CASE("sog: the same model makes the same file") {
 }
 
 TEST_CASE("sog: a palette with less entries than Gaussians keeps colors on average") {
-    const gs::gaussians model = random_model(3000, 1);
-    const gs::gaussians found = gs_test::read_back(gs::sog_writer, model);
-    REQUIRE(found.sh_rest.size() == model.sh_rest.size());
-    double before = 0, after = 0;
-    for (const float x : model.sh_rest) before += double(x) * double(x);
-    for (const float x : found.sh_rest) after += double(x) * double(x);
-    CHECK(after > 0.8 * before);
-    CHECK(after < before);
+    gs::gaussians model = random_model(3000, 1);
+    const auto check_colors = [&] {
+        const gs::gaussians found = gs_test::read_back(gs::sog_writer, model);
+        REQUIRE(found.sh_rest.size() == model.sh_rest.size());
+        double before = 0, after = 0;
+        for (const float x : model.sh_rest) before += double(x) * double(x);
+        for (const float x : found.sh_rest) after += double(x) * double(x);
+        CHECK(after > 0.8 * before);
+        CHECK(after < before);
+    };
+    check_colors();
+    model.log_scale[4] = 170;  // dwarfs all others
+    check_colors();
+    model.opacity.assign(3000, -80);
+    check_colors();
+}
+
+TEST_CASE("sog: view-dependent colors are most precise for large and for opaque Gaussians") {
+    const auto share_of_error = [](const std::function<void(gs::gaussians&, std::size_t)>& emphasize) {
+        gs::gaussians model = random_model(3000, 1);
+        model.opacity.assign(3000, -3);
+        model.log_scale.assign(9000, -3);
+        const auto is_emphasized = [](std::size_t i) { return i % 10 == 0; };
+        for (std::size_t i = 0; i < 3000; ++i)
+            if (is_emphasized(i)) emphasize(model, i);
+        const gs::gaussians found = gs_test::read_back(gs::sog_writer, model);
+        const std::vector<std::uint32_t> order = gs::morton_order(model.mean);
+        double emphasized = 0, all = 0;
+        for (std::size_t i = 0; i < found.sh_rest.size(); ++i) {
+            const std::size_t original = order[i / 9];
+            const double difference = double(found.sh_rest[i]) - double(model.sh_rest[9 * original + i % 9]);
+            all += difference * difference;
+            if (is_emphasized(original)) emphasized += difference * difference;
+        }
+        return emphasized / all;
+    };
+    CHECK(share_of_error([](gs::gaussians&, std::size_t) {}) > 0.05);
+    CHECK(share_of_error([](gs::gaussians& m, std::size_t i) { m.opacity[i] = 3; }) < 0.02);
+    // A Gaussian is as large as its largest scale.
+    CHECK(share_of_error([](gs::gaussians& m, std::size_t i) { m.log_scale[3 * i + 1] = 3; }) < 0.02);
 }
 
 TEST_CASE("sog: malformed files are refused with the field") {

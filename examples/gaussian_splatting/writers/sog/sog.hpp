@@ -15,7 +15,7 @@ namespace gs {
 /// | log of scale, color | 256 numbers that fit the model |
 /// | opacity | 8 bits |
 /// | rotation | the smallest three components with 8 bits each |
-/// | view-dependent color | a palette of at most 65536 entries, by `write_options::k_means` |
+/// | view-dependent color | a palette of at most 65536 entries, best for large, opaque Gaussians |
 ///
 /// The axes are those of the model. Antialiasing is kept as `antialias` and `model`, a learned
 /// background is lost.

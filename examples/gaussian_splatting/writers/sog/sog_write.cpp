@@ -180,18 +180,33 @@ class sog_output {
                         {"files", {"shN_centroids.webp", "shN_labels.webp"}}};
     }
 
+    /// Returns how much each Gaussian affects images, relative to the largest possible effect. The
+    /// minimum lets invisible Gaussians have colors, too.
+    std::vector<float> visibilities() const {
+        constexpr double least = 1e-12;
+        const double largest = std::ranges::max(model_.log_scale);
+        std::vector<float> all(model_.count());
+        for_each_index_in_parallel(all.size(), [&](std::size_t i) {
+            const float* const s = &model_.log_scale[3 * i];
+            const double half_log_size = (std::max({s[0], s[1], s[2]}) - largest) / 2;
+            all[i] =
+                static_cast<float>(std::max(least, sigmoid(model_.opacity[i]) * std::exp(half_log_size)));
+        });
+        return all;
+    }
+
     /// Clusters the SH coefficients up to the degree of the file.
     cluster::clustering clustered_colors() const {
         const auto stride = static_cast<std::size_t>(model_.rest_width());
         const std::size_t width = 3 * coefficients(), most = palette_size(model_.count());
-        if (stride == width) return k_means_(model_.sh_rest, width, most);
+        if (stride == width) return k_means_(model_.sh_rest, width, visibilities(), most);
         std::vector<float> sh;
         sh.reserve(width * model_.count());
         for (std::size_t i = 0; i < model_.count(); ++i) {
             const auto first = model_.sh_rest.begin() + static_cast<std::ptrdiff_t>(i * stride);
             sh.insert(sh.end(), first, first + static_cast<std::ptrdiff_t>(width));
         }
-        return k_means_(sh, width, most);
+        return k_means_(sh, width, visibilities(), most);
     }
 
     const gaussians& model_;
