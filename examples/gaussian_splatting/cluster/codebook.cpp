@@ -14,7 +14,7 @@
 namespace gs::cluster {
 namespace {
 
-constexpr std::size_t most_groups = 4096;
+constexpr std::size_t most_groups = 2048;
 constexpr std::size_t most_sorted = std::size_t{1} << 19;
 
 /// Returns one of every few values, so that there are at most `most_sorted`, and the smallest and
@@ -39,6 +39,24 @@ struct value_range {
     bool operator<(const value_range& other) const { return error < other.error; }
 };
 
+/// A place between sorted values: what is before it, apart from constants, and its neighbors.
+struct value_bound {
+    double count, sum, squares;
+    float last, next;
+};
+
+/// Returns the mean of the values between two places.
+double mean_between(const value_bound& first, const value_bound& end) {
+    return std::clamp<double>((end.sum - first.sum) / (end.count - first.count), first.next, end.last);
+}
+
+/// Returns the sum of their squared distances to the mean.
+double error_between(const value_bound& first, const value_bound& end) {
+    if (first.next == end.last) return 0;
+    const double sum = end.sum - first.sum;
+    return std::max(0.0, end.squares - first.squares - sum * sum / (end.count - first.count));
+}
+
 /// Sorted values, or a sample of very many, with the mean and the error of each range.
 class sorted_values {
   public:
@@ -53,17 +71,8 @@ class sorted_values {
 
     std::size_t size() const { return values_.size(); }
 
-    double mean(std::size_t first, std::size_t end) const {
-        return std::clamp<double>((sums_[end] - sums_[first]) / static_cast<double>(end - first),
-                                  values_[first], values_[end - 1]);
-    }
-    double error(std::size_t first, std::size_t end) const {
-        if (values_[first] == values_[end - 1]) return 0;
-        const double sum = sums_[end] - sums_[first];
-        return std::max(0.0, squares_[end] - squares_[first] - sum * sum / static_cast<double>(end - first));
-    }
     value_range make_range(std::size_t first, std::size_t end) const {
-        return {first, end, error(first, end)};
+        return {first, end, error_between(bound_at(first), bound_at(end))};
     }
     /// Returns where the upper half of a range of different values begins.
     std::size_t half(const value_range& r) const {
@@ -72,6 +81,11 @@ class sorted_values {
         return static_cast<std::size_t>(std::upper_bound(begin + static_cast<std::ptrdiff_t>(r.first),
                                                          begin + static_cast<std::ptrdiff_t>(r.end), middle) -
                                         begin);
+    }
+
+    value_bound bound_at(std::size_t i) const {
+        return {static_cast<double>(i), sums_[i], squares_[i], values_[i > 0 ? i - 1 : 0],
+                values_[std::min(i, size() - 1)]};
     }
 
   private:
@@ -86,7 +100,7 @@ class sorted_values {
 
 /// Returns the ends of groups of similar values, after the beginning of the first one. Splits the group
 /// with the largest error until there are enough.
-std::vector<std::size_t> bounds_of_groups(const sorted_values& values) {
+std::vector<value_bound> bounds_of_groups(const sorted_values& values) {
     std::priority_queue<value_range> groups;
     groups.push(values.make_range(0, values.size()));
     while (groups.size() < most_groups && groups.top().error > 0) {
@@ -99,15 +113,17 @@ std::vector<std::size_t> bounds_of_groups(const sorted_values& values) {
     std::vector<std::size_t> bounds{0};
     for (; !groups.empty(); groups.pop()) bounds.push_back(groups.top().end);
     std::ranges::sort(bounds);
-    return bounds;
+    std::vector<value_bound> all;
+    for (const std::size_t bound : bounds) all.push_back(values.bound_at(bound));
+    return all;
 }
 
 /// Finds the partition of groups into ranges with the smallest error, by dynamic programming. With
 /// more groups, the last range of the best partition never begins earlier, which bounds the search.
 class best_partition {
   public:
-    best_partition(const sorted_values& values, const std::vector<std::size_t>& bounds, std::size_t ranges)
-        : values_(values), bounds_(bounds), starts_(ranges) {
+    best_partition(const std::vector<value_bound>& bounds, std::size_t ranges)
+        : bounds_(bounds), starts_(ranges) {
         const std::size_t groups = bounds.size() - 1;
         before_.assign(groups + 1, std::numeric_limits<double>::max());
         before_[0] = 0;
@@ -123,7 +139,7 @@ class best_partition {
         std::vector<double> all;
         std::size_t end = bounds_.size() - 1;
         for (std::size_t k = starts_.size(); k-- > 0; end = starts_[k][end])
-            all.push_back(values_.mean(bounds_[starts_[k][end]], bounds_[end]));
+            all.push_back(mean_between(bounds_[starts_[k][end]], bounds_[end]));
         std::ranges::reverse(all);
         return all;
     }
@@ -137,7 +153,7 @@ class best_partition {
         const std::size_t end = (low + high) / 2;
         std::size_t best = earliest;
         for (std::size_t start = earliest; start <= std::min(latest, end - 1); ++start) {
-            const double error = before_[start] + values_.error(bounds_[start], bounds_[end]);
+            const double error = before_[start] + error_between(bounds_[start], bounds_[end]);
             if (error < now_[end]) {
                 now_[end] = error;
                 best = start;
@@ -148,8 +164,7 @@ class best_partition {
         search(starts, end + 1, high, best, latest);
     }
 
-    const sorted_values& values_;
-    const std::vector<std::size_t>& bounds_;
+    const std::vector<value_bound>& bounds_;
     std::vector<double> before_, now_;                ///< the error of the first groups with as many ranges
     std::vector<std::vector<std::uint16_t>> starts_;  ///< where the last range begins
 };
@@ -159,9 +174,9 @@ class best_partition {
 codebook::codebook(std::span<const float> values) {
     if (values.empty()) return;
     const sorted_values sorted(values);
-    const std::vector<std::size_t> bounds = bounds_of_groups(sorted);
+    const std::vector<value_bound> bounds = bounds_of_groups(sorted);
     const std::size_t different = std::min(size, bounds.size() - 1);
-    const std::vector<double> numbers = best_partition(sorted, bounds, different).means();
+    const std::vector<double> numbers = best_partition(bounds, different).means();
     for (std::size_t i = 0; i < size; ++i)
         values_[i] = static_cast<float>(numbers[std::min(i, different - 1)]);
     for (std::size_t i = 0; i + 1 < size; ++i) limits_[i] = std::midpoint(values_[i], values_[i + 1]);
