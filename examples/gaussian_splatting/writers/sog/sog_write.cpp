@@ -58,8 +58,8 @@ class sog_output {
             meta_["antialias"] = true;
             meta_["model"] = "antialiased";  // newer programs read only this
         }
-        // The palette takes longest, and a GPU that computes it leaves the CPU idle. A codebook mostly
-        // uses one thread. So all three are computed while this thread goes on with the other images.
+        // The palette takes longest, and a GPU that computes it leaves the CPU idle. A codebook, and the
+        // encoder of an image, mostly use one thread. So they run while this thread goes on.
         const bool has_palette = sh_degree_ > 0 && model_.count() > 0;
         std::future<cluster::clustering> colors;
         if (has_palette) colors = std::async(std::launch::async, [this] { return clustered_colors(); });
@@ -69,38 +69,29 @@ class sog_output {
         add_scales(scale_book.get());
         add_rotations();
         add_colors(color_book.get());
-        encode_images();
         if (has_palette) add_palette(colors.get());
-        encode_images();
-        files_[0] = {"meta.json", meta_.dump()};
-        return zip_of(files_);
+        std::vector<bundled_file> files{{"meta.json", meta_.dump()}};
+        for (std::future<bundled_file>& file : files_) files.push_back(file.get());
+        return zip_of(files);
     }
 
   private:
-    struct named_image {
-        std::string name;
-        rgba_image image;
-    };
-
     static std::future<cluster::codebook> begin_codebook(const std::vector<float>& values) {
         return std::async(std::launch::async, [&values] { return cluster::codebook(values); });
     }
 
-    /// Moves the images to the files.
-    void encode_images() {
-        const std::size_t first = files_.size();
-        files_.resize(first + images_.size());
-        for_each_in_parallel(images_.size(), [&](std::size_t i) {
-            files_[first + i] = {images_[i].name, webp_of(images_[i].image)};
-        });
-        images_.clear();
+    /// Begins to encode an image.
+    void add_file(const std::string& name, rgba_image image) {
+        files_.push_back(std::async(std::launch::async, [name, image = std::move(image)] {
+            return bundled_file{name, webp_of(image)};
+        }));
     }
 
     /// Adds an image with a pixel for each Gaussian, which `fill(i, pixel)` sets.
     void add_image(const std::string& name, const auto& fill) {
         rgba_image image(width_, height_);
         for_each_index_in_parallel(order_.size(), [&](std::size_t i) { fill(order_[i], image.pixel(i)); });
-        images_.push_back({name, std::move(image)});
+        add_file(name, std::move(image));
     }
 
     void add_means() {
@@ -160,7 +151,13 @@ class sog_output {
 
     void add_palette(const cluster::clustering& colors) {
         const std::size_t entries = colors.centroids.size() / (3 * coefficients());
-        const cluster::codebook book(colors.centroids);
+        auto future_book = begin_codebook(colors.centroids);
+        add_image("shN_labels.webp", [&](std::size_t i, std::uint8_t* pixel) {
+            pixel[0] = static_cast<std::uint8_t>(colors.labels[i] & 255);
+            pixel[1] = static_cast<std::uint8_t>(colors.labels[i] >> 8 & 255);
+            pixel[3] = opaque;
+        });
+        const cluster::codebook book = future_book.get();
         rgba_image palette(entries_per_row * coefficients(),
                            (entries + entries_per_row - 1) / entries_per_row);
         for_each_index_in_parallel(entries * coefficients(), [&](std::size_t i) {
@@ -168,12 +165,7 @@ class sog_output {
                 palette.pixel(i)[k] = book.nearest(colors.centroids[3 * i + k]);
             palette.pixel(i)[3] = opaque;
         });
-        images_.push_back({"shN_centroids.webp", std::move(palette)});
-        add_image("shN_labels.webp", [&](std::size_t i, std::uint8_t* pixel) {
-            pixel[0] = static_cast<std::uint8_t>(colors.labels[i] & 255);
-            pixel[1] = static_cast<std::uint8_t>(colors.labels[i] >> 8 & 255);
-            pixel[3] = opaque;
-        });
+        add_file("shN_centroids.webp", std::move(palette));
         meta_["shN"] = {{"count", entries},
                         {"bands", sh_degree_},
                         {"codebook", book.values()},
@@ -215,8 +207,7 @@ class sog_output {
     std::vector<std::uint32_t> order_;
     std::size_t width_ = 0, height_ = 0;
     json meta_;
-    std::vector<named_image> images_;     ///< to be encoded
-    std::vector<bundled_file> files_{1};  ///< the first one is for the meta data
+    std::vector<std::future<bundled_file>> files_;  ///< without the meta data
 };
 
 /// Throws `error` for colors up to `sh_degree` that `k_means` cannot cluster.
