@@ -279,15 +279,14 @@ rows length_options(settings& s) {
           .commands = {train},
           .value = whole(s.num_downscales, 0, 8),
           .help = "Number of times that the photos are halved at the start of training",
-          .default_text = "as often as photos of 200000 pixels need, from once to three times"},
+          .default_text = "as often as 30000 pixels remain, from once to three times"},
          {.names = "--resolution-schedule",
           .commands = {train},
           .value = whole(s.schedule.resolution_schedule, 1, most_iterations),
           .help = "Iterations until the photos are halved once less",
           .unit = "iterations",
-          .default_text = "two fifths of the default of --densify-until-iter; for --num-downscales N above "
-                          "1, two parts in "
-                          "N + 4",
+          .default_text = "6/5, 3/4 or 8/15 of the default of --densify-until-iter for --num-downscales 1, 2 "
+                          "or 3; 2/5, 1/3 or 2/7 of it for rendered images",
           .is_rare = true}});
 }
 

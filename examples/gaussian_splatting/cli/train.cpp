@@ -36,6 +36,7 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     train::train_options o;
     o.schedule = s.schedule;
     o.schedule.transparent = scene.has_alpha;
+    o.schedule.rendered = scene.rendered;
     o.schedule.views = static_cast<int>(scene.train.size());
     o.schedule.num_downscales = s.num_downscales.value_or(train::default_downscales(scene, o.schedule));
     o.seconds = s.seconds;

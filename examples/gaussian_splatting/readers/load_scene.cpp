@@ -97,6 +97,7 @@ scene load_opened(const load_options& options, const log_function& say, reader_t
     scene result;
     result.points = std::move(described.points);
     result.object_centered = described.object_centered;
+    result.rendered = described.rendered;
     for (std::size_t i = 0; i < views.size(); ++i) {
         const bool held_out = options.eval && described.images[i].held_out;
         (held_out ? result.test : result.train).push_back(std::move(views[i]));

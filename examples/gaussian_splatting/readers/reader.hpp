@@ -68,9 +68,9 @@ struct image_record {
 
 /// A scene before its images are loaded.
 struct scene_description {
-    std::vector<image_record> images;   ///< in the order of the views
-    std::vector<colored_point> points;  ///< may be empty
-    bool object_centered = false;       ///< see `scene::object_centered`
+    std::vector<image_record> images;                ///< in the order of the views
+    std::vector<colored_point> points;               ///< may be empty
+    bool object_centered = false, rendered = false;  ///< see `scene`
 };
 
 /// A kind of scene. To add one, write its folder and add a row to the table in readers.cpp.

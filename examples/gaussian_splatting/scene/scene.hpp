@@ -52,6 +52,7 @@ struct scene {
     /// Whether the cameras look at one object. A scene without points then begins with Gaussians
     /// around that object.
     bool object_centered = false;
+    bool rendered = false;  ///< whether a program drew the photos, sharp to the pixel and without noise
     gs::normalization normalization;  ///< of cameras and points; the identity before `normalize`
 
     /// Returns the extent: 1.1 times the largest distance of a training camera from the mean of all

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "../densify/growth/growth_end.hpp"
 
@@ -19,8 +20,10 @@ int schedule::downscales_at(int iteration) const {
 }
 
 int schedule::resolution_interval() const {
-    const int growth_end = default_growth_end(iterations, views, transparent);
-    return resolution_schedule.value_or(2 * growth_end / (4 + std::max(1, num_downscales)));
+    if (resolution_schedule) return *resolution_schedule;
+    const std::int64_t growth_end = default_growth_end(iterations, views, transparent);
+    const int n = std::max(1, num_downscales);
+    return static_cast<int>(rendered ? 2 * growth_end / (4 + n) : 3 * growth_end * (3 * n - 1) / (5 * n * n));
 }
 
 double schedule::position_progress(int iteration) const {

@@ -23,6 +23,7 @@ struct schedule {
     /// Whether photos have transparent parts. Such photos show where the scene is empty. Gaussians
     /// then need no regularization and may move faster.
     bool transparent = false;
+    bool rendered = false;  ///< see `scene::rendered`
 
     /// Learning rates of Adam. Rates of positions are relative to the extent and decay
     /// exponentially from `init` to `final`: see `position_rate_init` and `position_progress`.
@@ -48,8 +49,11 @@ struct schedule {
     }
     int downscales_at(int iteration) const;
     /// Returns the number of iterations between two doublings of the image size. It is
-    /// `resolution_schedule`, or if that is unset, two fifths of `default_growth_end`, and less if
-    /// `num_downscales` exceeds 1. Returns 0 if the run is too short; images then have full size.
+    /// `resolution_schedule`. If that is unset, images have full size after 6/5, 3/2 or 8/5 of
+    /// `default_growth_end` for 1, 2 or 3 `num_downscales`: details of photos take few iterations
+    /// once the Gaussians are in place. `rendered` images have full size after 2/5, 2/3 or 6/7 of
+    /// it, because models of them come close enough to be limited by details. Returns 0 if the run is
+    /// too short; images then have full size.
     int resolution_interval() const;
     /// Returns the first and the last learning rate of positions. The defaults are those of Kerbl
     /// et al. 2023, or 2 and 5 times as large for `transparent` photos.

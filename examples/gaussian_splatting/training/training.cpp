@@ -95,6 +95,7 @@ training::training(train::engine& engine, const gs::scene& scene, const train_op
     schedule_.extent = scene.extent();
     schedule_.views = static_cast<int>(scene.train.size());
     schedule_.transparent = scene.has_alpha;
+    schedule_.rendered = scene.rendered;
     engine_.begin(setup_of(scene, options, schedule_));
     add_memory();
     add_step();
@@ -377,7 +378,7 @@ int default_downscales(const scene& scene, const schedule& schedule) {
         return downscales * with.resolution_interval() < schedule.iterations.last();
     };
     int downscales = 1;
-    while (downscales < 3 && (pixels >> (2 * downscales)) > 200000 && leaves_whole_photos(downscales + 1))
+    while (downscales < 3 && (pixels >> (2 * downscales + 2)) >= 30000 && leaves_whole_photos(downscales + 1))
         ++downscales;
     return downscales;
 }

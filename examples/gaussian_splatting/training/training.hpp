@@ -224,9 +224,9 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
 /// and at least 10,000.
 std::size_t default_cap(const scene& scene);
 
-/// Returns the default of `schedule::num_downscales`: how often the largest training view must be
-/// halved to have at most 200,000 pixels, at least once, at most three times, and not so often that
-/// training ends before the photos are whole.
+/// Returns the default of `schedule::num_downscales`: how often the largest training view can be
+/// halved and keep 30,000 pixels, at least once, at most three times, and not so often that training
+/// ends before the photos are whole.
 int default_downscales(const scene& scene, const schedule& schedule);
 
 }  // namespace gs::train

@@ -81,6 +81,7 @@ TEST_CASE("a known camera comes back from its file") {
     write_scene(folder.path());
     const gs::scene scene = gs::load_scene(options_for(folder.path()), ignore);
     CHECK_FALSE(scene.object_centered);
+    CHECK_FALSE(scene.rendered);
     CHECK_FALSE(scene.has_alpha);
     CHECK(scene.points.size() == 2);
     CHECK(scene.test.empty());

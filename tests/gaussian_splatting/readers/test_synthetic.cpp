@@ -106,6 +106,7 @@ TEST_CASE("synthetic scenes: every listed name makes a scene") {
         CAPTURE(name);
         const gs::scene scene = make(name, 8);
         CHECK(scene.object_centered);
+        CHECK(scene.rendered);
         CHECK(scene.train.size() == 40);
         CHECK(scene.test.size() == 8);
         CHECK(scene.points.size() == 3000);

@@ -41,6 +41,7 @@ TEST_CASE("a Blender camera looks along -z with y up, ours along +z with y down"
     write_json(folder / "transforms_train.json", transforms(folder.path(), "train", 2));
     const gs::scene scene = load(folder.path());
     CHECK(scene.object_centered);
+    CHECK(scene.rendered);
     CHECK(scene.points.empty());
     CHECK_FALSE(scene.has_alpha);
     REQUIRE(scene.train.size() == 2);

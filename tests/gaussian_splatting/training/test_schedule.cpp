@@ -84,30 +84,39 @@ TEST_CASE("images are downsampled less and less") {
     CHECK(s.downscales_at(1000) == 0);
 }
 
-TEST_CASE("photos are whole after a fifth of the iterations, or from the first of very few") {
+TEST_CASE("photos are whole after three fifths of the iterations or later, or from the first of very few") {
     schedule s;
     s.iterations = 100;
-    CHECK(s.downscales_at(20) == 1);
-    CHECK(s.downscales_at(21) == 0);
+    CHECK(s.downscales_at(60) == 1);
+    CHECK(s.downscales_at(61) == 0);
     s.num_downscales = 3;
-    CHECK(s.downscales_at(14) == 3);
-    CHECK(s.downscales_at(42) == 1);
-    CHECK(s.downscales_at(43) == 0);
-    s.iterations = 6;
+    CHECK(s.downscales_at(26) == 3);
+    CHECK(s.downscales_at(78) == 1);
+    CHECK(s.downscales_at(79) == 0);
+    s.iterations = 1;
     CHECK(s.downscales_at(1) == 0);
 }
 
-TEST_CASE("photos are whole before growth ends, however long training is") {
+TEST_CASE("photos are whole soon after growth ends, however long training is") {
     schedule s;
     s.iterations = 30000;
-    CHECK(s.downscales_at(1400) == 1);
-    CHECK(s.downscales_at(1401) == 0);
+    CHECK(s.downscales_at(4200) == 1);
+    CHECK(s.downscales_at(4201) == 0);
     s.views = 200;  // growth ends at 8000
-    CHECK(s.downscales_at(3200) == 1);
-    CHECK(s.downscales_at(3201) == 0);
-    s.transparent = true;  // growth ends at 15000
+    CHECK(s.downscales_at(9600) == 1);
+    CHECK(s.downscales_at(9601) == 0);
+}
+
+TEST_CASE("rendered images are whole before growth ends") {
+    schedule s;
+    s.transparent = s.rendered = true;
+    s.iterations = 30000;  // growth ends at 15000
     CHECK(s.downscales_at(6000) == 1);
     CHECK(s.downscales_at(6001) == 0);
+    s.iterations = 100;
+    s.num_downscales = 3;
+    CHECK(s.downscales_at(42) == 1);
+    CHECK(s.downscales_at(43) == 0);
 }
 
 TEST_CASE("large photos are halved more often, if enough iterations follow") {
@@ -122,8 +131,10 @@ TEST_CASE("large photos are halved more often, if enough iterations follow") {
         return gs::train::default_downscales(scene, s);
     };
     CHECK(halvings(1, 1, 7000) == 1);
-    CHECK(halvings(894, 894, 7000) == 1);
-    CHECK(halvings(895, 895, 7000) == 2);
+    CHECK(halvings(692, 692, 7000) == 1);
+    CHECK(halvings(693, 693, 7000) == 2);
+    CHECK(halvings(1385, 1385, 7000) == 2);
+    CHECK(halvings(1386, 1386, 7000) == 3);
     CHECK(halvings(4000, 3000, 7000) == 3);
     CHECK(halvings(4000, 3000, 1) == 3);  // too few to begin with smaller photos
     CHECK(halvings(100000, 100000, 7000) == 3);

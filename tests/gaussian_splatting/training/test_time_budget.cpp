@@ -108,8 +108,8 @@ TEST_CASE("time budget: a time shorter than a few steps ends after a few steps")
         const budget_outcome o = run_for(seconds, {.first_step = 0.5});
         CHECK(o.plan.last() <= 3);
     }
-    CHECK(run_for(0.5, {}).plan.last() < gs::train::time_budget::first_plan_after);
-    CHECK(run_for(0.5, {}).seconds == doctest::Approx(0.5).epsilon(0.05));
+    CHECK(run_for(0.4, {}).plan.last() < gs::train::time_budget::first_plan_after);
+    CHECK(run_for(0.4, {}).seconds == doctest::Approx(0.4).epsilon(0.05));
 }
 
 TEST_CASE("time budget: plans have few corrections, and none if the default number is right") {

@@ -154,11 +154,12 @@ std::unique_ptr<recorder> trained(gs::train::train_options o, std::size_t gaussi
 }  // namespace
 
 TEST_CASE(
-    "by default every step learns all, a fifth from photos of half the size, and growth is free up to the "
+    "by default every step learns all, three fifths from photos of half the size, and growth is free up to "
+    "the "
     "cap") {
     const auto made = trained({});
     for (std::size_t i = 0; i < 21; ++i) {
-        CHECK(made->steps[i].downscales == (i < 4 ? 1 : 0));
+        CHECK(made->steps[i].downscales == (i < 12 ? 1 : 0));
         CHECK(made->steps[i].plan.updates_sh);
     }
     CHECK(made->adjusted_after.size() == 21);

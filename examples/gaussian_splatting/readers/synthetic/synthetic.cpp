@@ -466,7 +466,7 @@ scene_description describe(const load_options& options, const log_function& log)
     train = spread(std::move(train), most);
 
     scene_description result;
-    result.object_centered = true;
+    result.object_centered = result.rendered = true;
     result.points = seen_points(w, train, static_cast<std::size_t>(w.how.points), options.seed);
     log("synthetic scene '" + name + "': " + std::to_string(train.size()) + " training and " +
         std::to_string(test.size()) + " test views of " + std::to_string(size) + "x" + std::to_string(size) +

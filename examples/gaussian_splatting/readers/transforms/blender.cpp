@@ -26,7 +26,7 @@ scene_description describe_blender(const load_options& options, const log_functi
     const std::filesystem::path data = options.data;
     const transforms training = read_transforms(data / training_file);
     scene_description result;
-    result.object_centered = true;
+    result.object_centered = result.rendered = true;
     result.images = image_records(data, training, options);
     std::ranges::move(test_records(data, options), std::back_inserter(result.images));
     result.points = points_of(data, training);
