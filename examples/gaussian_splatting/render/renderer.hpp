@@ -105,7 +105,6 @@ class renderer {
         transmittance_.resize(pixels);
         last_.resize(pixels);
         checkpoints_.resize(segments() * checkpoint_values);
-        camera_ = view;
         count_ = count;
         gaussians_ = gaussians;
         sh_degree_ = sh_degree;
@@ -115,29 +114,34 @@ class renderer {
     void blend(const std::array<float, 3>& background, const Real* background_image = nullptr) {
         background_ = {color(background)};
         background_image_ = {background_image};
-        background_image == nullptr ? blend_forward_by<Cut>(background_, lists(), pairs_.data())
-                                    : blend_forward_by<Cut>(background_image_, lists(), pairs_.data());
+        with_cut([&]<class Shape> {
+            background_image == nullptr ? blend_forward_by<Shape>(background_, lists(), pairs_.data())
+                                        : blend_forward_by<Shape>(background_image_, lists(), pairs_.data());
+        });
     }
 
     /// Called between both parts: draws the inverse depths, the sum of w_i / z_i with the weights
     /// of the colors, on a background of zero. They are the first plane of `render()` until
     /// `blend`. The time of this and the next function counts as forward blending.
     void blend_depths() {
-        with_flag(camera_.fisheye.has_value(), [&]<bool Fisheye> {
-            device_.for_each_index(count_, depth_splats<Real, effect_set{.fisheye = Fisheye}>{
+        with_lens(camera_.lens(), [&]<lens_model Lens> {
+            device_.for_each_index(count_, depth_splats<Real, effect_set{.lens = Lens}>{
                                                gaussians_.mean, for_device<Real>(camera_), splats_.data(),
                                                reserve(near_, count_).data()});
         });
         background_ = {};
-        blend_forward_by<Cut>(background_, depth_lists(), pairs_.data() + 1);
+        with_cut(
+            [&]<class Shape> { blend_forward_by<Shape>(background_, depth_lists(), pairs_.data() + 1); });
     }
     /// Adds the gradient of the inverse depths, three planes of which the last two are zero, to the
     /// sums. `backward` continues with them and needs the same `largest` and `how`.
     void backward_depths(const Real* gradient, float largest, accumulator how) {
-        Accumulators::template with_kernel<Real, Cut>(how, [&](auto kernel) {
-            sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()));
-            launch_backward(kernel, depth_lists(), gradient);
-            sums_.set_depths_aside(kernel);
+        with_cut([&]<class Shape> {
+            Accumulators::template with_kernel<Real, Shape>(how, [&](auto kernel) {
+                sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()));
+                launch_backward(kernel, depth_lists(), gradient);
+                sums_.set_depths_aside(kernel);
+            });
         });
         effects_.depth = true;
     }
@@ -164,16 +168,20 @@ class renderer {
     /// `project_backward`.
     const Real* pixel_sums(const Real* render_gradient, float largest, accumulator how) {
         const Real* sums = nullptr;
-        Accumulators::visit(how, [&]<class Variant>(Variant) {
-            using kernel = typename Variant::template kernel<Real, Cut>;
-            if (background_image_.planes == nullptr) {
-                sums = blend_backward_by(kernel{}, render_gradient, largest).data();
-            } else if constexpr (Variant::supports_background_image) {
-                using before_colors = typename Variant::template kernel<Real, Cut, image_background<Real>>;
-                sums = blend_backward_by(before_colors{}, render_gradient, largest).data();
-            } else {
-                throw error("this accumulator has no gradient for an image in front of a learned background");
-            }
+        with_cut([&]<class Shape> {
+            Accumulators::visit(how, [&]<class Variant>(Variant) {
+                using kernel = typename Variant::template kernel<Real, Shape>;
+                if (background_image_.planes == nullptr) {
+                    sums = blend_backward_by(kernel{}, render_gradient, largest).data();
+                } else if constexpr (Variant::supports_background_image) {
+                    using before_colors =
+                        typename Variant::template kernel<Real, Shape, image_background<Real>>;
+                    sums = blend_backward_by(before_colors{}, render_gradient, largest).data();
+                } else {
+                    throw error(
+                        "this accumulator has no gradient for an image in front of a learned background");
+                }
+            });
         });
         return sums;
     }
@@ -211,10 +219,17 @@ class renderer {
 
     effect_set effects_of(const camera& view) const {
         effect_set effects = effects_;
-        effects.fisheye = view.fisheye.has_value();
+        effects.lens = view.lens();
         return effects;
     }
 
+    /// Calls `f.template operator()<Shape>()` with the division of the current view.
+    template <class F>
+    void with_cut(const F& f) const {
+        with_flag(camera_.is_panorama, [&]<bool Panorama> {
+            f.template operator()<std::conditional_t<Panorama, panorama_cut<Cut>, Cut>>();
+        });
+    }
     std::size_t tiles() const { return std::size_t{tiles_across_} * tiles_down_; }
     template <class Kernel>
     void launch_backward(Kernel& kernel, const tile_lists<Real>& lists, const Real* render_gradient) {
@@ -266,11 +281,12 @@ class renderer {
     void project_all(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
                      const dropout& dropped = {}) {
         require_drawable(view);
+        camera_ = view;
         tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
         using narrow = typename Device::narrow_warp;
         with_effects(effects_of(view), [&]<effect_set Effects> {
-            constexpr effect_set seen{Effects.antialiasing, Effects.fisheye};
+            constexpr effect_set seen{Effects.antialiasing, Effects.lens};
             using projection = project<narrow, Real, seen>;
             device_.template for_each_warp<narrow>(
                 projection::warps(count),
@@ -295,9 +311,14 @@ class renderer {
         device_.for_each_index(tiles(), order_tiles{ranges_.data(), order()});
     }
     void list_by_tile(std::size_t count, std::uint64_t reserved) {
-        device_.distribute(
-            count, splats_by_depth<Real>{order_.data(), splats_.data(), boxes_.data(), tiles_across_},
-            tiles(), reserved, gaussian_of_.data(), reserve(ranges_, tiles()).data(), required_.data());
+        const splats_by_depth<Real> splats{order_.data(), splats_.data(), boxes_.data(), tiles_across_};
+        const auto distribute = [&](const auto& items) {
+            device_.distribute(count, items, tiles(), reserved, gaussian_of_.data(),
+                               reserve(ranges_, tiles()).data(), required_.data());
+        };
+        camera_.is_panorama
+            ? distribute(panorama_splats_by_depth<Real>{splats, {camera_.width, tiles_across_}})
+            : distribute(splats);
     }
 
     tile_order order() const {
@@ -322,10 +343,11 @@ class renderer {
 
     effect_set effects_;
 
-    // The arguments of the last `forward`, which `backward` uses.
+    camera camera_{};  ///< the view that was drawn or measured last
+
+    // The other arguments of the last `forward`, which `backward` uses.
     model gaussians_;
     std::size_t count_ = 0;
-    camera camera_{};
     int sh_degree_ = 0;
     constant_background<Real> background_{};
     image_background<Real> background_image_{};

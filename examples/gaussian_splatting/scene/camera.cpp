@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace gs {
@@ -55,8 +56,23 @@ double fisheye::angle(double radius) const {
     return angle;
 }
 
+camera camera::panorama(int width, int height) {
+    camera c{width, height};
+    c.is_panorama = true;
+    c.fx = 0.5 * width / std::numbers::pi;
+    c.fy = height / std::numbers::pi;
+    c.cx = 0.5 * width;
+    c.cy = 0.5 * height;
+    return c;
+}
+
 std::optional<camera::image_point> camera::see(const glm::dvec3& point) const {
     const glm::dvec3 p = rotation * point + translation;
+    if (is_panorama) {
+        if (p == glm::dvec3(0)) return std::nullopt;
+        const double longitude = std::atan2(p.x, p.z), latitude = std::atan2(p.y, std::hypot(p.x, p.z));
+        return image_point{fx * longitude + cx, fy * latitude + cy, glm::length(p)};
+    }
     if (!fisheye) {
         if (p.z <= 0) return std::nullopt;
         return image_point{fx * p.x / p.z + cx, fy * p.y / p.z + cy, p.z};
@@ -73,6 +89,10 @@ glm::dvec3 camera::ray(double x, double y) const {
     if (fisheye) {
         const double out = glm::length(place), angle = fisheye->angle(out);
         in_camera = {(out > 0 ? std::sin(angle) / out : 1) * place, std::cos(angle)};
+    }
+    if (is_panorama) {
+        const double level = std::cos(place.y);
+        in_camera = {level * std::sin(place.x), std::sin(place.y), level * std::cos(place.x)};
     }
     return glm::normalize(glm::transpose(rotation) * in_camera);
 }

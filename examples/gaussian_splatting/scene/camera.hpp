@@ -38,25 +38,41 @@ class fisheye {
     double end_;
 };
 
+/// How a camera maps directions to its image: see `camera`.
+enum class lens_model { pinhole, fisheye, panorama };
+
 /// A camera. It maps a world point p to q = `rotation * p + translation` in camera space (x right,
 /// y down, z forward). A pinhole camera projects q to the pixel coordinates (fx q.x/q.z + cx, fy
 /// q.y/q.z + cy). The center of the top left pixel is (0.5, 0.5).
+///
+/// A panorama is an equirectangular image of all directions. It shows q at the pixel coordinates
+/// (fx a + cx, fy b + cy). The longitude a = atan2(q.x, q.z) is zero forward, and the latitude
+/// b = atan2(q.y, hypot(q.x, q.z)) is positive downward. The left and the right border of the image
+/// are the same meridian, so x is periodic.
 struct camera {
     int width = 0;
     int height = 0;
     double fx = 0, fy = 0, cx = 0, cy = 0;
     glm::dmat3 rotation{1};
     glm::dvec3 translation{0};
-    std::optional<gs::fisheye> fisheye{};  ///< none for a pinhole camera
+    std::optional<gs::fisheye> fisheye{};  ///< the lens of a fisheye camera
+    bool is_panorama = false;              ///< if true, `fisheye` is empty
 
+    /// Returns the camera of a panorama of this size at the origin.
+    static camera panorama(int width, int height);
+
+    lens_model lens() const {
+        if (is_panorama) return lens_model::panorama;
+        return fisheye ? lens_model::fisheye : lens_model::pinhole;
+    }
     glm::dvec3 center() const { return -glm::transpose(rotation) * translation; }
 
     struct image_point {
         double x, y;   ///< pixels
-        double depth;  ///< z for a pinhole camera, distance from the camera for a fisheye
+        double depth;  ///< z for a pinhole camera, otherwise the distance from the camera
     };
-    /// Projects a world point. Returns nothing if the point is behind the camera, or beyond the end
-    /// of a fisheye lens.
+    /// Projects a world point. Returns nothing if the point is behind a pinhole camera, beyond the
+    /// end of a fisheye lens, or at the center of another lens.
     std::optional<image_point> see(const glm::dvec3& point) const;
     /// Returns the unit vector in world space that projects to these pixel coordinates.
     glm::dvec3 ray(double x, double y) const;

@@ -339,7 +339,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
                               renderer_.reserved_instances(),
                               static_cast<std::size_t>(s.camera.width),
                               static_cast<std::size_t>(s.camera.height),
-                              s.camera.fisheye ? std::size_t{1} : 0,
+                              static_cast<std::size_t>(s.camera.lens()),
                               target.masked ? std::size_t{1} : 0,
                               effects_.antialiasing ? std::size_t{1} : 0,
                               trained_.values.gaussians_with_sh(),

@@ -53,12 +53,12 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
             return sum;
         };
         gs::train::adam_parameters<gs::device::cpu, gs::sky_width> numbers(device);
-        const auto sums = numbers.sums(sky_patch<warp, false>::count(width, height));
-        gs::raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
+        const auto sums = numbers.sums(sky_patch<warp, gs::lens_model::pinhole>::count(width, height));
+        gs::raster::with_lens(camera.lens(), [&]<gs::lens_model Lens> {
             device.for_each_warp(
                 sums.warps,
-                sky_backward<warp, Fisheye>{gs::raster::for_device<warpagg::value_t<warp, float>>(camera),
-                                            through.data(), weights.data(), sums});
+                sky_backward<warp, Lens>{gs::raster::for_device<warpagg::value_t<warp, float>>(camera),
+                                         through.data(), weights.data(), sums});
         });
         for (const unsigned k : {0u, 4u, 20u, 47u}) {
             double by = 0;

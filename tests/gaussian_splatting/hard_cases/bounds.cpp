@@ -126,6 +126,7 @@ std::string excess(const render_result& got, const render_result& expected) {
 std::vector<double> off_thresholds(const render_case& q, double margin, std::uint32_t depth_margin) {
     using namespace gs::raster;
     const int width = q.view.camera.width, height = q.view.camera.height;
+    const bool around = q.view.camera.is_panorama;
     std::vector<double> weights(q.pixels(), 1.0), behind(q.pixels(), 1.0);
     std::vector<std::uint32_t> depths(q.pixels(), 0);  // of the last splat that a pixel saw
     std::vector<projected_splat> splats = reference().project(q);
@@ -145,15 +146,22 @@ std::vector<double> off_thresholds(const render_case& q, double margin, std::uin
         const double far = std::sqrt(s.cutoff) * (1 + margin), dx = far / s.p,
                      dy = (far + std::abs(s.r) * dx) / s.q;
         for (int y = from(s.y - dy - 1, height); y < from(s.y + dy + 2, height); ++y)
-            for (int x = from(s.x - dx - 1, width); x < from(s.x + dx + 2, width); ++x) {
+            for (int x = around ? 0 : from(s.x - dx - 1, width);
+                 x < (around ? width : from(s.x + dx + 2, width)); ++x) {
                 const auto pixel = static_cast<std::size_t>(y * width + x);
                 double& T = behind[pixel];
                 if (T == 0) continue;
-                const double u = s.p * (x + 0.5 - s.x), v = s.q * (y + 0.5 - s.y) + s.r * (x + 0.5 - s.x);
+                double along = x + 0.5 - s.x;
+                if (around) along = nearest_offset<double>(along, width);
+                const double u = s.p * along, v = s.q * (y + 0.5 - s.y) + s.r * along;
                 const double full = s.opacity * std::exp2(-(u * u + v * v));
                 const double next = T * (1 - std::min(full, most_alpha));
                 if (near(full, least_alpha, margin) || near(full, most_alpha, margin) ||
                     (full >= least_alpha && near(next, least_transmittance, margin_of_T)))
+                    weights[pixel] = 0;
+                // Rounding may swap the two ways around a panorama.
+                if (around && full >= least_alpha * (1 - margin) &&
+                    std::abs(std::abs(along) - 0.5 * width) < 1e-3)
                     weights[pixel] = 0;
                 if (full < least_alpha) continue;
                 // The sort key is a float: rounding may swap two of almost one depth.

@@ -28,6 +28,19 @@ void take_fisheye(render_case& q, unsigned seed) {
     c.translation = glm::dvec3(0.1, -0.2, 1);
 }
 
+void take_panorama(render_case& q) {
+    gs::camera c = gs::camera::panorama(q.view.camera.width, q.view.camera.height);
+    c.rotation = q.view.camera.rotation;
+    c.translation = glm::dvec3(0.1, -0.2, 0.3);
+    q.view.camera = c;
+}
+
+void take_some_lens(render_case& q, unsigned seed) {
+    const unsigned kind = seed / 16 % 4;
+    if (kind == 1 || (kind == 3 && seed % 2 == 0)) take_fisheye(q, seed);
+    if (kind == 2 || (kind == 3 && seed % 2 == 1)) take_panorama(q);
+}
+
 void add_depths(render_case& q, unsigned seed) {
     std::mt19937 random(seed);
     q.depth_weights.resize(q.pixels());

@@ -24,6 +24,12 @@ void add_background_image(render_case& q, unsigned seed);
 /// The camera gets a fisheye lens of 160 degrees across and stands between the Gaussians.
 void take_fisheye(render_case& q, unsigned seed);
 
+/// The camera takes a panorama and stands between the Gaussians.
+void take_panorama(render_case& q);
+
+/// A pinhole camera, a fisheye lens or a panorama, by the seed.
+void take_some_lens(render_case& q, unsigned seed);
+
 /// Inverse depths in the loss, by random weights of either sign.
 void add_depths(render_case& q, unsigned seed);
 

@@ -146,7 +146,7 @@ class renders_on {
         };
         const gs::camera& camera = q.view.camera;
         gs::effect_set effects = q.effects;
-        effects.fisheye = camera.fisheye.has_value();
+        effects.lens = camera.lens();
         using narrow = typename Device::narrow_warp;
         gs::raster::with_effects(effects, [&]<gs::effect_set Effects> {
             using projection = gs::raster::project<narrow, Real, Effects>;

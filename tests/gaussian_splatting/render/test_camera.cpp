@@ -48,7 +48,7 @@ std::vector<lens_case> lens_cases() {
 }
 
 template <class Real>
-using projection = gs::raster::projection_of<Real, gs::effect_set{.fisheye = true}>;
+using projection = gs::raster::projection_of<Real, gs::effect_set{.lens = gs::lens_model::fisheye}>;
 
 }  // namespace
 

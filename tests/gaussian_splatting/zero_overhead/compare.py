@@ -5,8 +5,8 @@
 
     compare.py CXX [NVCC]
 
-What stands behind `if constexpr (Effects...` or `(Masked)` is cut out of a copy of the sources, and of the two projections that
-`std::conditional_t<Effects...` chooses from, that of the effect. With the effects off both
+What stands behind `if constexpr (Effects...` or `(Masked)` is cut out of a copy of the sources, and of the projections that
+`std::conditional_t<Effects.lens...` chooses from, all but the pinhole camera's. With the effects off both
 must come to the same assembly (and, with NVCC, PTX), and with them on to another.
 """
 import pathlib
@@ -19,10 +19,10 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCES = HERE.parent.parent.parent / "examples" / "gaussian_splatting"
-EFFECT_STATEMENTS = 13
-STATEMENT = re.compile(r"^ *if constexpr \((?:Effects\.\w+|Masked)\)\s[^;]*;\n", re.MULTILINE)
+EFFECT_STATEMENTS = 15
+STATEMENT = re.compile(r"^ *if constexpr \((?:Effects\.\w+(?: == [\w:]+)?|Masked)\)\s[^;]*;\n", re.MULTILINE)
 
-CHOICE = re.compile(r"std::conditional_t<Effects\.\w+, [^,]*, ([^,]*)>;")
+CHOICE = re.compile(r"std::conditional_t<Effects\.lens != lens_model::pinhole,[^;]*, ([^,]*)>;")
 
 
 def compiled(command, sources, effects):

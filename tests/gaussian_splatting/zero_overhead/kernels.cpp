@@ -15,7 +15,9 @@
 #include "render/project/project.hpp"
 #include "render/project/project_backward.hpp"
 
-constexpr gs::effect_set effects{.antialiasing = EFFECTS, .fisheye = EFFECTS, .depth = EFFECTS};
+constexpr gs::effect_set effects{.antialiasing = EFFECTS,
+                                 .lens = EFFECTS ? gs::lens_model::fisheye : gs::lens_model::pinhole,
+                                 .depth = EFFECTS};
 constexpr bool masked = EFFECTS;
 
 #if defined(__CUDACC__)

@@ -32,9 +32,9 @@ class sky {
         if (!exists()) return nullptr;
         raster::require_drawable(camera);
         planes_.resize(3 * static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
-        raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
-            device_.for_each_warp(patches(camera), draw_sky<warp, Fisheye>{raster::for_device<real>(camera),
-                                                                           numbers_.row(0), planes_.data()});
+        raster::with_lens(camera.lens(), [&]<lens_model Lens> {
+            device_.for_each_warp(patches(camera), draw_sky<warp, Lens>{raster::for_device<real>(camera),
+                                                                        numbers_.row(0), planes_.data()});
         });
         return planes_.data();
     }
@@ -44,16 +44,16 @@ class sky {
     void learn(const camera& camera, const float* transmittance, const float* by_render, float rate,
                const raster::list_capacity& capacity) {
         const train::ordered_sums sums = numbers_.sums(patches(camera));
-        raster::with_flag(camera.fisheye.has_value(), [&]<bool Fisheye> {
-            device_.for_each_warp(sums.warps, sky_backward<warp, Fisheye>{raster::for_device<real>(camera),
-                                                                          transmittance, by_render, sums});
+        raster::with_lens(camera.lens(), [&]<lens_model Lens> {
+            device_.for_each_warp(sums.warps, sky_backward<warp, Lens>{raster::for_device<real>(camera),
+                                                                       transmittance, by_render, sums});
         });
         numbers_.learn(0, sums, rate, capacity);
     }
 
   private:
     static std::size_t patches(const camera& camera) {
-        return sky_patch<warp, false>::count(camera.width, camera.height);
+        return sky_patch<warp, lens_model::pinhole>::count(camera.width, camera.height);
     }
 
     Device& device_;

@@ -9,6 +9,7 @@
 #include "../../model/spherical_harmonics.hpp"
 #include "../../optimize/ordered_sums.hpp"
 #include "../../render/geometry/fisheye.hpp"
+#include "../../render/geometry/panorama.hpp"
 
 namespace gs::features {
 
@@ -16,9 +17,8 @@ namespace gs::features {
 /// of coefficients times harmonics, as for a Gaussian, but is not clamped.
 inline constexpr unsigned sky_coefficients = sh_coefficients(sky_degree);
 
-/// The pixels of an image that one warp handles: one column per lane, `rows` rows. `Fisheye` tells
-/// whether the camera has a fisheye lens.
-template <class W, bool Fisheye>
+/// The pixels of an image that one warp handles: one column per lane, `rows` rows.
+template <class W, lens_model Lens>
 struct sky_patch {
     using real = warpagg::value_t<W, float>;
 
@@ -47,13 +47,14 @@ struct sky_patch {
         const raster::vec2<real> place((x - camera.cx) / camera.fx,
                                        (real(static_cast<float>(row) + 0.5f) - camera.cy) / camera.fy);
         raster::vec3<real> ray(place, real(1));
-        if constexpr (Fisheye) ray = raster::fisheye_ray(place, camera);
+        if constexpr (Lens == lens_model::fisheye) ray = raster::fisheye_ray(place, camera);
+        if constexpr (Lens == lens_model::panorama) ray = raster::panorama_ray(place);
         sh_basis(sky_degree, raster::unit<3, real>(ray * camera.rotation).direction, values);
     }
 };
 
 /// Draws the sky behind an image. One warp per patch.
-template <class W, bool Fisheye>
+template <class W, lens_model Lens>
 struct draw_sky {
     using real = warpagg::value_t<W, float>;
 
@@ -63,7 +64,7 @@ struct draw_sky {
 
     WARPAGG_EXEC_CHECK_DISABLE
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
-        const sky_patch<W, Fisheye> patch(w, index, camera.width, camera.height);
+        const sky_patch<W, Lens> patch(w, index, camera.width, camera.height);
         const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(camera.width) * camera.height;
         for (int row = patch.first; row < patch.last; ++row) {
             real basis[sky_coefficients];
@@ -83,7 +84,7 @@ struct draw_sky {
 
 /// Sums the gradient with respect to the sky's coefficients, from the gradient with respect to the
 /// render and the transmittance of each pixel. One warp per patch.
-template <class W, bool Fisheye>
+template <class W, lens_model Lens>
 struct sky_backward {
     using real = warpagg::value_t<W, float>;
 
@@ -94,7 +95,7 @@ struct sky_backward {
 
     WARPAGG_EXEC_CHECK_DISABLE
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
-        const sky_patch<W, Fisheye> patch(w, index, camera.width, camera.height);
+        const sky_patch<W, Lens> patch(w, index, camera.width, camera.height);
         const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(camera.width) * camera.height;
         real total[sky_width];
         WARPAGG_UNROLL

@@ -171,7 +171,7 @@ struct blend_backward {
         constexpr unsigned rows = Cut::rows;
         const unsigned rank = s.rank();
         const unsigned record = s.gaussian() * record_stride;
-        const column_view<W, Real> seen(s, p.x);
+        const column_view<W, Real> seen = view_columns<W, Real>(s, p);
         real v[rows], log2_alpha[rows];
         mask_t<W> counts[rows];
         const std::uint32_t reached = rows_with<Cut>(w, [&](unsigned k) {

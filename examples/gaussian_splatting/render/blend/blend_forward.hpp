@@ -68,7 +68,7 @@ struct blend_forward {
             for (unsigned i = 0; i < staged; ++i) {
                 const staged_splat<Real>& s = stage.splats[i];
                 const value_t<W, unsigned> rank(s.rank());
-                const column_view<W, Real> seen(s, p.x);
+                const column_view<W, Real> seen = view_columns<W, Real>(s, p);
                 real log2_alpha[rows];
                 const std::uint32_t reached = rows_with<Cut>(w, [&](unsigned k) {
                     log2_alpha[k] = seen.log2_alpha(seen.v(p.y + Real(k * patch::block)));

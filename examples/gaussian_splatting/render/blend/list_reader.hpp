@@ -3,12 +3,14 @@
 #pragma once
 
 #include "../../core/bits.hpp"
+#include "../geometry/panorama.hpp"
 #include "patch.hpp"
 
 namespace gs::raster {
 
 /// A splat relative to a tile. For the pixel (x, y) of the tile, u = p x + u0 and
-/// v = q y + r x + v0: see `whitened`.
+/// v = q y + r x + v0: see `whitened`. In a panorama, u = p dx and v = q y + r dx + v0 with the
+/// `nearest_offset` dx of x + u0.
 template <class Real>
 struct alignas(16) staged_splat {
     Real p, u0, r, v0;
@@ -36,6 +38,14 @@ struct column_view {
           shear_(fma(real(s.r), x, real(s.v0))),
           q_(s.q) {}
 
+    /// In a panorama of this width.
+    WARPAGG_HD column_view(const staged_splat<Real>& s, const real& x, const real& width) : q_(s.q) {
+        const real dx = nearest_offset(x + real(s.u0), width);
+        u = real(s.p) * dx;
+        left_ = fma(-u, u, real(s.log2_opacity));
+        shear_ = fma(real(s.r), dx, real(s.v0));
+    }
+
     WARPAGG_HD real v(const real& y) const { return fma(q_, y, shear_); }
     /// Returns log2 of alpha before the cap. Explicit `fma` fixes the rounding, so that the forward
     /// and the backward pass get the same bits.
@@ -44,6 +54,15 @@ struct column_view {
   private:
     real left_, shear_, q_;
 };
+
+/// Returns what the pixels of a patch see of a splat.
+template <class W, class Real, class Patch>
+WARPAGG_HD column_view<W, Real> view_columns(const staged_splat<Real>& s, const Patch& p) {
+    if constexpr (Patch::panorama)
+        return {s, p.x, value_t<W, Real>(p.image_width)};
+    else
+        return {s, p.x};
+}
 
 /// The splats that a warp blends next, in memory that its lanes share.
 template <class W, class Real>
@@ -75,9 +94,7 @@ class list_reader {
     /// is the beginning of the block after that. Returns the number of staged splats, which keep
     /// the order of the list.
     WARPAGG_HD unsigned stage(const W& w, unsigned base, unsigned next, unsigned after) {
-        const real x0 = patch_.left - field_[0], y0 = patch_.top - field_[1];
-        const real least = least_exponent<real>(field_[2], field_[3], field_[4], field_[5], field_[6], x0,
-                                                x0 + Real(Patch::across - 1), y0, y0 + Real(Patch::down - 1));
+        const real least = least_exponent_in_patch();
         // The test of single pixels decides. The slack keeps splats that only rounding would drop.
         constexpr Real slack = Real(1) / 256;
         const mask_t<W> reaches = is_valid(w, base) && least <= field_[7] + slack;
@@ -90,9 +107,20 @@ class list_reader {
             };
             const index rank = w.lane() + (base + 1 - begin_);
             // knob: stage_splat
-            const real staged[12] = {
-                p,          p * dx,     r,          fma(q, dy, r * dx), q,      field_[8], field_[9],
-                field_[10], field_[11], bits(rank), bits(gaussian_),    real(0)};
+            const real u0 = Patch::panorama ? dx : p * dx;
+            const real v0 = Patch::panorama ? q * dy : fma(q, dy, r * dx);
+            const real staged[12] = {p,
+                                     u0,
+                                     r,
+                                     v0,
+                                     q,
+                                     field_[8],
+                                     field_[9],
+                                     field_[10],
+                                     field_[11],
+                                     bits(rank),
+                                     bits(gaussian_),
+                                     real(0)};
             const index slot = warpagg::math::popcount(lanes_below(w) & index(hits));
             w.sync();  // all lanes have read the previous splats
             w.store_packed(reinterpret_cast<Real*>(stage_.splats), slot * 12u, staged, reaches);
@@ -103,6 +131,16 @@ class list_reader {
     }
 
   private:
+    WARPAGG_HD real least_exponent_in_patch() const {
+        const real x0 = patch_.left - field_[0], y0 = patch_.top - field_[1];
+        const real x1 = x0 + Real(Patch::across - 1), y1 = y0 + Real(Patch::down - 1);
+        if constexpr (Patch::panorama)
+            return least_exponent_around<real>(field_[2], field_[3], field_[4], field_[5], field_[6], x0, x1,
+                                               y0, y1, real(patch_.image_width));
+        else
+            return least_exponent<real>(field_[2], field_[3], field_[4], field_[5], field_[6], x0, x1, y0,
+                                        y1);
+    }
     WARPAGG_HD mask_t<W> is_valid(const W& w, unsigned base) const {
         const index place = w.lane() + base;
         return place >= from_ && place < to_;

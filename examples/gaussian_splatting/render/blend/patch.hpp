@@ -20,6 +20,7 @@ struct patch {
     static constexpr unsigned across = Cut::across, rows = Cut::rows, block = W::size / across,
                               down = block * rows;
     static_assert(W::size % across == 0 && tile_size % across == 0 && tile_size % down == 0);
+    static constexpr bool panorama = Cut::panorama;
     static constexpr unsigned per_row = tile_size / across, per_tile = per_row * (tile_size / down);
 
     Real tile_left, tile_top;    ///< center of the tile's first pixel
@@ -28,10 +29,11 @@ struct patch {
     value_t<W, unsigned> pixel;  ///< its index in a plane of the image
     unsigned step;               ///< index distance of consecutive pixels of a lane
     mask_t<W> inside[rows];      ///< whether the lane's pixels are in the image
+    Real image_width;
 
     WARPAGG_HD patch(const W& w, unsigned tile, unsigned in_tile, unsigned tiles_across, int width,
                      int height)
-        : step(block * static_cast<unsigned>(width)) {
+        : step(block * static_cast<unsigned>(width)), image_width(static_cast<Real>(width)) {
         const unsigned tile_x = tile % tiles_across * tile_size, tile_y = tile / tiles_across * tile_size;
         const unsigned x0 = in_tile % per_row * across, y0 = in_tile / per_row * down;
         const value_t<W, unsigned> in_x = w.lane() % across + x0, in_y = w.lane() / across + y0;

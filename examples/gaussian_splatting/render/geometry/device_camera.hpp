@@ -17,7 +17,7 @@
 namespace gs::raster {
 
 /// Gaussians whose center has a smaller depth than this are not drawn. The depth is z for a pinhole
-/// camera, and the distance from the camera for a fisheye. In the unit of the model.
+/// camera, and the distance from the camera for other lenses. In the unit of the model.
 inline constexpr double near_plane = 0.15;
 
 /// The camera parameters that kernels read. `Real` may be a SIMD value with equal lanes.

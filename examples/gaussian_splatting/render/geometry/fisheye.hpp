@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "angles.hpp"
 #include "device_camera.hpp"
 #include "vectors.hpp"
 
 namespace gs::raster {
-
-using warpagg::math::select;
 
 /// The ratio t / sin t of an angle t with cosine u, and its derivatives with respect to u. It is
 /// computed from v = 1 - u as the sum of k! / (2k + 1)!! v^k for k <= 16, which has double
@@ -139,19 +138,9 @@ WARPAGG_HD vec3<Real> fisheye_ray(const vec2<Real>& place, const device_camera<R
             one + w * (Real(3) * k.x + w * (Real(5) * k.y + w * (Real(7) * k.z + w * (Real(9) * k.w))));
         angle = min(max(angle + (out - radius) / max(slope, constant<Real>(1e-3)), Real(0)), camera.end);
     }
-    // The series of sine and cosine at an eighth of the angle, which is at most 22 degrees. Then
-    // the angle is doubled three times.
-    const Real part = angle * constant<Real>(0.125), w = part * part;
-    const auto over = [&](double n) { return w * constant<Real>(1 / n); };
-    Real sine = part * (one - over(6) * (one - over(20) * (one - over(42) * (one - over(72)))));
-    Real cosine = one - over(2) * (one - over(12) * (one - over(30) * (one - over(56) * (one - over(90)))));
-    for (int doubling = 0; doubling < 3; ++doubling) {
-        const Real twice = Real(2) * sine * cosine;
-        cosine = one - Real(2) * sine * sine;
-        sine = twice;
-    }
-    const Real share = select(out > Real(0), sine / max(out, constant<Real>(1e-30)), one);
-    return {share * place.x, share * place.y, cosine};
+    const sine_and_cosine<Real> direction(angle);
+    const Real share = select(out > Real(0), direction.sine / max(out, constant<Real>(1e-30)), one);
+    return {share * place.x, share * place.y, direction.cosine};
 }
 
 }  // namespace gs::raster

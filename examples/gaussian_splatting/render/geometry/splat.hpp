@@ -65,4 +65,14 @@ WARPAGG_HD V least_exponent(const V& p, const V& q, const V& r, const V& dx_per_
                               whitened<V>(p, q, r, x_on, y).exponent());
 }
 
+/// Returns the same in an image of this width whose left and right border are the same place. The
+/// result may be too small if the offsets reach farther than half the width.
+template <class V>
+WARPAGG_HD V least_exponent_around(const V& p, const V& q, const V& r, const V& dx_per_dy, const V& dy_per_dx,
+                                   const V& x0, const V& x1, const V& y0, const V& y1, const V& width) {
+    const V other = warpagg::math::select(x0 + x1 > V(0), -width, width);
+    return warpagg::math::min(least_exponent(p, q, r, dx_per_dy, dy_per_dx, x0, x1, y0, y1),
+                              least_exponent(p, q, r, dx_per_dy, dy_per_dx, x0 + other, x1 + other, y0, y1));
+}
+
 }  // namespace gs::raster

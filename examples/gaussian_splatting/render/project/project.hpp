@@ -98,7 +98,7 @@ struct project {
         s.dy_per_dx = f.shape.dy_per_dx;
         const real far = warpagg::math::sqrt(s.cutoff);
         bound(far * f.shape.width, far * f.shape.height, d);
-        row.active = reaches_any_tile(w, s, d.x0, d.x1, d.y0, d.y1, row.active);
+        row.active = reaches_box(w, d, row.active);
         if (!w.any(row.active)) return;
 
         const vec3<real> rgb = color(w, row, mean);
@@ -108,20 +108,47 @@ struct project {
         s.blue = held(rgb.z);
     }
 
+    /// Returns which splats reach a tile of their boxes.
+    /// @{
+    WARPAGG_HD mask_t<W> reaches_box(const W& w, const drawing& d, const mask_t<W>& asked) const {
+        if constexpr (Effects.lens == lens_model::panorama) return reaches_box_around(w, d, asked);
+        return reaches_any_tile(w, d.shape, d.x0, d.x1, d.y0, d.y1, asked);
+    }
+    WARPAGG_HD mask_t<W> reaches_box_around(const W& w, const drawing& d, const mask_t<W>& asked) const {
+        const panorama_size size{camera.width, tiles_across};
+        return reaches_any_tile(w, d.x0, d.x1, d.y0, d.y1, asked, [&](const auto&... box) {
+            return reaches_tiles_around(d.shape, box..., size);
+        });
+    }
+    /// @}
+
+    /// Returns the tile of a pixel along an axis, from 0 to `end`.
+    static WARPAGG_HD number tile(const real& pixel, unsigned end) {
+        using namespace warpagg::math;
+        const real t = pixel * constant<real>(1.0 / tile_size);
+        return convert<std::uint32_t>(convert<int>(min(max(real(0), t), real(Real(end)))));
+    }
     /// Sets the box to all tiles that may have a pixel center within these distances of the splat's
     /// center.
     WARPAGG_HD void bound(const real& half_x, const real& half_y, drawing& d) const {
-        using namespace warpagg::math;
-        const auto tile = [](const real& pixel, unsigned end) {
-            const real t = pixel * constant<real>(1.0 / tile_size);
-            return convert<std::uint32_t>(convert<int>(min(max(real(0), t), real(Real(end)))));
-        };
         const real half = constant<real>(0.5), side = constant<real>(tile_size);
         const real x = d.shape.x - half, y = d.shape.y - half;
         d.x0 = tile(x - half_x, tiles_across);
         d.y0 = tile(y - half_y, tiles_down);
         d.x1 = tile(x + half_x + side, tiles_across);
         d.y1 = tile(y + half_y + side, tiles_down);
+        if constexpr (Effects.lens == lens_model::panorama) bound_around(x - half_x, x + half_x, d);
+    }
+    /// Sets the columns of the box to those with pixels from `first` to `last` in a panorama, each
+    /// at most once.
+    WARPAGG_HD void bound_around(const real& first, const real& last, drawing& d) const {
+        const real width = real(Real(camera.width)), side = constant<real>(tile_size);
+        const number all(tiles_across), none(0u);
+        const auto from_left = first < real(0), to_right = last >= width;
+        const auto everywhere = last - first > width - side;
+        const number end = tile(select(to_right, last - width, last) + side, tiles_across);
+        d.x0 = select(everywhere, none, tile(select(from_left, first + width, first), tiles_across));
+        d.x1 = select(everywhere, all, end + select(from_left || to_right, all, none));
     }
 
     static WARPAGG_HD real held(const real& channel) {

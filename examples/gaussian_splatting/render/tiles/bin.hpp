@@ -42,4 +42,28 @@ struct splats_by_depth {
     }
 };
 
+/// The same for a panorama.
+template <class Real>
+struct panorama_splats_by_depth {
+    splats_by_depth<Real> splats;
+    panorama_size size;
+
+    struct item : splats_by_depth<Real>::item {
+        panorama_size panorama;
+
+        WARPAGG_HD std::uint32_t bucket(std::uint32_t k) const {
+            const tile_box& b = this->box;
+            const auto down = static_cast<unsigned>((static_cast<float>(k) + 0.5f) * this->rows_a_tile);
+            const unsigned across = panorama.tiles_across, row = b.y0 + down;
+            const unsigned place = b.x0 + (k - down * (b.x1 - b.x0));
+            const unsigned column = place < across ? place : place - across;
+            return reaches_tiles_around(this->shape, column, column, row, row, panorama)
+                       ? row * across + column
+                       : device::no_bucket;
+        }
+    };
+
+    WARPAGG_HD item operator()(std::size_t rank) const { return {splats(rank), size}; }
+};
+
 }  // namespace gs::raster

@@ -14,11 +14,12 @@ namespace gs::raster {
 /// pixels of a column (see `patch`), and a segment has `Segment` places of the sorted list. The
 /// backward pass splits a long list over several warps: lists are cut where a place is a multiple
 /// of `Segment`, and the forward pass stores the state of the pixels there. `Sparse`: skips single
-/// rows of a patch that do not see a splat, at the cost of a vote and a branch each.
-template <unsigned Across, unsigned Rows, unsigned Segment, bool Sparse = false>
+/// rows of a patch that do not see a splat, at the cost of a vote and a branch each. `Panorama`:
+/// the left and the right border of the view are the same place.
+template <unsigned Across, unsigned Rows, unsigned Segment, bool Sparse = false, bool Panorama = false>
 struct cut {
     static constexpr unsigned across = Across, rows = Rows, segment = Segment;
-    static constexpr bool sparse = Sparse;
+    static constexpr bool sparse = Sparse, panorama = Panorama;
 };
 
 /// The division for the warps of a device. Source: measurements with `lab backward`.
@@ -28,11 +29,15 @@ using cut_for = std::conditional_t<W::size == 1, cut<1, 1, 128>,
                                    std::conditional_t<W::size == 8, cut<8, 16, 1024, true>, cut<8, 2, 128>>>;
 /// Returns the same division with one pixel per lane.
 template <class Cut>
-using pixel_a_lane = cut<Cut::across, 1, Cut::segment>;
+using pixel_a_lane = cut<Cut::across, 1, Cut::segment, false, Cut::panorama>;
 /// Returns the same division with lower patches, for views with too few patches to keep a device
 /// busy.
 template <class Cut>
-using lower = std::conditional_t<Cut::sparse, cut<Cut::across, 8, Cut::segment, true>, pixel_a_lane<Cut>>;
+using lower = std::conditional_t<Cut::sparse, cut<Cut::across, 8, Cut::segment, true, Cut::panorama>,
+                                 pixel_a_lane<Cut>>;
+/// Returns the same division of a panorama.
+template <class Cut>
+using panorama_cut = cut<Cut::across, Cut::rows, Cut::segment, Cut::sparse, true>;
 
 /// Returns an upper bound of segment numbers. The segment of a place in the list of tile t has the
 /// number t + place / Segment; not every number is used.
