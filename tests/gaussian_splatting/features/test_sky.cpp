@@ -31,7 +31,8 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
     for (const auto& [width, height, world] : {std::tuple{1, 1, "spheres"},
                                                {37, 19, "spheres"},
                                                {64, 8, "spheres"},
-                                               {37, 19, "spheres,fisheye=150"}}) {
+                                               {37, 19, "spheres,fisheye=150"},
+                                               {38, 19, "spheres,panorama=1"}}) {
         CAPTURE(width);
         CAPTURE(world);
         const auto pixels = static_cast<std::size_t>(width * height);

@@ -18,7 +18,8 @@
 #include "../../core/error.hpp"
 #include "../../core/parallel.hpp"
 #include "../../image/mask.hpp"
-#include "../../scene/look_at.hpp"
+#include "../size_text.hpp"
+#include "synthetic_cameras.hpp"
 #include "synthetic_parameters.hpp"
 
 namespace gs {
@@ -26,11 +27,8 @@ namespace {
 
 constexpr int native_size = 128;
 constexpr int largest_size = 2048;  // 48 images of this size take 0.8 GB
-constexpr int view_count = 48;
 constexpr int views_per_test_view = 6;
 constexpr int samples_per_side = 4;
-constexpr double field_of_view = 45 * std::numbers::pi / 180;
-constexpr double camera_distance = 3.3;
 constexpr double nearest_hit = 1e-6;
 
 using vec = glm::dvec3;
@@ -253,29 +251,6 @@ std::uint8_t to_byte(double in_unit_interval) {
     return static_cast<std::uint8_t>(std::lround(255 * in_unit_interval));
 }
 
-/// Returns the i-th camera on a spiral that turns by the golden angle. The cameras are spread
-/// evenly. Neighbors in space have distant numbers, so every n-th camera lies between others. The
-/// logarithms of the distances are uniform from `how.distance` to `how.distance * how.scales`.
-camera spiral_camera(int i, int size, const synthetic_parameters& how) {
-    const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
-    const double lowest = std::sin(12 * std::numbers::pi / 180);
-    const double highest = std::sin(76 * std::numbers::pi / 180);
-    const double height = glm::mix(lowest, highest, (i + 0.5) / view_count);
-    const double across = std::sqrt(1 - height * height);
-    const double angle = golden_angle * i;
-    const double farther = how.distance * std::pow(how.scales, std::fmod(i * std::numbers::sqrt2, 1.0));
-    const vec eye =
-        farther * camera_distance * vec{across * std::cos(angle), across * std::sin(angle), height};
-    const auto looking = [&](double radius) {
-        return look_at(eye, vec{0}, {0, 0, 1}, size, 0.5 * size / radius);
-    };
-    if (how.fisheye == 0) return looking(std::tan(0.5 * field_of_view));
-    const fisheye lens({0.02, -0.006, 0.001, -0.0001});  // similar to lenses of action cameras
-    camera c = looking(lens.radius(how.fisheye * std::numbers::pi / 360));
-    c.fisheye = lens;
-    return c;
-}
-
 /// Returns a uniform number in [0, 1). `std::uniform_real_distribution` is not used, because its
 /// results depend on the implementation.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
@@ -361,16 +336,6 @@ depth_map estimated_depths(const world& w, const camera& c, std::size_t photo) {
     return map;
 }
 
-std::vector<view> spiral_views(int size, const synthetic_parameters& how) {
-    std::vector<view> views(view_count);
-    for (int i = 0; i < view_count; ++i) {
-        view& v = views[static_cast<std::size_t>(i)];
-        v.name = "view_" + std::string(i < 10 ? "0" : "") + std::to_string(i) + ".png";
-        v.camera = spiral_camera(i, size, how);
-    }
-    return views;
-}
-
 void take_photos(const world& w, std::vector<view>& views, bool masks = true) {
     struct place {
         view* photo;
@@ -424,11 +389,13 @@ std::vector<colored_point> seen_points(const world& w, const std::vector<view>& 
     return points;
 }
 
-int size_at(int resolution) {
+/// Returns the longer side of the photos.
+int size_at(int resolution, const synthetic_parameters& how) {
     if (resolution > largest_size)
         throw error("a synthetic scene is drawn at up to " + std::to_string(largest_size) + " pixels, not " +
                     std::to_string(resolution));
-    return divides_size(resolution) ? native_size / resolution : resolution;
+    const int native = how.panorama > 0 ? 2 * native_size : native_size;
+    return divides_size(resolution) ? native / resolution : resolution;
 }
 
 image_record record_of(view made, bool held_out) {
@@ -446,8 +413,8 @@ constexpr std::string_view prefix = "synthetic:";
 scene_description describe(const load_options& options, const log_function& log) {
     const std::string name = options.data.substr(prefix.size());
     const world w = world_of(name);
-    const int size = size_at(options.resolution);
-    std::vector<view> views = spiral_views(size, w.how);
+    const int size = size_at(options.resolution, w.how);
+    std::vector<view> views = synthetic_views(size, w.how);
     take_photos(w, views, options.masks);
     if (w.how.depths >= 0 && options.depths)
         for_each_in_parallel(views.size(), [&](std::size_t i) {
@@ -455,6 +422,7 @@ scene_description describe(const load_options& options, const log_function& log)
             clear_masked_depths(views[i].pixels, views[i].depths);
         });
 
+    const camera first = views.front().camera;
     std::vector<view> train, test;
     for (std::size_t i = 0; i < views.size(); ++i) {
         // Holds out the middle of each group, because the first and the last camera have fewer
@@ -469,8 +437,8 @@ scene_description describe(const load_options& options, const log_function& log)
     result.object_centered = result.rendered = true;
     result.points = seen_points(w, train, static_cast<std::size_t>(w.how.points), options.seed);
     log("synthetic scene '" + name + "': " + std::to_string(train.size()) + " training and " +
-        std::to_string(test.size()) + " test views of " + std::to_string(size) + "x" + std::to_string(size) +
-        ", " + std::to_string(result.points.size()) + " points");
+        std::to_string(test.size()) + " test views of " + size_text(first.width, first.height) + ", " +
+        std::to_string(result.points.size()) + " points");
     for (view& v : train) result.images.push_back(record_of(std::move(v), false));
     for (view& v : test) result.images.push_back(record_of(std::move(v), true));
     return result;

@@ -18,8 +18,9 @@ namespace gs {
 ///     alpha     spheres that float in front of a transparent background
 ///
 /// There are 40 training and 8 test images, or 48 training images without `load_options::eval`.
-/// They have 128x128 pixels, divided by the resolution. The points, about 3000 by default, lie on
-/// surfaces that a training camera sees. The result does not depend on the number of threads.
+/// They have 128x128 pixels, or 256x128 as panoramas, divided by the resolution. The points, about
+/// 3000 by default, lie on surfaces that a training camera sees. The result does not depend on the
+/// number of threads.
 extern const reader synthetic_reader;
 
 /// Returns the names that may follow "synthetic:".

@@ -27,6 +27,7 @@ constexpr parameter parameters[] = {{"gloss", &synthetic_parameters::gloss, 0, 1
                                     {"passers", &synthetic_parameters::passers, 0, 0.5},
                                     {"sky", &synthetic_parameters::sky, 0, 1},
                                     {"fisheye", &synthetic_parameters::fisheye, 0, 190},
+                                    {"panorama", &synthetic_parameters::panorama, 0, 1, true},
                                     {"depths", &synthetic_parameters::depths, 0, 10},
                                     {"points", &synthetic_parameters::points, 1, 100000, true},
                                     {"views", &synthetic_parameters::views, 1, 48, true},
@@ -65,6 +66,8 @@ synthetic_parameters parse_synthetic(const std::string& text) {
                         "number from " + range + ", not '" + number + "'");
         }
     }
+    if (result.fisheye > 0 && result.panorama > 0)
+        throw error("a synthetic scene has either a 'fisheye' or a 'panorama', not both: " + text);
     return result;
 }
 

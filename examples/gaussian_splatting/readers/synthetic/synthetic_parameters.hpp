@@ -20,11 +20,13 @@ struct synthetic_parameters {
     double points = 3000;  ///< number of points, 1 to 100000
     double views = 48;     ///< largest number of training images, 1 to 48
     double fisheye = 0;    ///< degrees across a fisheye image, 0 to 190; 0 for pinhole cameras
+    double panorama = 0;   ///< 1 for panoramas, which are twice as wide as high; otherwise 0
     double noise = 0;      ///< standard deviation of the noise of colors in [0, 1], 0 to 0.5
 };
 
 /// Parses "WORLD", "WORLD,gloss=0.5,noise=0.02" and so on. Throws `error` for a parameter that is
-/// unknown, repeated or out of range. Does not check `world`.
+/// unknown, repeated or out of range, and for a fisheye lens together with panoramas. Does not check
+/// `world`.
 synthetic_parameters parse_synthetic(const std::string& text);
 
 }  // namespace gs

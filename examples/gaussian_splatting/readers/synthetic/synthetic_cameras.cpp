@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "synthetic_cameras.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <glm/common.hpp>
+#include <numbers>
+#include <string>
+
+#include "../../scene/look_at.hpp"
+
+namespace gs {
+namespace {
+
+constexpr int view_count = 48;
+constexpr double field_of_view = 45 * std::numbers::pi / 180;
+constexpr double camera_distance = 3.3;
+
+using vec = glm::dvec3;
+
+/// Returns the i-th place on a spiral that turns by the golden angle. The places are spread evenly.
+/// Neighbors in space have distant numbers, so every n-th place lies between others. The logarithms
+/// of the distances are uniform from `how.distance` to `how.distance * how.scales`.
+vec place_on_spiral(int i, const synthetic_parameters& how) {
+    const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
+    const double lowest = std::sin(12 * std::numbers::pi / 180);
+    const double highest = std::sin(76 * std::numbers::pi / 180);
+    const double height = glm::mix(lowest, highest, (i + 0.5) / view_count);
+    const double across = std::sqrt(1 - height * height);
+    const double angle = golden_angle * i;
+    const double farther = how.distance * std::pow(how.scales, std::fmod(i * std::numbers::sqrt2, 1.0));
+    return farther * camera_distance * vec{across * std::cos(angle), across * std::sin(angle), height};
+}
+
+camera spiral_camera(int i, int size, const synthetic_parameters& how) {
+    const vec eye = place_on_spiral(i, how);
+    if (how.panorama > 0) {
+        const double heading = i * std::numbers::sqrt3;
+        const vec ahead{std::cos(heading), std::sin(heading), 0};
+        const camera pose = look_at(eye, eye + ahead, {0, 0, 1}, size, size);
+        camera c = camera::panorama(size, std::max(1, size / 2));
+        c.rotation = pose.rotation;
+        c.translation = pose.translation;
+        return c;
+    }
+    const auto looking = [&](double radius) {
+        return look_at(eye, vec{0}, {0, 0, 1}, size, 0.5 * size / radius);
+    };
+    if (how.fisheye == 0) return looking(std::tan(0.5 * field_of_view));
+    const fisheye lens({0.02, -0.006, 0.001, -0.0001});  // similar to lenses of action cameras
+    camera c = looking(lens.radius(how.fisheye * std::numbers::pi / 360));
+    c.fisheye = lens;
+    return c;
+}
+
+}  // namespace
+
+std::vector<view> synthetic_views(int size, const synthetic_parameters& how) {
+    std::vector<view> views(view_count);
+    for (int i = 0; i < view_count; ++i) {
+        view& v = views[static_cast<std::size_t>(i)];
+        v.name = "view_" + std::string(i < 10 ? "0" : "") + std::to_string(i) + ".png";
+        v.camera = spiral_camera(i, size, how);
+    }
+    return views;
+}
+
+}  // namespace gs

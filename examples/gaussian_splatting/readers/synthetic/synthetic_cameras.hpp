@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "../../scene/scene.hpp"
+#include "synthetic_parameters.hpp"
+
+namespace gs {
+
+/// Returns the views of a synthetic scene without their photos, which are `size` pixels wide.
+/// The cameras lie on a spiral and look at the origin. Panoramas are level and have any heading.
+std::vector<view> synthetic_views(int size, const synthetic_parameters& how);
+
+}  // namespace gs
