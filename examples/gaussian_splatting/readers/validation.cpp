@@ -10,6 +10,7 @@
 #include <string>
 
 #include "../core/error.hpp"
+#include "size_text.hpp"
 
 namespace gs {
 namespace {
@@ -33,6 +34,15 @@ bool has_valid_intrinsics(const camera& taken_with, const lens& distortion) {
           distortion.p1, distortion.p2, distortion.k3, k[0], k[1], k[2], k[3]})
         if (!(std::abs(value) <= largest)) return false;
     return taken_with.fx >= least_focal_length && taken_with.fy >= least_focal_length;
+}
+
+camera panorama_of_size(int width, int height, const std::string& where) {
+    constexpr double tolerance = 0.02;
+    if (!(std::abs(0.5 * width / height - 1) <= tolerance))
+        throw error(where + ": a panorama of all directions is twice as wide as high, but this one has " +
+                    size_text(width, height) +
+                    " pixels; if it lacks the top or the bottom, add bars there and mask them");
+    return camera::panorama(width, height);
 }
 
 bool is_valid_position(const glm::dvec3& position) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "reader.hpp"
@@ -19,6 +20,10 @@ inline constexpr std::size_t longest_path = 4096;
 bool has_valid_intrinsics(const camera& taken_with, const lens& distortion);
 inline constexpr const char* invalid_intrinsics =
     " has a focal length that is not between 1e-6 and 1e9, or a parameter that is not finite or beyond 1e9";
+
+/// Returns the camera of a panorama at the origin. Throws `error`, which begins with `where`, unless
+/// the panorama is twice as wide as high to within 2 %.
+camera panorama_of_size(int width, int height, const std::string& where);
 
 /// Returns whether a position is finite and at most 1e30 along each axis, so that squared distances
 /// do not overflow.

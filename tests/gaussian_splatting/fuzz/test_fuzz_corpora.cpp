@@ -105,6 +105,8 @@ std::vector<dense_file> dense_files() {
          opensfm(R"("shots")", R"("":{"rotation":[0,0,0],"translation":[0,0,0],"camera":""})")},
         {"cameras", "opensfm",
          opensfm(R"("cameras")", R"("":{"projection_type":"fisheye","width":1,"height":1,"focal":1})")},
+        {"panoramas", "opensfm",
+         opensfm(R"("cameras")", R"("":{"projection_type":"spherical","width":2,"height":1})")},
         {"points in text", "point_cloud", text_points + repeated("0 0 0\n", 50000)},
         {"long texts", "transforms", unread(repeated('"' + std::string(4090, 'a') + "\",", 300) + "1]}")},
         {"a long path", "transforms", "{\"frames\":[{\"file_path\":\"" + repeated("a/", 500000)},

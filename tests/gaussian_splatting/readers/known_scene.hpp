@@ -18,11 +18,15 @@
 namespace gs_test {
 
 /// A small scene whose cameras, points and photos are known: four photos of 48x48 pixels.
-inline gs::scene known_scene() {
+inline gs::scene known_scene(const char* data = "synthetic:spheres,views=4,points=40", int width = 48) {
     gs::load_options options;
-    options.data = "synthetic:spheres,views=4,points=40";
-    options.resolution = 48;
+    options.data = data;
+    options.resolution = width;
     return gs::load_scene(options, {});
+}
+/// The same with panoramas of 96x48 pixels from among the spheres.
+inline gs::scene known_panoramas() {
+    return known_scene("synthetic:spheres,views=4,points=40,panorama=1,distance=0.5", 96);
 }
 
 inline void write_photo(const std::filesystem::path& file, const gs::image& photo) {

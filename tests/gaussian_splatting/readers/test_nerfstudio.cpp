@@ -16,6 +16,7 @@ namespace {
 using gs_test::check_points;
 using gs_test::check_views;
 using gs_test::error_of;
+using gs_test::known_panoramas;
 using gs_test::known_scene;
 using gs_test::load;
 using gs_test::options_for;
@@ -138,6 +139,26 @@ TEST_CASE("nerfstudio: intrinsics of a frame override those of the file") {
     CHECK_FALSE(doubled.fisheye);
 }
 
+TEST_CASE("nerfstudio: panoramas, for which intrinsics in the file do not count") {
+    const temporary_folder folder;
+    const gs::scene known = known_panoramas();
+    json file = write_scene(folder.path(), known);
+    file["camera_model"] = "EQUIRECTANGULAR";
+    file.update({{"k1", 0.3}, {"k4", 0.1}});
+    for (const char* name : {"fl_x", "fl_y", "cx"}) file["frames"][0].erase(name);
+    for (const char* name : {"w", "h"}) file["frames"][1].erase(name);
+    file["frames"][2].update({{"w", 2000}, {"h", 1000}});  // the photo is a smaller copy
+    write_file(folder / "transforms.json", file.dump());
+    const gs::scene read = load(folder.path());
+    check_views(read, known);
+    check_points(read, known);
+    for (const gs::view& v : read.train) CHECK(v.camera.is_panorama);
+    file["frames"][3]["camera_model"] = "PINHOLE";
+    for (const char* name : {"k1", "k4"}) file.erase(name);
+    write_file(folder / "transforms.json", file.dump());
+    CHECK_FALSE(load(folder.path()).train[3].camera.is_panorama);
+}
+
 TEST_CASE("nerfstudio: a third radial coefficient is removed from the photos") {
     const temporary_folder folder;
     json file = write_scene(folder.path(), known_scene());
@@ -207,8 +228,8 @@ TEST_CASE("nerfstudio: files that cannot be used") {
     CHECK(error_with([](json& f) { f["ply_file_path"] = nullptr; }).empty());
     CHECK(says(error_with([](json& f) { f["frames"][1]["depth_file_path"] = false; }),
                {"frame 1", "depth_file_path is not a string"}));
-    CHECK(says(error_with([](json& f) { f["camera_model"] = "EQUIRECTANGULAR"; }),
-               {"transforms.json", "EQUIRECTANGULAR", "not supported"}));
+    CHECK(says(error_with([](json& f) { f["frames"][1]["camera_model"] = "EQUIRECTANGULAR"; }),
+               {"transforms.json", "frame 1", "panorama", "twice as wide as high", "48x48"}));
     CHECK(says(error_with([](json& f) { f["frames"][1]["camera_model"] = "FISHEYE624"; }),
                {"frame 1", "FISHEYE624", "unknown"}));
 }

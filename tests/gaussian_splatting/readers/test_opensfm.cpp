@@ -14,6 +14,7 @@ namespace {
 using gs_test::check_points;
 using gs_test::check_views;
 using gs_test::error_of;
+using gs_test::known_panoramas;
 using gs_test::known_scene;
 using gs_test::load;
 using gs_test::options_for;
@@ -149,6 +150,23 @@ TEST_CASE("opensfm: each projection gives its camera") {
     }
 }
 
+TEST_CASE("opensfm: panoramas need no focal length") {
+    const temporary_folder folder;
+    const gs::scene known = known_panoramas();
+    for (const char* projection : {"spherical", "equirectangular"}) {
+        CAPTURE(projection);
+        json file = reconstruction_of(known);
+        file["cameras"].front() = {{"projection_type", projection},
+                                   {"width", known.train[0].camera.width},
+                                   {"height", known.train[0].camera.height}};
+        write_json(folder / "reconstruction.json", json::array({file}));
+        write_photos(folder / "images", known);
+        const gs::scene read = load(folder.path());
+        CHECK(read.train[0].camera.is_panorama);
+        check_views(read, known);
+    }
+}
+
 TEST_CASE("opensfm: masks and depth maps lie beside the photos") {
     const temporary_folder folder;
     const gs::scene known = known_scene();
@@ -203,7 +221,8 @@ TEST_CASE("opensfm: malformed reconstructions are refused") {
     CHECK(says(error_of_shot("rotation", {1e9, 0, 0}), {"rotation", "1e6"}));
     CHECK(says(error_of_shot("translation", {{"x", 1}}), {"translation", "three finite numbers"}));
     CHECK(says(error_of_shot("translation", {1e200, 0, 0}), {"translation", "1e30"}));
-    CHECK(says(error_of_camera("projection_type", "spherical"), {"spherical", "360-degree"}));
+    CHECK(says(error_of_camera("projection_type", "spherical"),
+               {"camera v2 unknown", "panorama", "twice as wide as high", "48x48"}));
     CHECK(says(error_of_camera("projection_type", "dual"), {"dual is unknown", "fisheye_opencv"}));
     CHECK(says(error_of_camera("width", 0.5), {"width is 0.5", "whole number"}));
     CHECK(says(error_of_camera("height", 1e9), {"height is 1", "whole number"}));

@@ -170,7 +170,7 @@ TEST_CASE("a camera model in a transforms file is that of its frame, or of all")
     CHECK(says(error_of_loading(folder.path()), {"train_0.png", "folds", "4 degrees"}));
     file["frames"][1]["camera_model"] = "EQUIRECTANGULAR";
     write_json(folder / "transforms_train.json", file);
-    CHECK(says(error_of_loading(folder.path()), {"frame 1", "EQUIRECTANGULAR", "pinhole images"}));
+    CHECK(says(error_of_loading(folder.path()), {"frame 1", "panorama", "twice as wide as high"}));
     file["camera_model"] = 5;
     write_json(folder / "transforms_train.json", file);
     CHECK(says(error_of_loading(folder.path()), {"camera_model is not a string"}));

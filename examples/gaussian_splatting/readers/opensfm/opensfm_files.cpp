@@ -19,14 +19,17 @@ namespace gs {
 namespace {
 
 constexpr opensfm_projection projections[] = {
-    {"perspective", false, false}, {"simple_radial", true, false}, {"radial", true, false},
-    {"brown", true, false},        {"fisheye", false, true},       {"fisheye_opencv", true, true},
+    {"perspective", false},
+    {"simple_radial", true},
+    {"radial", true},
+    {"brown", true},
+    {"fisheye", false, lens_model::fisheye},
+    {"fisheye_opencv", true, lens_model::fisheye},
+    {"spherical", false, lens_model::panorama},
+    {"equirectangular", false, lens_model::panorama},
 };
 
 const opensfm_projection& projection_called(const std::string& name, const std::string& where) {
-    if (name == "spherical" || name == "equirectangular")
-        throw error(where + " has the projection_type " + name +
-                    ": 360-degree photos are not supported; convert them to perspective photos first");
     const auto found = std::ranges::find(projections, name, &opensfm_projection::name);
     if (found != std::end(projections)) return *found;
     std::vector<std::string_view> names;
@@ -41,6 +44,10 @@ opensfm_camera camera_from(const opensfm_record& record, const std::string& id) 
     c.projection = &projection_called(record.text("projection_type"), record.where());
     c.width = record.side("width");
     c.height = record.side("height");
+    if (c.projection->lens == lens_model::panorama) {
+        panorama_of_size(c.width, c.height, record.where());
+        return c;
+    }
     const bool two = c.projection->two_focal_lengths;
     c.focal_x = record.number(two ? "focal_x" : "focal");
     c.focal_y = record.number(two ? "focal_y" : "focal");
@@ -160,6 +167,7 @@ class collector final : public json_events {
 }  // namespace
 
 camera opensfm_camera::camera() const {
+    if (projection->lens == lens_model::panorama) return gs::camera::panorama(width, height);
     const double longer = std::max(width, height);
     gs::camera c{width,
                  height,
@@ -167,12 +175,12 @@ camera opensfm_camera::camera() const {
                  longer * focal_y,
                  longer * c_x + 0.5 * width,
                  longer * c_y + 0.5 * height};
-    if (projection->is_fisheye) c.fisheye = fisheye(k);
+    if (projection->lens == lens_model::fisheye) c.fisheye = fisheye(k);
     return c;
 }
 
 lens opensfm_camera::distortion() const {
-    return projection->is_fisheye ? lens{} : lens{k[0], k[1], p1, p2, k[2]};
+    return projection->lens == lens_model::pinhole ? lens{k[0], k[1], p1, p2, k[2]} : lens{};
 }
 
 const opensfm_camera* opensfm_reconstruction::find_camera(const opensfm_shot& shot) const {

@@ -18,7 +18,7 @@ namespace gs {
 struct opensfm_projection {
     std::string_view name;
     bool two_focal_lengths;  ///< focal_x, focal_y, c_x and c_y instead of focal
-    bool is_fisheye;
+    lens_model lens = lens_model::pinhole;
 };
 
 /// A camera. Lengths are relative to the longer side of the image.

@@ -40,9 +40,7 @@ class number_fields {
 
 transforms_lens lens_called(const std::string* name, const std::string& where) {
     if (!name) throw error(where + ": camera_model is not a string");
-    if (*name == "EQUIRECTANGULAR")
-        throw error(where + ": the camera model EQUIRECTANGULAR, of 360-degree photos, is not supported; " +
-                    "convert the photos to pinhole images first");
+    if (*name == "EQUIRECTANGULAR") return transforms_lens::panorama;  // nerfstudio's name
     return camera_model_named(*name, where).is_fisheye ? transforms_lens::fisheye : transforms_lens::opencv;
 }
 
@@ -209,9 +207,9 @@ std::optional<double> transforms::number(std::size_t index, transforms_number wh
     return value;
 }
 
-bool transforms::is_fisheye(std::size_t index) const {
+transforms_lens transforms::lens_of(std::size_t index) const {
     const transforms_lens own = frames[index].lens;
-    return (own == transforms_lens::unset ? lens : own) == transforms_lens::fisheye;
+    return own == transforms_lens::unset ? lens : own;
 }
 
 transforms read_transforms(const std::filesystem::path& file) {

@@ -23,8 +23,8 @@ inline constexpr std::array<std::string_view, 13> transforms_number_names = {
     "camera_angle_x", "fl_x", "fl_y", "cx", "cy", "w", "h", "k1", "k2", "k3", "k4", "p1", "p2"};
 
 /// The `camera_model` of a frame or of the whole file: OpenCV's model without k3 and k4, which
-/// includes pinhole cameras, or OpenCV's fisheye model.
-enum class transforms_lens { unset, opencv, fisheye };
+/// includes pinhole cameras, OpenCV's fisheye model, or a panorama.
+enum class transforms_lens { unset, opencv, fisheye, panorama };
 
 /// A number in the file, or NaN for a value of another type.
 struct number_field {
@@ -59,7 +59,8 @@ struct transforms {
     /// Returns the number of a frame, the file's number if the frame has none, or nothing if
     /// neither has one. Throws `error` with the frame if the value is not a number.
     std::optional<double> number(std::size_t index, transforms_number which) const;
-    bool is_fisheye(std::size_t index) const;
+    /// Returns the lens of a frame; `unset` if neither the frame nor the file has one.
+    transforms_lens lens_of(std::size_t index) const;
 };
 
 /// Reads a transforms file without opening photos. Throws `error` with the file, and the line or

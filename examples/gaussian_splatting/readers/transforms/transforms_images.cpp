@@ -58,31 +58,36 @@ double focal_length(const transforms& all, std::size_t index, int width) {
     return 0.5 * width / std::tan(0.5 * *angle);
 }
 
-void set_intrinsics(image_record& record, const transforms& all, std::size_t index) {
-    camera& taken_with = record.camera;
+/// Returns the camera of a frame at the origin. Sets the other intrinsics of the record.
+camera camera_of(image_record& record, const transforms& all, std::size_t index) {
+    const transforms_lens lens = all.lens_of(index);
     const auto number = [&](transforms_number which) { return all.number(index, which); };
     int photo_width = 0, photo_height = 0;
     read_image_size(record.file, photo_width, photo_height);
+    camera taken_with;
     taken_with.width = side(all, index, w, photo_width);
     taken_with.height = side(all, index, h, photo_height);
+    if (lens == transforms_lens::panorama)
+        return panorama_of_size(taken_with.width, taken_with.height, all.where_is(index));
     const auto said = number(fl_x);
     taken_with.fx = said ? *said : focal_length(all, index, taken_with.width);
     taken_with.fy = number(fl_y).value_or(taken_with.fx);
     taken_with.cx = number(cx).value_or(0.5 * taken_with.width);
     taken_with.cy = number(cy).value_or(0.5 * taken_with.height);
     const auto coefficient = [&](transforms_number which) { return number(which).value_or(0); };
-    if (all.is_fisheye(index))
+    if (lens == transforms_lens::fisheye)
         taken_with.fisheye = fisheye({coefficient(k1), coefficient(k2), coefficient(k3), coefficient(k4)});
     else
         record.distortion = {coefficient(k1), coefficient(k2), coefficient(p1), coefficient(p2),
                              coefficient(k3)};
-    record.camera_model = all.is_fisheye(index) ? "OPENCV_FISHEYE" : "OPENCV";
+    record.camera_model = "OPENCV";
     if (!taken_with.fisheye && coefficient(k4) != 0)
         throw error(all.where_is(index) + ": k4 is " + std::to_string(coefficient(k4)) +
                     ", but only fisheye lenses have a fourth radial coefficient; set k4 to 0, or "
                     "camera_model to OPENCV_FISHEYE");
     if (!has_valid_intrinsics(taken_with, record.distortion))
         throw error(all.where_is(index) + invalid_intrinsics);
+    return taken_with;
 }
 
 /// Returns a file that the frame names besides the photo, or an empty path if it names none.
@@ -104,12 +109,12 @@ image_record record_of(const std::filesystem::path& data, const transforms& all,
     record.name = record.file.lexically_relative(data).lexically_normal().generic_string();
     // The path of a frame may be absolute although the path of the scene is relative.
     if (record.name.empty()) record.name = record.file.generic_string();
+    record.camera = camera_of(record, all, index);
     record.camera.rotation = all.frames[index].rotation;
     record.camera.translation = all.frames[index].translation;
     if (options.masks) record.mask = find_extra(data, all, index, &transforms_extras::mask, "mask");
     if (options.depths) record.depth = find_extra(data, all, index, &transforms_extras::depth, "depth map");
     record.depth_holds = depth_values::depth;
-    set_intrinsics(record, all, index);
     return record;
 }
 
