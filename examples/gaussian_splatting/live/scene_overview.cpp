@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "../scene/perspective.hpp"
+
 namespace gs::live {
 namespace {
 
@@ -17,7 +19,7 @@ json json_of(const camera& c) {
     return {{"position", json_of(c.center())},
             {"forward", json_of(axes[2])},
             {"up", json_of(-axes[1])},
-            {"field_of_view", 2 * std::atan(0.5 * c.height / c.fy)}};
+            {"field_of_view", 2 * std::atan(0.5 * c.height / perspective_of(c).fy)}};
 }
 
 }  // namespace

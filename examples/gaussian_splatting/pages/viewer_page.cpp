@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "../scene/perspective.hpp"
 #include "base64.hpp"
 #include "page_text.hpp"
 
@@ -24,7 +25,8 @@ constexpr std::string_view before_part = "<script type=\"text/plain\" class=\"sp
 
 ordered_json json_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-ordered_json json_of(const camera& view) {
+ordered_json json_of(const camera& taken_with) {
+    const camera view = perspective_of(taken_with);
     const glm::dmat3 axes = glm::transpose(view.rotation);  // its columns are the rows of the rotation
     return {{"width", view.width},
             {"height", view.height},

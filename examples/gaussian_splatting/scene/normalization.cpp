@@ -63,6 +63,7 @@ double scene::extent() const {
 
 std::optional<glm::dvec3> scene::looked_at() const {
     if (train.empty()) return std::nullopt;
+    if (std::ranges::any_of(train, [](const view& v) { return v.camera.is_panorama; })) return std::nullopt;
     // Uses positions relative to the cameras, so that a distant origin costs no precision.
     const glm::dvec3 mean = mean_of_cameras(*this), origin = normalization.to_internal(glm::dvec3(0)) - mean;
     constexpr double pull = 1e-10;  // above rounding, below the effect of axes 0.01 degrees apart

@@ -11,6 +11,7 @@
 
 #include "../core/median.hpp"
 #include "look_at.hpp"
+#include "perspective.hpp"
 
 namespace gs {
 namespace {
@@ -73,7 +74,7 @@ orbit orbit_of(const scene& scene) {
     o.ahead = horizontal(scene.train.front().camera.center() - o.center, o.up);
     o.height = median(heights);
     o.radius = std::max(median(radii), least_radius);
-    o.field_of_view = field_of_view_of(scene.train.front().camera);
+    o.field_of_view = field_of_view_of(perspective_of(scene.train.front().camera));
     return o;
 }
 

@@ -67,7 +67,8 @@ struct scene {
     /// Returns the point nearest to the optical axes of the training cameras, by least squares. The
     /// axes may leave directions undetermined (a single camera, parallel axes). In these directions
     /// the point is nearest to the world origin, where scenes without points have their object.
-    /// Returns nothing if the point is not in front of at least half of the cameras.
+    /// Returns nothing if the point is not in front of at least half of the cameras, or if there are
+    /// panoramas, which look everywhere.
     std::optional<glm::dvec3> looked_at() const;
 };
 

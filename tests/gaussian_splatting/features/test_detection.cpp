@@ -82,6 +82,17 @@ TEST_CASE("long: detection recommends the effects that a scene was made with, an
     }
 }
 
+TEST_CASE("lenses are reported: fisheye lenses, panoramas, or both") {
+    gs::scene scene = made("spheres,panorama=1,views=3");
+    const finding all = analyzed("lens", scene);
+    CHECK(all.recommended == true);
+    CHECK(all.choice == "panorama");
+    CHECK(all.evidence == "3 of 3 photos are panoramas");
+    scene.train[0].camera = made("spheres,fisheye=60,views=1").train[0].camera;
+    CHECK(analyzed("lens", scene).choice == "fisheye and panorama");
+    CHECK(analyzed("lens", scene).evidence.ends_with(", and 2 of 3 photos are panoramas"));
+}
+
 TEST_CASE("a sky is what it was made of, and begins from that") {
     const gs::scene scene = made("spheres,sky=0.8");
     const sky_fit found = fit_sky(scene, {});

@@ -6,7 +6,8 @@
 
 namespace gs::features {
 
-/// Fisheye lenses, which the renderer simulates. The cameras determine which views have one.
+/// Fisheye lenses and panoramas, which the renderer simulates. The cameras determine which views
+/// have which lens.
 class lens_feature final : public feature {
   public:
     std::string_view name() const override { return "lens"; }
