@@ -15,6 +15,7 @@
 #include <string>
 #include <warpagg/warp/concept.hpp>
 
+#include "../ranks/communicator.hpp"
 #include "distribute.hpp"
 #include "stages.hpp"
 
@@ -104,6 +105,12 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 ///   `[ranges[b].begin, ranges[b].end)` of `listed`; buckets follow one another. Writes the length
 ///   of all lists together to `*required`. Drops entries beyond `capacity`.
 ///
+/// Ranks: processes that train one model together, with a device each
+/// - `join(ranks)`: makes the device one of these. At first it is the only one.
+/// - `ranks()`: the ranks, for values on the host.
+/// - `sum_over_ranks(p, n)`: gives all ranks the sums of n values in device memory: see
+///   `ranks::communicator::sum`.
+///
 /// Times of an iteration's stages
 /// - `begin(stage)`: marks where a stage begins.
 /// - `end_iteration()`: marks where the iteration ends; `iteration` calls it.
@@ -116,7 +123,8 @@ concept device = std::default_initializable<D> && warpagg::warp<typename D::warp
 float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, std::uint32_t* listed,
                    archetype::range* ranges, std::uint64_t* required,
                    typename D::template buffer<std::uint32_t> numbers,
-                   typename D::template buffer<std::uint64_t> sums, typename D::transfer& transfer) {
+                   typename D::template buffer<std::uint64_t> sums, typename D::transfer& transfer,
+                   ranks::communicator& ranks) {
     { c.name() } -> std::same_as<std::string>;
     { c.resident_warps() } -> std::same_as<std::size_t>;
     d.for_each_index(n, archetype::index_kernel{});
@@ -136,6 +144,9 @@ float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, s
     d.sort_pairs(numbers, numbers, n);
     d.distribute(n, archetype::item_list{}, n, std::uint64_t{}, listed, ranges, required);
     d.iteration(graph_key{}, archetype::host_work{});
+    d.join(ranks);
+    { d.ranks() } -> std::same_as<ranks::communicator&>;
+    d.sum_over_ranks(p, n);
     d.begin(stage::project);
     d.pause_times(true);
     d.sample_times(1);

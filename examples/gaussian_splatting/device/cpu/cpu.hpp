@@ -218,10 +218,21 @@ class basic_cpu {
         }
     }
 
+    /// With several ranks, steps depend on what other ranks did, and no graph can be captured.
     template <class F>
     void iteration(const graph_key& key, const F& f) {
-        key_check_.iteration(key, f);
+        if (ranks_->count() > 1)
+            f();
+        else
+            key_check_.iteration(key, f);
         end_iteration();
+    }
+
+    void join(gs::ranks::communicator& ranks) { ranks_ = &ranks; }
+    gs::ranks::communicator& ranks() { return *ranks_; }
+    template <class T>
+    void sum_over_ranks(T* p, std::size_t n) {
+        ranks_->sum(p, n);
     }
 
     void sample_times(int every) {
@@ -295,6 +306,8 @@ class basic_cpu {
         });
     }
 
+    gs::ranks::communicator alone_;
+    gs::ranks::communicator* ranks_ = &alone_;
     buffer<std::uint32_t> other_keys_, other_values_;
     std::vector<std::size_t> histograms_, starts_;
     // Memory of `distribute`.

@@ -207,6 +207,14 @@ class cuda {
         end_iteration();
     }
 
+    /// A GPU trains alone.
+    void join(const gs::ranks::communicator& ranks) {
+        if (ranks.count() > 1) throw error("several ranks train on the CPU only: give --device cpu");
+    }
+    gs::ranks::communicator& ranks() { return alone_; }
+    template <class T>
+    void sum_over_ranks(T*, std::size_t) {}
+
     void sample_times(int every) { times_.sample(every); }
     void pause_times(bool paused) { times_.pause(paused); }
     void begin(stage s) { times_.begin(s); }
@@ -267,6 +275,7 @@ class cuda {
         check(scan(scratch_.data(), bytes));
     }
 
+    gs::ranks::communicator alone_;
     cuda_pool pool_;
     owned_stream stream_, upload_stream_;
     transfer launched_;  ///< marks the launches before an upload
