@@ -8,6 +8,7 @@
 /// template parameter, and add it to the list in losses.hpp.
 
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "../metrics/target_image.hpp"
@@ -45,7 +46,15 @@ class loss {
     /// planes, red, green and blue, of the target's size. The result is valid until the next call.
     /// Also adds the loss and the square error to `sums()`, unless `capacity.exceeded()`: the
     /// render is then incomplete, and the step is skipped.
+    ///
+    /// With several ranks, only the target's `compared_rows` of the result are used, and only they may
+    /// be added to the sums. The render has these rows and `reach()` more on both sides; its other
+    /// rows are undefined. Means are still over all pixels of the target.
     virtual const Real* gradient(const Real* render, const raster::list_capacity& capacity) = 0;
+
+    /// Returns by how many rows a value of the render can be away from the values of the gradient that
+    /// depend on it. The default is right for any loss; smaller numbers let ranks blend fewer rows.
+    virtual int reach() const { return std::numeric_limits<int>::max(); }
 
     /// Returns the largest magnitude of one value of the gradient for the current target, up to a
     /// small factor: for a mean over n pixels of a function with slope s, about s / n. In
@@ -55,8 +64,9 @@ class loss {
     virtual float gradient_scale() const = 0;
 
     /// Returns the running sums from which `take` computes its means. Training stops with an error
-    /// if one of them is not finite.
-    virtual std::span<const double> sums() const = 0;
+    /// if one of them is not finite. With several ranks, the engine adds those of all ranks before it
+    /// calls `take`.
+    virtual std::span<double> sums() const = 0;
 
     /// Returns the means over the renders since the last call, and sets the sums to zero. Waits for
     /// the device.

@@ -38,14 +38,15 @@ struct comparison_maps {
 
 /// First pass: writes the sum and the difference of the render and of the target on its background.
 /// The SSIM is simplest in terms of these two. They are zero at masked pixels. Also writes zeros to
-/// the frames of all maps and to the values after their end. One warp per `W::size` consecutive
-/// values of a line.
+/// the frames of all maps and to the values after their end. Skips rows on which the gradient in the
+/// `own` rows does not depend. One warp per `W::size` consecutive values of a line.
 template <class Real, bool Masked>
 struct sum_and_difference {
     const std::uint32_t* target;  ///< premultiplied RGBA bytes
     const Real* render;
     glm::vec<3, Real> background;
     comparison_maps<Real> maps;
+    row_range own;
 
     template <class W>
     static std::size_t count(const framed_planes& planes) {
@@ -71,6 +72,8 @@ struct sum_and_difference {
             for (Real* map : derivatives) w.store_row(map, to, zero, true);
             return;
         }
+        const row_range read = own.grown(2 * ssim_window<Real>::radius, planes.height);
+        if (row < read.first || row >= read.last) return;
         const mask_t<W> inside = w.lane() < static_cast<unsigned>(planes.width - left);
         if (w.any(!inside)) {
             for (Real* map : derivatives) w.store_row(map, to, zero, !inside);
@@ -88,17 +91,22 @@ struct sum_and_difference {
     }
 };
 
-/// Second pass: computes the SSIM at each pixel and the coefficients of its derivative. Adds to
-/// `totals` unless the tile lists of the view did not fit. Masked pixels do not count. One warp per
-/// strip.
+/// Second pass: computes the SSIM at each pixel and the coefficients of its derivative, for the `own`
+/// rows and those that the gradient there depends on. Adds its own rows to `totals` unless the tile
+/// lists of the view did not fit. Masked pixels do not count. One warp per strip of `strip_rows`.
 template <class Real, bool Masked>
 struct ssim_compare {
     const std::uint32_t* target;
     comparison_maps<Real> maps;
     ssim_window<Real> window;
+    row_range own;
     int rows;                        ///< rows per strip
     double* totals;                  ///< one sum per `comparison_total`
     raster::list_capacity capacity;  // knob: ssim_capacity
+
+    static WARPAGG_HD row_range strip_rows(const row_range& own, int height) {
+        return own.grown(ssim_window<Real>::radius, height);
+    }
 
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
@@ -106,12 +114,13 @@ struct ssim_compare {
         using real = value_t<W, Real>;
         constexpr int radius = ssim_window<Real>::radius, size = ssim_window<Real>::size;
         const framed_planes& planes = maps.planes;
-        const ssim_strip<W> strip(w, index, planes.width, planes.height, rows);
+        const ssim_strip<W> strip(w, index, planes.width, strip_rows(own, planes.height), rows);
         // knob: ssim_moments
         moments<real> sums[size], differences[size];  // of the windows that contain the current row
         WARPAGG_UNROLL
         for (int k = 0; k < size; ++k) sums[k] = differences[k] = {real(0), real(0)};
         real absolute(0), square(0), ssim(0);
+        int rows_of_totals = 0;
         [[maybe_unused]] real excluded(0);
         std::ptrdiff_t at = planes.at(strip.channel, strip.first - radius) + strip.left;
         for (int below = strip.first - radius; below < strip.last + radius; ++below, at += planes.pitch()) {
@@ -128,6 +137,8 @@ struct ssim_compare {
             w.store_row(maps.by_sum, pixel, terms.by_sum, strip.inside);
             w.store_row(maps.by_difference, pixel, terms.by_difference, strip.inside);
 
+            if (below - radius < own.first || below - radius >= own.last) continue;
+            ++rows_of_totals;
             const real error = w.load_row(maps.difference, pixel, strip.inside);
             absolute += warpagg::math::max(error, -error);
             square = fma(error, error, square);
@@ -137,7 +148,7 @@ struct ssim_compare {
         }
         if (capacity.exceeded()) return;
         using warpagg::math::convert;
-        value_t<W, double> values(static_cast<double>(strip.last - strip.first));
+        value_t<W, double> values(static_cast<double>(rows_of_totals));
         if constexpr (Masked) values = values - convert<double>(excluded);
         const value_t<W, double> found[comparison_total_count] = {
             convert<double>(absolute), convert<double>(square), convert<double>(ssim), values};

@@ -29,7 +29,7 @@ class comparison_totals {
     }
 
     double* data() { return sums_.data(); }
-    std::span<const double> sums() const { return {sums_.data(), sums_.size()}; }
+    std::span<double> sums() const { return {sums_.data(), sums_.size()}; }
 
     /// Returns the means since the last call, and sets the totals to zero. Waits for the device.
     image_quality take() {

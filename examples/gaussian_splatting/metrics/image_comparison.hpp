@@ -36,15 +36,15 @@ class image_comparison {
         maps_ = comparison_maps<Real>::in(memory_.data(), planes);
     }
 
-    /// Compares a render, three planes on the device, with the target. Adds the result to the
-    /// totals unless the tile lists of the view did not fit. Masked pixels do not count.
+    /// Compares the target's `compared_rows` of a render, three planes on the device. Adds the result
+    /// to the totals unless the tile lists of the view did not fit. Masked pixels do not count.
     void compare(const Real* render, const raster::list_capacity& capacity = {}) {  // knob: compare_image
         // knob: compare_masked
         target_.masked ? compare_with<true>(render, capacity) : compare_with<false>(render, capacity);
     }
 
     /// Returns the totals since the last `take`, on the device: one sum per `comparison_total`.
-    std::span<const double> totals() const { return totals_.sums(); }
+    std::span<double> totals() const { return totals_.sums(); }
     /// Returns the means over all renders since the last call, and sets the totals to zero. Waits
     /// for the device.
     image_quality take() { return totals_.take(); }
@@ -55,25 +55,30 @@ class image_comparison {
     const ssim_window<Real>& window() const { return window_; }
     const std::uint32_t* target() const { return reinterpret_cast<const std::uint32_t*>(target_.rgba); }
     bool is_masked() const { return target_.masked; }
+    row_range compared_rows() const { return target_.compared_rows(); }
     /// @}
 
-    /// The number of rows per `ssim_strip` and the number of strips. They are chosen to keep the
-    /// device busy.
+    /// The number of rows per `ssim_strip`, which is chosen to keep the device busy, and the number of
+    /// strips that cover some rows.
     /// @{
-    int rows() const { return strip::rows_for(target_.width, target_.height, device_.resident_warps() / 4); }
-    std::size_t strips() const { return strip::count(target_.width, target_.height, rows()); }
+    int rows() const {
+        return strip::rows_for(target_.width, compared_rows().count(), device_.resident_warps() / 4);
+    }
+    std::size_t strips(const row_range& within) const { return strip::count(target_.width, within, rows()); }
     /// @}
 
   private:
     template <bool Masked>
     void compare_with(const Real* render, const raster::list_capacity& capacity) {  // knob: compare_with
         using first_pass = sum_and_difference<Real, Masked>;
+        using second_pass = ssim_compare<Real, Masked>;
         const auto& [red, green, blue] = target_.background;
+        const row_range own = compared_rows();
         device_.for_each_warp(first_pass::template count<typename Device::warp>(maps_.planes),
-                              first_pass{target(), render, {red, green, blue}, maps_});
-        device_.for_each_warp(
-            // knob: ssim_compare
-            strips(), ssim_compare<Real, Masked>{target(), maps_, window_, rows(), totals_.data(), capacity});
+                              first_pass{target(), render, {red, green, blue}, maps_, own});
+        device_.for_each_warp(strips(second_pass::strip_rows(own, target_.height)),
+                              // knob: ssim_compare
+                              second_pass{target(), maps_, window_, own, rows(), totals_.data(), capacity});
     }
 
     Device& device_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "../render/geometry/row_range.hpp"
 #include "ssim_window.hpp"
 
 namespace gs::train {
@@ -31,7 +32,8 @@ struct framed_planes {
     std::size_t size() const { return static_cast<std::size_t>(lines() * pitch() + alignment); }
 };
 
-/// The part of an image that one warp processes: some columns and rows of one channel.
+/// The part of an image that one warp processes: some columns and rows of one channel. The strips
+/// cover the `within` rows of the image.
 template <class W, int Columns = static_cast<int>(W::size)>
 struct ssim_strip {
     int channel, left, first, last;  ///< the rows are [first, last)
@@ -44,16 +46,16 @@ struct ssim_strip {
         const auto chunks = static_cast<int>(std::max<std::size_t>(wanted / (3 * across(width)), 1));
         return std::max(least, (height + chunks - 1) / chunks);
     }
-    static std::size_t count(int width, int height, int rows) {
-        return 3 * across(width) * static_cast<std::size_t>((height + rows - 1) / rows);
+    static std::size_t count(int width, const row_range& within, int rows) {
+        return 3 * across(width) * static_cast<std::size_t>((within.count() + rows - 1) / rows);
     }
 
-    WARPAGG_HD ssim_strip(const W& w, unsigned index, int width, int height, int rows) {
-        const auto chunks = static_cast<unsigned>((height + rows - 1) / rows);
+    WARPAGG_HD ssim_strip(const W& w, unsigned index, int width, const row_range& within, int rows) {
+        const auto chunks = static_cast<unsigned>((within.last - within.first + rows - 1) / rows);
         const auto columns = static_cast<unsigned>(across(width));
         left = static_cast<int>(index % columns) * Columns;
-        first = static_cast<int>(index / columns % chunks) * rows;
-        last = first + rows < height ? first + rows : height;
+        first = within.first + static_cast<int>(index / columns % chunks) * rows;
+        last = first + rows < within.last ? first + rows : within.last;
         channel = static_cast<int>(index / columns / chunks);
         inside = w.lane() < static_cast<unsigned>(width - left);
     }

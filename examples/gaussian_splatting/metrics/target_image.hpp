@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "../render/geometry/row_range.hpp"
+
 namespace gs::train {
 
 /// A photo on the device, with which renders are compared.
@@ -15,6 +17,9 @@ struct target_image {
     int width = 0, height = 0;
     std::array<float, 3> background{};  ///< color behind transparent pixels
     bool masked = false;                ///< whether pixels are masked: see image/masked_pixel.hpp
+    row_range rows{};                   ///< the rows that are compared
+
+    row_range compared_rows() const { return rows.within(height); }
 };
 
 }  // namespace gs::train

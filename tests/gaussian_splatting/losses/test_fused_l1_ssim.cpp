@@ -73,12 +73,13 @@ std::vector<Real> gradient_by_rows(const image_pair<Real>& images, int rows) {
                    images.height,
                    {Real(0.25), Real(1), Real(0.5)},
                    gs::train::ssim_window<Real>::make(),
+                   {0, images.height},
                    rows,
                    static_cast<Real>(gs::train::l1_ssim_weight),
                    gradient.data(),
                    totals,
                    {}};
-    device.for_each_warp(strip::count(images.width, images.height, rows), k);
+    device.for_each_warp(strip::count(images.width, {0, images.height}, rows), k);
     return gradient;
 }
 

@@ -73,7 +73,7 @@ class scaled final : public gs::train::loss<float> {
         return gradient_.data();
     }
     float gradient_scale() const override { return std::ldexp(loss_.gradient_scale(), Declared); }
-    std::span<const double> sums() const override { return loss_.sums(); }
+    std::span<double> sums() const override { return loss_.sums(); }
     gs::train::loss_report take() override {
         gs::train::loss_report mean = loss_.take();
         mean.loss = std::ldexp(mean.loss, Exponent);

@@ -15,7 +15,8 @@ namespace gs::train {
 
 /// Computes the gradient of `l1_ssim` and adds to its totals in one pass without intermediate maps.
 /// The results are those of `sum_and_difference`, `ssim_compare` and `l1_ssim_gradient`, except for
-/// the rounding of the totals, and of products and sums that a compiler contracts. One warp per strip.
+/// the rounding of the totals, and of products and sums that a compiler contracts. One warp per strip
+/// of the `own` rows.
 ///
 /// A warp streams down its strip. Each step adds one row of the images to the moments under the
 /// windows that contain the row. It computes the coefficients of the derivative of the SSIM for the
@@ -29,6 +30,7 @@ struct fused_l1_ssim {
     int width, height;
     Real background[3];
     ssim_window<Real> window;
+    row_range own;
     int rows;  ///< rows per strip
     Real ssim_weight;
     Real* gradient;  ///< three planes
@@ -51,7 +53,7 @@ struct fused_l1_ssim {
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
     WARPAGG_HD void operator()(const W& w, unsigned index) const {
-        const strip_of<W> strip(w, index, width, height, rows);
+        const strip_of<W> strip(w, index, width, own, rows);
         stream<W> s(*this, w, strip);
         for (int row = strip.first - 2 * radius; row < strip.last + 2 * radius; ++row) {
             s.add_images(row);

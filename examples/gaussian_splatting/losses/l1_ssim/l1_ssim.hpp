@@ -33,11 +33,15 @@ class l1_ssim final : public loss<Real> {
         return gradient_.data();
     }
 
+    /// The SSIM at a pixel depends on the pixels under its window, and its gradient on the SSIM of all
+    /// pixels under a window around it.
+    int reach() const override { return 2 * ssim_window<Real>::radius; }
+
     /// Returns 1 / n for n pixels. The L1 term contributes (1 - w) / (3 n). The SSIM term exceeds
     /// the remainder only in windows with almost no contrast.
     float gradient_scale() const override { return 1.0f / pixels_; }
 
-    std::span<const double> sums() const override { return passes_.sums(); }
+    std::span<double> sums() const override { return passes_.sums(); }
 
     loss_report take() override {
         const image_quality mean = passes_.take();

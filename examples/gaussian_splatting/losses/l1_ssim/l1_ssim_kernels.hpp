@@ -11,12 +11,13 @@ namespace gs::train {
 ///     (1 - ssim_weight) mean|x - y| + ssim_weight (1 - mean SSIM),
 ///
 /// and zero at masked pixels. Reads the maps that the two passes of a comparison have written. One
-/// warp per strip.
+/// warp per strip of the `own` rows.
 template <class Real, bool Masked>
 struct l1_ssim_gradient {
     const std::uint32_t* target;  ///< premultiplied RGBA bytes
     comparison_maps<Real> maps;
     ssim_window<Real> window;
+    row_range own;
     int rows;  ///< rows per strip
     Real ssim_weight;
     Real* gradient;  ///< three planes without the frame of `framed_planes`
@@ -27,7 +28,7 @@ struct l1_ssim_gradient {
         using real = value_t<W, Real>;
         constexpr int radius = ssim_window<Real>::radius, size = ssim_window<Real>::size;
         const framed_planes& planes = maps.planes;
-        const ssim_strip<W> strip(w, index, planes.width, planes.height, rows);
+        const ssim_strip<W> strip(w, index, planes.width, own, rows);
         const Real each = Real(1) / (Real(3) * Real(planes.width) * Real(planes.height));
         const Real step = each * (Real(1) - ssim_weight), slope = each * ssim_weight;
         real spread[3][size];  // knob: ssim_spread

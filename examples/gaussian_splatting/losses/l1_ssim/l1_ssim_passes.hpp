@@ -31,17 +31,18 @@ class three_passes {
         comparison_.compare(render, capacity);  // knob: compare
         comparison_.is_masked() ? differentiate<true>(gradient) : differentiate<false>(gradient);
     }
-    std::span<const double> sums() const { return comparison_.totals(); }
+    std::span<double> sums() const { return comparison_.totals(); }
     image_quality take() { return comparison_.take(); }
 
   private:
     template <bool Masked>
     void differentiate(Real* gradient) {
-        device_.for_each_warp(
-            comparison_.strips(),
-            l1_ssim_gradient<Real, Masked>{comparison_.target(), comparison_.maps(), comparison_.window(),
-                                           // knob: loss_weight
-                                           comparison_.rows(), static_cast<Real>(l1_ssim_weight), gradient});
+        const row_range own = comparison_.compared_rows();
+        device_.for_each_warp(comparison_.strips(own),
+                              l1_ssim_gradient<Real, Masked>{
+                                  comparison_.target(), comparison_.maps(), comparison_.window(), own,
+                                  // knob: loss_weight
+                                  comparison_.rows(), static_cast<Real>(l1_ssim_weight), gradient});
     }
 
     Device& device_;
@@ -62,7 +63,7 @@ class fused_pass {
         target_.masked ? run_kernel<true>(render, gradient, capacity)
                        : run_kernel<false>(render, gradient, capacity);
     }
-    std::span<const double> sums() const { return totals_.sums(); }
+    std::span<double> sums() const { return totals_.sums(); }
     image_quality take() { return totals_.take(); }
 
   private:
@@ -72,14 +73,16 @@ class fused_pass {
         using strip = typename kernel::template strip_of<typename Device::warp>;
         const int width = target_.width, height = target_.height;
         const auto& [red, green, blue] = target_.background;
-        const int rows = strip::rows_for(width, height, device_.resident_warps() / 4);
-        device_.for_each_warp(strip::count(width, height, rows),
+        const row_range own = target_.compared_rows();
+        const int rows = strip::rows_for(width, own.count(), device_.resident_warps() / 4);
+        device_.for_each_warp(strip::count(width, own, rows),
                               kernel{reinterpret_cast<const std::uint32_t*>(target_.rgba),
                                      render,
                                      width,
                                      height,
                                      {red, green, blue},
                                      window_,
+                                     own,
                                      rows,
                                      static_cast<Real>(l1_ssim_weight),
                                      gradient,
