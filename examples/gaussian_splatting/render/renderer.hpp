@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "../core/error.hpp"
 #include "../device/device.hpp"
@@ -16,6 +19,7 @@
 #include "project/project.hpp"
 #include "project/project_backward.hpp"
 #include "tiles/bin.hpp"
+#include "tiles/view_strip.hpp"
 
 namespace gs::raster {
 
@@ -40,11 +44,15 @@ class renderer {
 
     /// Sets the effects of all later draws; initially none. The lens comes from the view.
     void set_effects(const effect_set& effects) { effects_ = effects; }
+    /// Limits all later draws to the strip of this rank, or draws whole views. With a strip, `list` and
+    /// the backward pass are collective functions of all ranks, whose strips must differ. The backward
+    /// pass then returns the sums over all ranks.
+    void set_strip(const std::optional<view_strip>& strip) { strip_ = strip; }
 
-    /// Counts the instances (Gaussian, tile) of a view: see `instances`.
+    /// Counts the instances (Gaussian, tile) of a whole view: see `instances`.
     void measure(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         project_all(gaussians, count, view, sh_degree);
-        list_by_tile(count, 0);
+        list_by_tile(count, 0, boxes_);
     }
     /// Returns the number of instances of the last view that was drawn or measured. Waits for the
     /// device.
@@ -62,7 +70,7 @@ class renderer {
             throw error("a view has " + std::to_string(most) +
                         " pairs of Gaussian and tile, more than 2^31: lower --max-cap or --resolution");
         capacity_ = std::min(most + spare, limit - 1);
-        gaussian_of_.resize(capacity_);
+        gaussian_of_.resize(capacity_ + Cut::segment);
     }
     std::uint64_t reserved_instances() const { return capacity_; }
 
@@ -205,6 +213,12 @@ class renderer {
     const Real* render() const { return render_.data(); }
     /// The transmittance of each pixel behind all splats, of the last `forward`.
     const Real* transmittance() const { return transmittance_.data(); }
+    /// The rows of pixels of the last view that are this rank's own.
+    row_range own_rows() const {
+        return strip_ ? strip_->own_pixels(camera_.height) : row_range{0, camera_.height};
+    }
+    /// The number of instances in each tile row of the last view that all ranks drew together.
+    const std::vector<std::uint64_t>& row_lengths() const { return row_lengths_; }
     /// The flag that tells whether the last view's instances fit.
     list_capacity capacity() const { return {required_.data(), capacity_}; }
     /// A counter on the device: pixel-Gaussian pairs that all calls of `forward` have evaluated.
@@ -231,6 +245,17 @@ class renderer {
         });
     }
     std::size_t tiles() const { return std::size_t{tiles_across_} * tiles_down_; }
+    row_range all_rows() const { return {0, static_cast<int>(tiles_down_)}; }
+    /// Returns the tile rows with tile lists.
+    row_range listed_rows() const {
+        return strip_ ? strip_->listed(static_cast<int>(tiles_down_)) : all_rows();
+    }
+    std::size_t first_tile(const row_range& rows) const {
+        return static_cast<std::size_t>(rows.first) * tiles_across_;
+    }
+    std::size_t tiles_in(const row_range& rows) const {
+        return static_cast<std::size_t>(rows.count()) * tiles_across_;
+    }
     template <class Kernel>
     void launch_backward(Kernel& kernel, const tile_lists<Real>& lists, const Real* render_gradient) {
         kernel.lists = lists;
@@ -260,17 +285,20 @@ class renderer {
                                                          last_.data(),
                                                          checkpoints_.data(),
                                                          pairs};
-        const std::size_t n = blend.template warps<warp>(tiles());
+        const std::size_t n = blend.template warps<warp>(tiles_in(listed_rows()));
         if constexpr (!std::is_same_v<Shape, shorter>) {
             if (n < device_.resident_warps()) return blend_forward_by<shorter>(background, lists, pairs);
         }
         device_.for_each_warp(n, blend);
     }
 
-    std::size_t segments() const { return most_segments<Cut>(tiles(), capacity_); }
+    std::size_t segments() const {
+        return most_segments<Cut>(tiles(), capacity_ + (strip_ ? Cut::segment : 0));
+    }
     tile_lists<Real> lists() const {
-        return {splats_.data(), gaussian_of_.data(), ranges_.data(),
-                tiles_across_,  camera_.width,       camera_.height};
+        return {splats_.data(), gaussian_of_.data() + first_place_,
+                ranges_.data(), tiles_across_,
+                camera_.width,  camera_.height};
     }
     tile_lists<Real> depth_lists() const {
         tile_lists<Real> all = lists();
@@ -301,24 +329,57 @@ class renderer {
     /// Gaussians.
     void bin(std::size_t count) {
         device_.sort_pairs(depths_, order_, count);
-        list_by_tile(count, capacity_);
-        device_.for_each_index(segments(),
-                               number_segments<Cut>{ranges_.data(), static_cast<std::uint32_t>(tiles()),
-                                                    reserve(tile_of_segment_, segments()).data()});
+        first_place_ = 0;
+        strip_ ? list_strip(count) : list_by_tile(count, capacity_, boxes_);
+        const row_range own = strip_ && strip_->own.count() > 0 ? strip_->own : all_rows();
+        device_.for_each_index(
+            segments(),
+            number_segments<Cut>{ranges_.data(), static_cast<std::uint32_t>(first_tile(own) + tiles_in(own)),
+                                 reserve(tile_of_segment_, segments()).data(),
+                                 static_cast<std::uint32_t>(first_tile(own))});
         class_counts_.resize(tile_order::classes);
         ordered_tiles_.resize(tile_order::classes * tiles());
         device_.zero(class_counts_.data(), class_counts_.size());
-        device_.for_each_index(tiles(), order_tiles{ranges_.data(), order()});
+        device_.for_each_index(tiles_in(listed_rows()),
+                               order_tiles{ranges_.data(), order(), first_tile(listed_rows())});
     }
-    void list_by_tile(std::size_t count, std::uint64_t reserved) {
-        const splats_by_depth<Real> splats{order_.data(), splats_.data(), boxes_.data(), tiles_across_};
+    void list_by_tile(std::size_t count, std::uint64_t reserved, const buffer<tile_box>& boxes) {
+        const splats_by_depth<Real> splats{order_.data(), splats_.data(), boxes.data(), tiles_across_};
         const auto distribute = [&](const auto& items) {
-            device_.distribute(count, items, tiles(), reserved, gaussian_of_.data(),
+            device_.distribute(count, items, tiles(), reserved, gaussian_of_.data() + first_place_,
                                reserve(ranges_, tiles()).data(), required_.data());
         };
         camera_.is_panorama
             ? distribute(panorama_splats_by_depth<Real>{splats, {camera_.width, tiles_across_}})
             : distribute(splats);
+    }
+    /// Makes the tile lists of a strip. Other ranks must call this, too. Lists begin at the same place
+    /// of a segment as in the lists of a whole view, so that the backward pass cuts them at the same
+    /// places and computes the same bits.
+    void list_strip(std::size_t count) {
+        const row_range listed = listed_rows();
+        row_lengths_.clear();
+        device_.for_each_index(count,
+                               clip_boxes{boxes_.data(), listed, reserve(clipped_boxes_, count).data()});
+        first_place_ = Cut::segment;
+        list_by_tile(count, capacity_, clipped_boxes_);
+        device_.for_each_index(
+            tiles_down_ + 1, measure_rows{ranges_.data(), tiles_across_, strip_->own, tiles_down_, capacity(),
+                                          reserve(lengths_, tiles_down_ + 1).data()});
+        device_.sum_over_ranks(lengths_.data(), lengths_.size());
+        std::vector<std::uint64_t> lengths(lengths_.size());
+        device_.download(lengths.data(), lengths_.data(), lengths.size());
+        if (lengths.back() > 0) return list_by_tile(count, 0, boxes_);  // some rank's lists do not fit
+        lengths.pop_back();
+        const std::uint64_t all = std::accumulate(lengths.begin(), lengths.end(), std::uint64_t{0});
+        const std::uint64_t before =
+            std::accumulate(lengths.begin(), lengths.begin() + listed.first, std::uint64_t{0});
+        const auto shift = static_cast<std::uint32_t>(before % Cut::segment);
+        device_.upload(required_.data(), &all, 1);
+        device_.wait();
+        device_.for_each_index(tiles_in(listed), shift_ranges{ranges_.data() + first_tile(listed), shift});
+        first_place_ -= shift;
+        row_lengths_ = std::move(lengths);
     }
 
     tile_order order() const {
@@ -329,9 +390,9 @@ class renderer {
 
     Device& device_;
     buffer<splat<Real>> splats_, near_;  ///< the second for `depth_splats`
-    buffer<tile_box> boxes_;
+    buffer<tile_box> boxes_, clipped_boxes_;
     buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_;
-    buffer<std::uint64_t> required_;
+    buffer<std::uint64_t> required_, lengths_;
     buffer<tile_range> ranges_;
     buffer<Real> render_, transmittance_, checkpoints_;
     gradient_sums<Device, Real> sums_;  // knob: renderer_members
@@ -340,6 +401,9 @@ class renderer {
     std::uint64_t capacity_ = 0;
 
     unsigned tiles_across_ = 0, tiles_down_ = 0;
+    std::optional<view_strip> strip_;  ///< if unset, views are drawn whole
+    std::uint64_t first_place_ = 0;    ///< where the place 0 of the tile lists is in `gaussian_of_`
+    std::vector<std::uint64_t> row_lengths_;
 
     effect_set effects_;
 

@@ -77,10 +77,14 @@ class gradient_sums {
         using in_memory = std::remove_pointer_t<decltype(kernel.sums)>;
         device_.for_each_index(sums_.size() / record_stride, set_red_aside<in_memory>{kernel.sums});
     }
-    /// Called after the kernel. Returns the sums as `Real`.
+    /// Called after the kernel. Adds the sums of all ranks, and returns them as `Real`.
     template <class Kernel>
     const buffer<Real>& end(const Kernel& kernel) {
-        if constexpr (!std::is_same_v<std::remove_pointer_t<decltype(kernel.sums)>, Real>) {
+        if constexpr (std::is_same_v<std::remove_pointer_t<decltype(kernel.sums)>, Real>) {
+            device_.sum_over_ranks(sums_.data(), sums_.size());
+        } else {
+            if constexpr (requires { kernel.how.accumulating().fault; })
+                device_.sum_over_ranks(reinterpret_cast<std::int64_t*>(cells_.data()), cells_.size());
             float unit = 1;
             if constexpr (requires { kernel.how.accumulating().scale; })
                 unit = 1 / kernel.how.accumulating().scale;

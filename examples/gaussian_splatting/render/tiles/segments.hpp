@@ -51,17 +51,19 @@ template <class Cut>
 struct number_segments {
     const tile_range* ranges;
     std::uint32_t tiles;
-    std::uint32_t* tile_of;  ///< the tile plus one, or zero if the number is not used
+    std::uint32_t* tile_of;      ///< the tile plus one, or zero if the number is not used
+    std::uint32_t first_tile{};  ///< segments of tiles before this one count as not used
 
     WARPAGG_HD void operator()(std::size_t index) const {
         const auto segment = static_cast<std::uint32_t>(index);
-        std::uint32_t tile = 0, end = tiles;  // finds the last tile with first segment <= segment
+        std::uint32_t tile = first_tile, end = tiles;  // finds the last tile with first segment <= segment
         while (end - tile > 1) {
             const std::uint32_t middle = tile + (end - tile) / 2;
             (middle + ranges[middle].begin / Cut::segment <= segment ? tile : end) = middle;
         }
         const tile_range r = ranges[tile];
-        const bool is_there = r.begin < r.end && segment - tile <= (r.end - 1) / Cut::segment;
+        const bool is_there = r.begin < r.end && segment >= tile + r.begin / Cut::segment &&
+                              segment - tile <= (r.end - 1) / Cut::segment;
         tile_of[segment] = is_there ? tile + 1 : 0;
     }
 };

@@ -43,12 +43,14 @@ struct tile_order {
     }
 };
 
-/// Fills a `tile_order`. One index per tile.
+/// Fills a `tile_order`. One index per tile, from `first` on.
 struct order_tiles {
     const tile_range* ranges;
     tile_order order;
+    std::size_t first = 0;
 
-    WARPAGG_HD void operator()(std::size_t tile) const {
+    WARPAGG_HD void operator()(std::size_t index) const {
+        const std::size_t tile = first + index;
         const unsigned c = tile_order::class_of(ranges[tile].end - ranges[tile].begin);
         const std::uint32_t place = device::atomic_add(order.counts + c, 1u);
         order.members[c * std::size_t{order.tiles} + place] = static_cast<std::uint32_t>(tile);
