@@ -67,8 +67,10 @@ class adam_parameters {
         }
         return {sums_.data(), warps};
     }
-    /// Makes a step of row i, unless the tile lists of the view did not fit. Sets the sums to zero.
+    /// Makes a step of row i, unless the tile lists of the view did not fit. Sets the sums to zero. With
+    /// several ranks, each one has added the sums of other warps.
     void learn(std::size_t i, const ordered_sums& sums, float rate, const raster::list_capacity& capacity) {
+        device_.sum_over_ranks(sums.parts, Width * sums.warps);
         const int t = ++steps_[i];
         const double by_first = 1 - std::pow(static_cast<double>(adam_from_sums::beta1), t);
         const double by_second = 1 - std::pow(static_cast<double>(adam_from_sums::beta2), t);

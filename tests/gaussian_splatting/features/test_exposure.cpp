@@ -32,7 +32,8 @@ TEST_CASE("gradients by the image and by the exposure are those of central diffe
     using device_type = gs::device::cpu;
     device_type device;
     std::mt19937 random(1);
-    for (const std::size_t pixels : {1, 31, 700}) {
+    for (const image_part part : {image_part{1, 1}, {31, 1}, {35, 20}}) {
+        const std::size_t pixels = part.pixels();
         CAPTURE(pixels);
         const auto render = random_render(random, 3 * pixels), weights = random_render(random, 3 * pixels);
         // Of the sum of weights and exposed values, by an exposure that was learnt.
@@ -43,7 +44,7 @@ TEST_CASE("gradients by the image and by the exposure are those of central diffe
             return std::vector<float>(shown, shown + 3 * pixels);
         };
         CHECK(show(render) == render);
-        for (int i = 0; i < 30; ++i) exposures.learn(1, render.data(), weights.data(), pixels, 0.02f, {});
+        for (int i = 0; i < 30; ++i) exposures.learn(1, render.data(), weights.data(), part, 0.02f, {});
         const auto values = gs::features::exposures_from(exposures.get());
         CHECK(values[0] == identity_exposure);
         for (const float x : {values[1][0], values[1][5], values[1][10]})
@@ -56,7 +57,7 @@ TEST_CASE("gradients by the image and by the exposure are those of central diffe
                 sum += static_cast<double>(weights[i]) * static_cast<double>(shown[i]);
             return sum;
         };
-        const float* by = exposures.learn(1, render.data(), weights.data(), pixels, 0, {});
+        const float* by = exposures.learn(1, render.data(), weights.data(), part, 0, {});
         for (const std::size_t i : {std::size_t{0}, pixels - 1, 2 * pixels}) {
             auto more = render;
             more[i] += 0.5f;
@@ -79,11 +80,11 @@ TEST_CASE("a step without room, or whose gradient is not finite, leaves the expo
     const auto before = exposures.get();
     const std::vector<float> render(3, 0.5f), nothing(3, std::nanf(""));
     const std::uint64_t required = 2;
-    exposures.learn(0, render.data(), render.data(), 1, 0.1f, {&required, 1});
+    exposures.learn(0, render.data(), render.data(), {1, 1}, 0.1f, {&required, 1});
     CHECK(exposures.get() == before);
-    exposures.learn(0, render.data(), nothing.data(), 1, 0.1f, {});
+    exposures.learn(0, render.data(), nothing.data(), {1, 1}, 0.1f, {});
     CHECK(exposures.get() == before);
-    exposures.learn(0, render.data(), render.data(), 1, 0.1f, {&required, 2});
+    exposures.learn(0, render.data(), render.data(), {1, 1}, 0.1f, {&required, 2});
     CHECK(exposures.get() != before);
 }
 

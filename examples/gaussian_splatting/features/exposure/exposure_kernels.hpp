@@ -9,6 +9,7 @@
 #include <warpagg/atomic.hpp>
 
 #include "../../optimize/ordered_sums.hpp"
+#include "../pixel_patch.hpp"
 
 namespace gs::features {
 
@@ -56,39 +57,33 @@ struct expose {
 };
 
 /// Computes the gradients with respect to the render and the exposure, from the gradient with
-/// respect to the exposed render. One warp handles `rounds` pixels per lane.
+/// respect to the exposed render. One warp per patch.
 struct expose_backward {
-    static constexpr unsigned rounds = 8;
-
     const float* render;  ///< three planes, like all images here
     const float* exposure;
     const float* by_exposed;
-    std::size_t pixels;
+    int width, height;
     float* by_render;
-    train::ordered_sums sums;  ///< sums over `warps(pixels)` warps
-
-    template <class W>
-    static std::size_t warps(std::size_t pixels) {
-        return (pixels + rounds * W::size - 1) / (rounds * W::size);
-    }
+    train::ordered_sums sums;  ///< sums over all patches of the image
+    unsigned first_patch;
 
     WARPAGG_EXEC_CHECK_DISABLE
     template <class W>
-    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+    WARPAGG_HD void operator()(const W& w, unsigned warp) const {
         using real = warpagg::value_t<W, float>;
+        const unsigned index = first_patch + warp;
+        const pixel_patch<W> patch(w, index, width, height);
+        const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(width) * height;
         real total[exposure_width];
         WARPAGG_UNROLL
         for (unsigned i = 0; i < exposure_width; ++i) total[i] = real(0);
-        std::size_t first = std::size_t{index} * rounds * W::size;
-        for (unsigned round = 0; round < rounds && first < pixels; ++round, first += W::size) {
-            const warpagg::mask_t<W> inside =
-                w.lane() < static_cast<unsigned>(pixels - first < W::size ? pixels - first : W::size);
+        for (int row = patch.first; row < patch.last; ++row) {
+            const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(row) * width + patch.left;
             real color[3], g[3];
             WARPAGG_UNROLL
             for (unsigned c = 0; c < 3; ++c) {
-                const auto at = static_cast<std::ptrdiff_t>(c * pixels + first);
-                color[c] = w.load_row(render, at, inside);
-                g[c] = w.load_row(by_exposed, at, inside);
+                color[c] = w.load_row(render, c * plane + first, patch.inside);
+                g[c] = w.load_row(by_exposed, c * plane + first, patch.inside);
             }
             WARPAGG_UNROLL
             for (unsigned c = 0; c < 3; ++c) {
@@ -100,7 +95,7 @@ struct expose_backward {
                 WARPAGG_UNROLL
                 for (unsigned k = 0; k < 3; ++k)
                     by = warpagg::math::fma(g[k], real(exposure[exposure_at(k, c)]), by);
-                w.store_row(by_render, static_cast<std::ptrdiff_t>(c * pixels + first), by, inside);
+                w.store_row(by_render, c * plane + first, by, patch.inside);
             }
         }
         const auto part = [&, index](unsigned i) { return sums(i, index); };

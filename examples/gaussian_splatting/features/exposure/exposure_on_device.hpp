@@ -45,8 +45,9 @@ class exposure_on_device final : public device_feature<Renderer> {
     }
     const float* backward(const step& s, const float* gradient) override {
         if (!learns_) return gradient;
-        return of_training_.learn(s.plan.view, s.renderer.render(), gradient, s.pixels(),
-                                  rate_at(s.plan.iteration), s.renderer.capacity());
+        const image_part part{s.camera.width, s.camera.height, s.renderer.own_rows()};
+        return of_training_.learn(s.plan.view, s.renderer.render(), gradient, part, rate_at(s.plan.iteration),
+                                  s.renderer.capacity());
     }
     const float* show_held_out(std::size_t view, const float* render, std::size_t pixels) override {
         return of_held_out_.count() > 0 ? of_held_out_.show(view, render, pixels) : render;

@@ -38,13 +38,16 @@ class exposures {
     }
 
     /// Returns the gradient with respect to the render, from the gradient with respect to the
-    /// result of `show`. Also trains the exposure.
-    const float* learn(std::size_t view, const float* render, const float* by_exposed, std::size_t pixels,
+    /// result of `show`. Also trains the exposure. Both images must exist in the rows of `part`; other
+    /// ranks have the other rows.
+    const float* learn(std::size_t view, const float* render, const float* by_exposed, const image_part& part,
                        float rate, const raster::list_capacity& capacity) {
-        by_render_.resize(3 * pixels);
-        const train::ordered_sums sums = numbers_.sums(expose_backward::warps<warp>(pixels));
-        device_.for_each_warp(sums.warps, expose_backward{render, numbers_.row(view), by_exposed, pixels,
-                                                          by_render_.data(), sums});
+        using patch = pixel_patch<warp>;
+        by_render_.resize(3 * part.pixels());
+        const train::ordered_sums sums = numbers_.sums(patch::count(part.width, part.height));
+        device_.for_each_warp(patch::count_in(part),
+                              expose_backward{render, numbers_.row(view), by_exposed, part.width, part.height,
+                                              by_render_.data(), sums, patch::first_in(part)});
         numbers_.learn(view, sums, rate, capacity);
         return by_render_.data();
     }

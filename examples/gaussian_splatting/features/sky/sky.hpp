@@ -40,20 +40,24 @@ class sky {
     }
 
     /// Trains the coefficients from `by_render`, the gradient with respect to a render with this
-    /// background. `transmittance` is the share of the background's light in each pixel.
+    /// background. `transmittance` is the share of the background's light in each pixel. Both must exist
+    /// in `rows`; other ranks have the other rows.
     void learn(const camera& camera, const float* transmittance, const float* by_render, float rate,
-               const raster::list_capacity& capacity) {
+               const raster::list_capacity& capacity, const row_range& rows = {}) {
         const train::ordered_sums sums = numbers_.sums(patches(camera));
+        const image_part part{camera.width, camera.height, rows};
         raster::with_lens(camera.lens(), [&]<lens_model Lens> {
-            device_.for_each_warp(sums.warps, sky_backward<warp, Lens>{raster::for_device<real>(camera),
-                                                                       transmittance, by_render, sums});
+            device_.for_each_warp(
+                pixel_patch<warp>::count_in(part),
+                sky_backward<warp, Lens>{raster::for_device<real>(camera), transmittance, by_render, sums,
+                                         pixel_patch<warp>::first_in(part)});
         });
         numbers_.learn(0, sums, rate, capacity);
     }
 
   private:
     static std::size_t patches(const camera& camera) {
-        return sky_patch<warp, lens_model::pinhole>::count(camera.width, camera.height);
+        return pixel_patch<warp>::count(camera.width, camera.height);
     }
 
     Device& device_;

@@ -10,6 +10,7 @@
 #include "../../optimize/ordered_sums.hpp"
 #include "../../render/geometry/fisheye.hpp"
 #include "../../render/geometry/panorama.hpp"
+#include "../pixel_patch.hpp"
 
 namespace gs::features {
 
@@ -17,33 +18,17 @@ namespace gs::features {
 /// of coefficients times harmonics, as for a Gaussian, but is not clamped.
 inline constexpr unsigned sky_coefficients = sh_coefficients(sky_degree);
 
-/// The pixels of an image that one warp handles: one column per lane, `rows` rows.
+/// The directions of a patch of pixels through a lens.
 template <class W, lens_model Lens>
-struct sky_patch {
+struct sky_patch : pixel_patch<W> {
     using real = warpagg::value_t<W, float>;
 
-    unsigned left;              ///< the first column
-    int first, last;            ///< range of rows, [first, last)
-    warpagg::mask_t<W> inside;  ///< lanes whose column lies in the image
-
-    static constexpr int rows = 8;
-
-    static std::size_t count(int width, int height) {
-        return (static_cast<std::size_t>(width) + W::size - 1) / W::size *
-               ((static_cast<std::size_t>(height) + rows - 1) / rows);
-    }
-    WARPAGG_HD sky_patch(const W& w, unsigned index, int width, int height) {
-        const unsigned across = (static_cast<unsigned>(width) + W::size - 1) / W::size;
-        left = index % across * W::size;
-        first = static_cast<int>(index / across) * rows;
-        last = first + rows < height ? first + rows : height;
-        inside = w.lane() < static_cast<unsigned>(width) - left;
-    }
+    using pixel_patch<W>::pixel_patch;
 
     /// Computes the harmonics in the directions of a row's pixels.
     WARPAGG_HD void basis(const W& w, const raster::device_camera<real>& camera, int row,
                           real (&values)[sky_coefficients]) const {
-        const real x = warpagg::math::convert<float>(w.lane() + left) + real(0.5f);
+        const real x = warpagg::math::convert<float>(w.lane() + this->left) + real(0.5f);
         const raster::vec2<real> place((x - camera.cx) / camera.fx,
                                        (real(static_cast<float>(row) + 0.5f) - camera.cy) / camera.fy);
         raster::vec3<real> ray(place, real(1));
@@ -91,10 +76,12 @@ struct sky_backward {
     raster::device_camera<real> camera;
     const float* transmittance;
     const float* by_render;    ///< three planes
-    train::ordered_sums sums;  ///< sums over `sky_patch::count` warps
+    train::ordered_sums sums;  ///< sums over all patches of the image
+    unsigned first_patch;
 
     WARPAGG_EXEC_CHECK_DISABLE
-    WARPAGG_HD void operator()(const W& w, unsigned index) const {
+    WARPAGG_HD void operator()(const W& w, unsigned warp) const {
+        const unsigned index = first_patch + warp;
         const sky_patch<W, Lens> patch(w, index, camera.width, camera.height);
         const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(camera.width) * camera.height;
         real total[sky_width];

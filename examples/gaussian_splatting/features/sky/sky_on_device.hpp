@@ -27,7 +27,7 @@ class sky_on_device final : public device_feature<Renderer> {
     void learn(const step& s, const float* render_gradient) override {
         if (sky_.exists())
             sky_.learn(s.camera, s.renderer.transmittance(), render_gradient, rate_at(s.plan.iteration),
-                       s.renderer.capacity());
+                       s.renderer.capacity(), s.renderer.own_rows());
     }
 
   private:
