@@ -14,7 +14,9 @@ namespace gs::train {
 /// until the next `draw`.
 struct drawn_view {
     target_image target;                 ///< the training image, on black
-    const float* render;                 ///< three planes, not clamped, on black
+    /// Three planes, not clamped, on black. With several ranks, each one renders some of the rows, and
+    /// `sum_scores` uses the scores in these; the other rows are undefined.
+    const float* render;
     const raster::splat<float>* splats;  ///< one per Gaussian
     const std::uint32_t* tiles;          ///< tiles that each Gaussian may touch; 0 if not drawn
 };

@@ -11,6 +11,7 @@
 #include "../densify/strategy_settings.hpp"
 #include "../densify/timetable.hpp"
 #include "../losses/loss.hpp"
+#include "../ranks/communicator.hpp"
 #include "../render/gradients/accumulator.hpp"
 #include "step_plan.hpp"
 
@@ -21,6 +22,7 @@ struct training_setup {
     training_facts facts;
     strategy_settings densification;
     std::string loss = default_loss;
+    ranks::communicator* ranks = nullptr;  ///< the processes that train this model, or null for one
     double dropout = 0;  ///< share of the Gaussians that each step leaves out: see `raster::dropout`
     /// The features that are on, by name, with their initial values.
     std::map<std::string, std::vector<float>, std::less<>> features;

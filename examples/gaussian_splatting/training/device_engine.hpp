@@ -24,6 +24,7 @@
 #include "engine_parts.hpp"
 #include "list_sizer.hpp"
 #include "step_monitor.hpp"
+#include "view_strips.hpp"
 
 namespace gs::train {
 
@@ -109,12 +110,16 @@ class device_engine final : public engine, device::profiler, checkpointed {
     void step(const step_plan& plan) override {
         const photo& shot = views_.train(level_)[plan.view];
         const auto loaded = views_.load(shot);
-        const target_image target = loaded.target(plan.background);
+        target_image target = loaded.target(plan.background);
+        const auto strip = strip_of(plan.view, shot.camera);
+        renderer_.set_strip(strip);
+        if (strip) target.rows = strip->own_pixels(shot.camera.height);
         loss_->set_target(target);
         step_type s{plan, shot.camera, loaded.depths(), renderer_, 0, setup_.facts.gradient};
         s.gradient_scale = std::max(loss_->gradient_scale(), features_.gradient_scale(s));
         device_.iteration(key_of(s, target), [&] { iterate(s); });
         lists_.was_noted(plan.view, count_);
+        strips_.note(plan.view, renderer_.row_lengths());
         if (views_.cache() != nullptr) views_.cache()->upload_ahead();
     }
 
@@ -132,6 +137,11 @@ class device_engine final : public engine, device::profiler, checkpointed {
 
     step_report take_report() override {
         const std::uint64_t skipped = monitor_.skipped();
+        const auto sums = loss_->sums();
+        device_.sum_over_ranks(sums.data(), sums.size());
+        std::uint64_t pairs = own_pairs();
+        device_.ranks().sum(&pairs, 1);
+        pairs_of_others_ = pairs - own_pairs();
         return {loss_->take(), skipped, monitor_.take_faults()};
     }
 
@@ -142,6 +152,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
 
     std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
                               const render_options& options) override {
+        renderer_.set_strip({});
         if (!options.separate_memory) {
             draw(renderer_, camera, background, options);
             return downloaded(renderer_.render(), camera);
@@ -157,6 +168,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
     image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
                           std::vector<float>* render) override {
         const photo& shot = views_.held_out()[test_view];
+        renderer_.set_strip({});
         draw(renderer_, shot.camera, background);
         const float* exposed = features_.show_held_out(test_view, renderer_.render(), shot.pixels());
         shown_.resize(3 * shot.pixels());
@@ -192,13 +204,14 @@ class device_engine final : public engine, device::profiler, checkpointed {
     };
 
     /// Renders the training views of one size for scores. These renders are not timed or counted as
-    /// steps.
+    /// steps. Each rank renders a strip.
     class drawn_views final : public score_views {
       public:
         drawn_views(device_engine& on, const std::vector<photo>& views) : on_(on), views_(views) {}
         std::size_t count() const override { return views_.size(); }
         drawn_view draw(std::size_t view) override {
             const photo& shot = views_[view];
+            on_.renderer_.set_strip(on_.strips_.of(view, shot.camera, 0, on_.device_.ranks()));
             on_.draw(on_.renderer_, shot.camera, {});
             return {on_.views_.load_in_order(views_, view).target({}), on_.renderer_.render(),
                     on_.renderer_.splats(), on_.renderer_.tiles_of()};
@@ -220,7 +233,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
     std::string device_name() const override { return device_.name(); }
     void sample_times(int every) override { device_.sample_times(every); }
     device::stage_times times() override { return device_.times(); }
-    std::uint64_t pairs() override { return all_pairs() - drawn_pairs_; }
+    std::uint64_t pairs() override { return own_pairs() + pairs_of_others_; }
     std::size_t peak_device_bytes() const override { return device_.peak_bytes(); }
     bool shares_host_memory() const override { return Device::shares_host_memory; }
     std::size_t used_device_bytes() const override { return device_.used_bytes(); }
@@ -248,8 +261,13 @@ class device_engine final : public engine, device::profiler, checkpointed {
                of_strategy;
     }
     /// Returns the largest number of Gaussians for which the limit of memory suffices.
-    std::size_t growth_limit() const {
-        if (setup_.facts.max_device_bytes == 0) return std::numeric_limits<std::size_t>::max();
+    std::size_t growth_limit() {
+        std::uint64_t limit = own_growth_limit();
+        device_.ranks().minimum(&limit, 1);
+        return limit;
+    }
+    std::uint64_t own_growth_limit() const {
+        if (setup_.facts.max_device_bytes == 0) return std::numeric_limits<std::uint64_t>::max();
         const std::uint64_t one = std::max<std::uint64_t>(
             (forecast(2 * count_, sh_degree_).total() - forecast(count_, sh_degree_).total()) /
                 std::max<std::size_t>(count_, 1),
@@ -272,7 +290,10 @@ class device_engine final : public engine, device::profiler, checkpointed {
         exchange_lists(archive);
         std::uint64_t trained_pairs = pairs();
         archive.exchange("pairs", trained_pairs);
-        drawn_pairs_ = all_pairs() - trained_pairs;
+        if (archive.loads()) {
+            drawn_pairs_ = all_pairs() - (device_.ranks().is_first() ? trained_pairs : 0);
+            pairs_of_others_ = 0;
+        }
         features_.exchange(archive);
         const state_archive::scope strategy(archive, "strategy." + setup_.densification.name);
         strategy_->exchange(archive);
@@ -300,6 +321,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
     }
 
     void start(const training_setup& setup) {
+        if (setup.ranks != nullptr) device_.join(*setup.ranks);
         auto strategy = parts_.make_strategy(device_, setup.densification, setup.facts);
         if (const auto columns = strategy->gradient_columns(); !columns.empty())
             throw error("the densification strategy '" + setup.densification.name +
@@ -317,6 +339,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
         level_ = level;
         if (views_.cache() != nullptr) views_.cache()->set_level(level);
         lists_.reset(views_.train(level).size());
+        strips_.reset(views_.train(level).size());
     }
 
     trained_gaussians<Device> in_training() {
@@ -386,6 +409,12 @@ class device_engine final : public engine, device::profiler, checkpointed {
         return step;
     }
 
+    std::optional<raster::view_strip> strip_of(std::size_t view, const camera& camera) {
+        return strips_.of(view, camera, loss_->reach(), device_.ranks());
+    }
+
+    /// Returns the pairs of this rank's steps.
+    std::uint64_t own_pairs() { return all_pairs() - drawn_pairs_; }
     std::uint64_t all_pairs() {
         unsigned long long n = 0;
         device_.download(&n, renderer_.pairs(), 1);
@@ -429,6 +458,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
     sh_state sh_;
     device_views<Device> views_;
     list_sizer<Device> lists_;
+    view_strips strips_;
     step_monitor<Device> monitor_;
     parameter_gather<Device> gather_;
     std::unique_ptr<loss<float>> loss_;
@@ -440,7 +470,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
     int sh_degree_ = 0;
     effect_set effects_;
     std::uint32_t steps_ = 0;
-    std::uint64_t drawn_pairs_ = 0;
+    std::uint64_t drawn_pairs_ = 0, pairs_of_others_ = 0;
     std::optional<renderer_type> apart_;  ///< see `render_options::separate_memory`
     std::size_t bytes_apart_ = 0;         ///< device memory that such renders have allocated
     trained_parameters<Device> trained_;

@@ -61,11 +61,14 @@ class step_monitor {
         device_.download(&n, skipped_.data(), 1);
         return n;
     }
-    /// Returns the faults since the last call. Resets all counters. Waits for the device.
+    /// Returns the faults since the last call, of all ranks. Resets all counters. Waits for the device.
     fault_reports take_faults() {
         finite_check::memory found;
         device_.download(&found, faults_.data(), 1);
         reset();
+        // Ranks find most faults together, so the counts are not added.
+        device_.ranks().minimum(found.first, fault_kind_count);
+        device_.ranks().maximum(found.count, fault_kind_count);
         return finite_check::decode(found);
     }
 

@@ -38,6 +38,7 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     setup.densification = options.densification;
     setup.loss = options.loss;
     setup.dropout = schedule.dropout_share();
+    setup.ranks = options.ranks;
     for (const auto& feature : options.features.all())
         if (feature.on) setup.features[feature.name] = feature.values;
     return setup;
@@ -333,7 +334,7 @@ train_result training::run() {
     if (options_.save_iterations.contains(finished_)) save_(finished_);
     for (int iteration = finished_ + 1; iteration <= schedule_.iterations.last() && !interrupted_;
          ++iteration) {
-        interrupted_ = is_interrupted_();
+        interrupted_ = is_in_any_rank(is_interrupted_());
         restructured_ = false;
         for (const auto phase : {phase::prepare, phase::step, phase::restructure, phase::size_lists,
                                  phase::upkeep, phase::observe})
@@ -342,6 +343,7 @@ train_result training::run() {
         correct_plan(iteration);
     }
     engine_.profile().wait();
+    if (options_.ranks != nullptr) options_.ranks->barrier();  // the first one has written its files
     if (lost_photo_) std::rethrow_exception(lost_photo_);
     result_.iterations = finished_;
     result_.plan = schedule_.iterations;

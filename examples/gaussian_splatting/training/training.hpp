@@ -48,6 +48,7 @@ struct train_options {
     std::optional<int> checkpoint_every;  ///< iterations between two checkpoints
     std::set<int> checkpoint_iterations;
     /// @}
+    ranks::communicator* ranks = nullptr;  ///< the processes that train this model, or null for one
     state_archive* resume_from = nullptr;  ///< state of a checkpoint to continue from, or null
 };
 
@@ -87,8 +88,8 @@ struct train_events {
     };
     /// Called with the state for `train_options::resume_from`. The callback may add values.
     std::function<void(int iteration, state_archive&)> checkpoint = [](int, state_archive&) {};
-    /// Called in each iteration. If it returns true, training makes a checkpoint after the iteration
-    /// and ends.
+    /// Called in each iteration. If it returns true in any rank, training makes a checkpoint after the
+    /// iteration and ends.
     std::function<bool()> is_interrupted = [] { return false; };
     /// Called before the first iteration, after memory for it has been reserved.
     std::function<void()> begins = [] {};
@@ -183,6 +184,9 @@ class training {
     void add_reports(const train_events& events);
     void add_checkpoints(const train_events& events);
     bool makes_checkpoint(int iteration) const;
+    bool is_in_any_rank(bool flag) const {
+        return options_.ranks == nullptr ? flag : options_.ranks->any(flag);
+    }
     bool is_last(int iteration) const { return iteration == schedule_.iterations.last(); }
     void begin_budget();
     void correct_plan(int iteration);

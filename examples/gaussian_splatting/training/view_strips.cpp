@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "view_strips.hpp"
+
+#include <numeric>
+
+namespace gs::train {
+
+row_range balanced_rows(std::span<const std::uint64_t> weights, int part, int parts) {
+    const std::uint64_t all = std::accumulate(weights.begin(), weights.end(), std::uint64_t{0});
+    // A row belongs to the part in which its middle lies.
+    const auto rows_before = [&](int p) {
+        const std::uint64_t border =
+            2 * all / static_cast<std::uint64_t>(parts) * static_cast<std::uint64_t>(p);
+        std::uint64_t before = 0;
+        int row = 0;
+        for (const std::uint64_t weight : weights) {
+            if (p < parts && 2 * before + weight >= border) break;
+            before += weight;
+            ++row;
+        }
+        return row;
+    };
+    return {part == 0 ? 0 : rows_before(part), rows_before(part + 1)};
+}
+
+std::optional<raster::view_strip> view_strips::of(std::size_t view, const camera& camera, int reach,
+                                                  const ranks::communicator& ranks) const {
+    if (ranks.count() == 1) return {};
+    constexpr std::uint64_t work_of_pixels = 16;  // of a tile: about as much as so many instances
+    const auto in_tiles = [](int pixels) {
+        return static_cast<std::size_t>((pixels + raster::tile_size - 1) / raster::tile_size);
+    };
+    std::vector<std::uint64_t> weights(in_tiles(camera.height), in_tiles(camera.width) * work_of_pixels);
+    if (view < lengths_.size() && lengths_[view].size() == weights.size())
+        for (std::size_t row = 0; row < weights.size(); ++row) weights[row] += lengths_[view][row];
+    return raster::view_strip{balanced_rows(weights, ranks.rank(), ranks.count()), reach};
+}
+
+}  // namespace gs::train

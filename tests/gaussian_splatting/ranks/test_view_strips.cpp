@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "ranks/run.hpp"
+#include "training/view_strips.hpp"
+
+using gs::row_range;
+using gs::train::balanced_rows;
+
+TEST_CASE("strips: each row belongs to one part, whatever the weights are") {
+    for (const auto& weights : std::vector<std::vector<std::uint64_t>>{
+             {}, {5}, {0, 0, 0}, {1, 2, 3, 4, 5, 6, 7}, {100, 0, 0, 0}, {0, 0, 100}, {9, 1, 1, 1, 1, 9}})
+        for (int parts = 1; parts < 6; ++parts) {
+            CAPTURE(parts);
+            int next = 0;
+            for (int part = 0; part < parts; ++part) {
+                const row_range rows = balanced_rows(weights, part, parts);
+                CHECK(rows.first == next);
+                CHECK(rows.last >= rows.first);
+                next = rows.last;
+            }
+            CHECK(next == static_cast<int>(weights.size()));
+        }
+}
+
+TEST_CASE("strips: parts have about the same sum of weights") {
+    const std::vector<std::uint64_t> equal(12, 50);
+    for (int part = 0; part < 4; ++part)
+        CHECK(balanced_rows(equal, part, 4) == row_range{3 * part, 3 * part + 3});
+    const std::vector<std::uint64_t> below{1, 1, 1, 1, 1, 1, 3, 3};
+    CHECK(balanced_rows(below, 0, 2) == row_range{0, 6});
+    CHECK(balanced_rows(below, 1, 2) == row_range{6, 8});
+}
+
+TEST_CASE("strips: the loss decides how many tile rows beyond its own a rank renders") {
+    const gs::raster::view_strip middle{{2, 4}, 10}, wide{{2, 4}, 17}, all{{2, 4}, 1 << 30}, none{{3, 3}, 10};
+    CHECK(middle.listed(6) == row_range{1, 5});
+    CHECK(middle.listed(4) == row_range{1, 4});
+    CHECK(wide.listed(9) == row_range{0, 6});
+    CHECK(all.listed(9) == row_range{0, 9});
+    CHECK(none.listed(6).count() == 0);
+    CHECK(middle.own_pixels(100) == row_range{32, 64});
+    CHECK(middle.own_pixels(50) == row_range{32, 50});
+}
+
+TEST_CASE("strips: known lengths of tile lists move the borders between ranks") {
+    gs::camera camera;
+    camera.width = 16;
+    camera.height = 64;
+    const auto end = gs::ranks::run(2, [&](gs::ranks::communicator& all) {
+        gs::train::view_strips strips;
+        strips.reset(1);
+        const row_range before = strips.of(0, camera, 10, all)->own;
+        strips.note(0, {900, 0, 0, 0});
+        const row_range after = strips.of(0, camera, 10, all)->own;
+        strips.note(0, {900, 0});  // of another size
+        const row_range unknown = strips.of(0, camera, 10, all)->own;
+        const bool is_first = all.is_first();
+        return before == (is_first ? row_range{0, 2} : row_range{2, 4}) &&
+                       after == (is_first ? row_range{0, 1} : row_range{1, 4}) && unknown == before
+                   ? 0
+                   : 1;
+    });
+    CHECK(end.code == 0);
+    CHECK(end.reason == "");
+    gs::ranks::communicator alone;
+    gs::train::view_strips strips;
+    strips.reset(1);
+    CHECK_FALSE(strips.of(0, camera, 10, alone).has_value());
+}
