@@ -86,7 +86,8 @@ int train(int argc, char** argv) {
         s.effects.explicit_choices["sky"] = false;
         s.effects.text += ",-sky";
     }
-    cli::train(s, uses_gpu(cli::name_of(s.device)) ? make_cuda_engine() : make_cpu_engine(), how);
+    ranks::communicator alone;
+    cli::train(s, uses_gpu(cli::name_of(s.device)) ? make_cuda_engine() : make_cpu_engine(), how, alone);
 
     const std::string kept_in = way.value_or(s.deterministic ? "fixed" : "native");
     const nlohmann::ordered_json chosen{{"gradient", rung.value_or("split")}, {"accumulate", kept_in}};

@@ -63,6 +63,17 @@ void check_orbit(const settings& s) {
         throw error("--orbit-views beside --data needs --orbit: add it or leave out --orbit-views");
 }
 
+void check_ranks(const settings& s) {
+    if (s.ranks == 1) return;
+    if (s.device == device_kind::cuda)
+        throw error("--ranks trains on the CPU only: leave out --ranks or --device cuda");
+    if (s.viewer) throw error("--ranks has no live view: leave out --ranks or --viewer");
+    if (s.poses != pose_source::given)
+        throw error(
+            "--ranks needs a scene with camera poses: train with --poses auto and without --ranks first, and "
+            "then give the folder colmap of its output as --data");
+}
+
 void check_video_frames(const settings& s) {
     if (s.video_frames && s.poses == pose_source::given)
         throw error("--video-frames needs --poses auto: add it or leave out --video-frames");
@@ -95,6 +106,7 @@ void check_settings(const settings& s) {
                            .max_gaussians = s.max_cap.value_or(0),
                            .seed = s.seed});
     check_background(s);
+    check_ranks(s);
     check_video_frames(s);
     check_viewer_size(s);
     check_orbit(s);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "../engine/engine.hpp"
+#include "../ranks/communicator.hpp"
 #include "../render/gradients/accumulator.hpp"
 #include "settings.hpp"
 
@@ -13,8 +14,10 @@ namespace gs::cli {
 /// The commands. They throw `error` for bad input, and then leave no output behind.
 /// @{
 void train(const settings& s);
-/// Trains with this engine and accumulator, regardless of the device and the determinism in `s`.
-void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient);
+/// Trains with this engine and accumulator, regardless of the device and the determinism in `s`, as
+/// one of the ranks. Only the first rank prints, and writes files.
+void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient,
+           ranks::communicator& ranks);
 void evaluate(const settings& s);
 void render(const settings& s);
 void compare(const settings& s);

@@ -14,7 +14,8 @@ namespace gs::cli {
 
 photos::photo_limits photo_limits(const settings& s, const device::profiler& device) {
     // The Gaussians, and the program itself, need the remaining memory. Users may leave less for them.
-    const auto share = [&](std::uint64_t bytes) { return bytes / 10 * (s.photo_memory ? 9 : 6); };
+    const auto ranks = static_cast<std::uint64_t>(s.ranks);
+    const auto share = [&](std::uint64_t bytes) { return bytes / ranks / 10 * (s.photo_memory ? 9 : 6); };
     photos::photo_limits limits;
     limits.host = share(available_host_bytes());
     const std::uint64_t free = device.free_device_bytes();
@@ -27,7 +28,8 @@ photos::photo_limits photo_limits(const settings& s, const device::profiler& dev
 std::uint64_t device_limit(const settings& s, const device::profiler& device) {
     if (s.max_memory) return *s.max_memory;
     if (s.deterministic) return 0;
-    return (device.used_device_bytes() + device.free_device_bytes()) / 10 * 9;
+    const std::uint64_t of_rank = device.free_device_bytes() / static_cast<std::uint64_t>(s.ranks);
+    return (device.used_device_bytes() + of_rank) / 10 * 9;
 }
 
 load_options with_limit(load_options source, const photos::photo_limits& limits) {

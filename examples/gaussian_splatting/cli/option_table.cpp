@@ -8,6 +8,7 @@
 
 #include "../losses/loss_names.hpp"
 #include "../poses/video_frames.hpp"
+#include "../ranks/communicator.hpp"
 #include "../writers/writer.hpp"
 #include "convert_options.hpp"
 #include "page_options.hpp"
@@ -250,7 +251,14 @@ rows run_options(settings& s) {
           .commands = {train},
           .value = flag(s.deterministic),
           .help = "Makes runs with the same seed write the same model bit for bit, with any number of "
-                  "threads; training takes longer"}});
+                  "threads and ranks; training takes longer"},
+         {.names = "--ranks",
+          .commands = {train},
+          .value = whole(s.ranks, 1, ranks::most_ranks),
+          .help = "Number of processes that train the model together on the CPU, each on a strip of the "
+                  "view; they share the threads",
+          .is_rare = true,
+          .is_recorded = false}});
 }
 
 rows length_options(settings& s) {

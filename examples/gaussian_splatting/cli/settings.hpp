@@ -64,6 +64,7 @@ struct settings {
     background_kind background = background_kind::automatic;
     std::uint64_t seed = 0;
     bool deterministic = false;
+    int ranks = 1;                   ///< number of processes that train together
     std::string config;              ///< file with further options
     nlohmann::ordered_json given{};  ///< values of the options that the user gave, by `option::key`
     cli::log_level log_level = log_level::info;

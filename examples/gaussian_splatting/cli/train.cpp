@@ -22,6 +22,7 @@
 #include "run_images.hpp"
 #include "scene_with_poses.hpp"
 #include "stop_signals.hpp"
+#include "train_in_ranks.hpp"
 #include "training_effects.hpp"
 #include "training_report.hpp"
 
@@ -71,13 +72,14 @@ gaussians first_model(const scene& scene, const train::train_options& o) {
 class training_run {
   public:
     /// Loads the scene from `source`, decides which effects to simulate, and passes the first model
-    /// to the engine.
+    /// to the engine. Only the first of the ranks writes files.
     training_run(const settings& s, const load_options& source, std::unique_ptr<train::engine> engine,
-                 accumulator gradient);
+                 accumulator gradient, ranks::communicator& ranks);
     training_run(const training_run&) = delete;
     training_run& operator=(const training_run&) = delete;
 
     void train();
+    /// The functions below are for the first rank, which is the only one by then.
     /// Measures the model on the held-out views and writes their renders.
     void measure();
     void write_reports();
@@ -87,6 +89,8 @@ class training_run {
 
   private:
     train::train_events events();
+    /// Returns the seconds since the start. All ranks get the same time.
+    double common_seconds() { return ranks_.from_first(loading_.seconds()); }
     bool is_interrupted() const { return signals_->received() != 0 || (live_ && live_->is_stopped()); }
     void begin_live_view();
     /// Ends the program after Ctrl-C, or after a page of the live view has asked to stop.
@@ -107,6 +111,7 @@ class training_run {
     fs::path renders_folder() const;
 
     const settings& s_;
+    ranks::communicator& ranks_;
     command_context context_;
     std::optional<checkpoint_folder::found_checkpoint> checkpoint_;  ///< to continue from
     std::optional<stop_signals> signals_;                            ///< while training runs
@@ -117,8 +122,8 @@ class training_run {
     scene scene_;
     photos::photo_plan photo_memory_;  ///< empty if photos are resident
     train::train_options options_;
-    output_folder output_;
-    bool replaces_ = s_.overwrite;  ///< whether an earlier run is still to be set aside
+    std::optional<output_folder> output_;  ///< of the first rank
+    bool replaces_ = s_.overwrite;         ///< whether an earlier run is still to be set aside
     progress_bar bar_;
     training_measures measures_;
     nlohmann::ordered_json metrics_;     ///< content of metrics.json
@@ -126,8 +131,10 @@ class training_run {
 };
 
 training_run::training_run(const settings& s, const load_options& source,
-                           std::unique_ptr<train::engine> engine, accumulator gradient)
+                           std::unique_ptr<train::engine> engine, accumulator gradient,
+                           ranks::communicator& ranks)
     : s_(s),
+      ranks_(ranks),
       context_(s),
       checkpoint_(checkpoint_to_resume(s, [this](const std::string& line) { context_.warn(line); })),
       engine_(std::move(engine)),
@@ -136,15 +143,17 @@ training_run::training_run(const settings& s, const load_options& source,
       scene_(context_.load(with_limit(source, limits_))),
       photo_memory_(photo_memory(scene_, limits_)),
       options_(options_of(s, scene_, context_, engine_->profile(), resolve_effects(s, scene_, context_))),
-      output_(s.output),
       bar_(s.log_level < log_level::info) {
+    if (ranks_.is_first()) output_.emplace(s.output);
     options_.gradient = gradient;
+    options_.ranks = &ranks_;
     gaussians model = first_model(scene_, options_);
     options_.features.prepare(scene_, model);
     engine_->set_views(scene_.train, scene_.test, options_.schedule.num_downscales, photo_memory_);
     engine_->set_model(model);
     measures_.load_seconds = loading_.seconds();
     measures_.device = engine_->profile().device_name();
+    if (ranks_.count() > 1) measures_.device += ", " + std::to_string(ranks_.count()) + " ranks";
     context_.say("training on " + measures_.device + ": " + std::to_string(scene_.train.size()) + " views, " +
                  std::to_string(model.count()) + " Gaussians, at most " + std::to_string(options_.max_cap));
     resume();
@@ -177,7 +186,7 @@ nlohmann::ordered_json training_run::resolved_settings() const {
 }
 
 train::train_events training_run::events() {
-    return {
+    train::train_events events{
         .report =
             [this](const train::progress& p) {
                 measures_.last = p;
@@ -195,6 +204,8 @@ train::train_events training_run::events() {
             [this](train::training& training) {
                 if (live_) live_->add_to(training);
             }};
+    if (s_.seconds) events.seconds = [this] { return common_seconds(); };
+    return events;
 }
 
 void training_run::say_expected_memory() {
@@ -213,6 +224,7 @@ void training_run::warn(const std::string& line) {
 
 /// A checkpoint that cannot be written is no reason to end training, except after an interruption.
 void training_run::save_checkpoint(int iteration, state_archive& archive) {
+    if (!ranks_.is_first()) return;
     std::string tests = measures_.tests.dump();
     std::string settings_text =
         resolved_settings().dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -235,6 +247,7 @@ void training_run::replace_earlier_run() {
 }
 
 void training_run::save(int iteration) {
+    if (!ranks_.is_first()) return;
     replace_earlier_run();
     const fs::path file = model_file(iteration);
     fs::create_directories(file.parent_path());
@@ -289,6 +302,7 @@ void training_run::train() {
     signals_.emplace();
     begin_live_view();
     measures_.result = train::train(*engine_, scene_, options_, events());
+    if (!ranks_.is_first()) return;
     const train::train_result& result = measures_.result;
     if (result.iterations < result.plan.last()) end_early();
     live_.reset();
@@ -320,10 +334,10 @@ void training_run::measure() {
 void training_run::write_reports() {
     metrics_ = metrics_json(s_, measures_);
     metrics_["effects"] = effects_json(s_, scene_, options_, measures_.result);
-    write_json(output_.path() / "settings.json", resolved_settings());
-    options_.features.write_results(*engine_, scene_, output_.path());
-    write_metrics(output_.path(), metrics_, measures_.held_out);
-    remove_replaced_run(output_.path());
+    write_json(output_->path() / "settings.json", resolved_settings());
+    options_.features.write_results(*engine_, scene_, output_->path());
+    write_metrics(output_->path(), metrics_, measures_.held_out);
+    remove_replaced_run(output_->path());
 }
 
 void training_run::write_pages() {
@@ -331,12 +345,12 @@ void training_run::write_pages() {
     const std::array<float, 3>& background = options_.background.color;
     pages::report report{{name, metrics_, resolved_settings()}, {}, !scene_.test.empty()};
     report.views = report.are_held_out
-                       ? typical_held_out_views(held_out_images_of(output_.path(), metrics_))
+                       ? typical_held_out_views(held_out_images_of(output_->path(), metrics_))
                        : typical_training_views(*engine_, scene_, options_.features, background);
-    atomic_file_write(output_.path() / "report.html",
+    atomic_file_write(output_->path() / "report.html",
                       [&](std::ostream& out) { pages::write_report_page(out, report); });
     if (!s_.no_viewer)
-        write_viewer(output_.path() / "viewer.html", to_world(scene_.normalization, engine_->get_model()),
+        write_viewer(output_->path() / "viewer.html", to_world(scene_.normalization, engine_->get_model()),
                      viewer_scene_of(scene_, name, background), *s_.viewer_size,
                      [this](const std::string& line) { context_.say(line); });
 }
@@ -363,29 +377,34 @@ void training_run::print_summary() const {
                      (views > 1 ? " and " + std::to_string(views - 1) + " more" : ""));
     }
     context_.say("model     " + model_file(measures_.result.iterations).string());
-    context_.say("report    " + (output_.path() / "report.html").string());
-    if (!s_.no_viewer) context_.say("viewer    " + (output_.path() / "viewer.html").string());
-    context_.say("metrics   " + (output_.path() / "metrics.json").string());
+    context_.say("report    " + (output_->path() / "report.html").string());
+    if (!s_.no_viewer) context_.say("viewer    " + (output_->path() / "viewer.html").string());
+    context_.say("metrics   " + (output_->path() / "metrics.json").string());
 }
 
 fs::path training_run::model_file(int iteration) const {
-    return output_.path() / "point_cloud" / ("iteration_" + std::to_string(iteration)) / "point_cloud.ply";
+    return output_->path() / "point_cloud" / ("iteration_" + std::to_string(iteration)) / "point_cloud.ply";
 }
 
 fs::path training_run::renders_folder() const {
-    return output_.path() / "test" / ("ours_" + std::to_string(measures_.result.iterations));
+    return output_->path() / "test" / ("ours_" + std::to_string(measures_.result.iterations));
 }
 
 }  // namespace
 
 void train(const settings& s) {
-    train(s, command_context(s).make_engine(), s.deterministic ? accumulator::fixed : accumulator::native);
+    if (s.ranks > 1) return train_in_ranks(s);
+    ranks::communicator alone;
+    train(s, command_context(s).make_engine(), s.deterministic ? accumulator::fixed : accumulator::native,
+          alone);
 }
 
-void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient) {
+void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient,
+           ranks::communicator& ranks) {
     require_no_earlier_run(s);
-    training_run run(s, scene_with_poses(s), std::move(engine), gradient);
+    training_run run(s, scene_with_poses(s), std::move(engine), gradient, ranks);
     run.train();
+    if (!ranks.is_first()) return;
     run.measure();
     run.write_reports();
     run.write_pages();

@@ -13,7 +13,7 @@ namespace gs::train {
 /// A training view that `score_views` has rendered. All pointers are to device memory and are valid
 /// until the next `draw`.
 struct drawn_view {
-    target_image target;                 ///< the training image, on black
+    target_image target;  ///< the training image, on black
     /// Three planes, not clamped, on black. With several ranks, each one renders some of the rows, and
     /// `sum_scores` uses the scores in these; the other rows are undefined.
     const float* render;

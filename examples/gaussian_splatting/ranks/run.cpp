@@ -110,7 +110,7 @@ class rank_processes {
     }
 
     outcome wait() {
-        constexpr auto patience = std::chrono::seconds(5);
+        constexpr auto patience = std::chrono::seconds(3);
         clock::time_point last{};
         while (running_ > 0) {
             for (std::size_t r = 0; r < ranks_.size(); ++r) {
