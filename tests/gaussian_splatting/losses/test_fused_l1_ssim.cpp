@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -36,8 +37,9 @@ struct image_pair {
         for (std::size_t i = 0; i < 3 * pixels; ++i)
             render.push_back(static_cast<Real>(random() % 1000) / 999);
     }
+    gs::row_range rows{};  ///< the rows that are compared
     gs::train::target_image target() const {
-        return {rgba.data(), width, height, {0.25f, 1.0f, 0.5f}, masked};
+        return {rgba.data(), width, height, {0.25f, 1.0f, 0.5f}, masked, rows};
     }
 };
 
@@ -125,6 +127,36 @@ TEST_CASE("fused_l1_ssim: the gradient does not depend on the number of strips")
         CAPTURE(rows);
         CHECK(gradient_by_rows<lanes>(images, rows) == expected);
     }
+}
+
+TEST_CASE_TEMPLATE("l1_ssim: the rows of several ranks have the gradient and the sums of all rows", Warp,
+                   warpagg::emulator::narrow_lanes<8>, lanes) {
+    constexpr int width = 60, height = 50;
+    const auto result_in = [](const image_pair<float>& images) {
+        if constexpr (Warp::size == 8)
+            return result_of<gs::train::three_passes, on_warp<Warp>>(images);
+        else
+            return result_of<gs::train::fused_pass, on_warp<Warp>>(images);
+    };
+    const auto whole = result_in(image_pair<float>(width, height, true));
+    loss_result<float> joined{std::vector<float>(whole.gradient.size()),
+                              std::vector<double>(whole.sums.size())};
+    for (const gs::row_range own : {gs::row_range{0, 16}, {16, 32}, {32, 32}, {32, height}}) {
+        image_pair<float> images(width, height, true);
+        images.rows = own;
+        for (int c = 0; c < 3; ++c)  // as far away as `l1_ssim::reach` permits
+            for (int row = 0; row < height; ++row)
+                if (row < own.first - 10 || row >= own.last + 10)
+                    std::fill_n(images.render.begin() + (c * height + row) * width, width, std::nanf(""));
+        const auto part = result_in(images);
+        for (std::size_t i = 0; i < part.sums.size(); ++i) joined.sums[i] += part.sums[i];
+        for (int c = 0; c < 3; ++c)
+            std::copy_n(part.gradient.begin() + (c * height + own.first) * width, own.count() * width,
+                        joined.gradient.begin() + (c * height + own.first) * width);
+    }
+    CHECK(joined.gradient == whole.gradient);
+    for (std::size_t i = 0; i < whole.sums.size(); ++i)
+        CHECK(joined.sums[i] == doctest::Approx(whole.sums[i]).epsilon(1e-6));
 }
 
 TEST_CASE("fused_l1_ssim: a render whose tile lists did not fit does not count") {
