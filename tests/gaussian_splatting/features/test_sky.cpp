@@ -59,7 +59,7 @@ TEST_CASE("a sky is drawn by direction, and its gradients are those of central d
             device.for_each_warp(
                 sums.warps,
                 sky_backward<warp, Lens>{gs::raster::for_device<warpagg::value_t<warp, float>>(camera),
-                                         through.data(), weights.data(), sums});
+                                         through.data(), weights.data(), sums, 0});
         });
         for (const unsigned k : {0u, 4u, 20u, 47u}) {
             double by = 0;
