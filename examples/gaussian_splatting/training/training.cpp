@@ -294,7 +294,8 @@ training_moment training::now() {
 
 void training::begin_budget() {
     if (!budget_) return;
-    const training_moment moment = now();
+    // Not `now()`, because a very short budget may be over by then, without a plan.
+    const training_moment moment{finished_, before_, engine_.count()};
     if (const auto last = budget_->correction_at_resume(moment, schedule_.iterations.last()))
         schedule_.iterations.correct(finished_, *last);
     budget_->begin(moment, schedule_);
