@@ -287,7 +287,7 @@ rows length_options(settings& s) {
           .commands = {train},
           .value = whole(s.num_downscales, 0, 8),
           .help = "Number of times that the photos are halved at the start of training",
-          .default_text = "as often as 30000 pixels remain, from once to three times"},
+          .default_text = "one to three times, as long as 30000 pixels remain"},
          {.names = "--resolution-schedule",
           .commands = {train},
           .value = whole(s.schedule.resolution_schedule, 1, most_iterations),

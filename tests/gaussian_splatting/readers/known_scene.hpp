@@ -24,7 +24,7 @@ inline gs::scene known_scene(const char* data = "synthetic:spheres,views=4,point
     options.resolution = width;
     return gs::load_scene(options, {});
 }
-/// The same with panoramas of 96x48 pixels from among the spheres.
+/// Returns the same scene with panoramas of 96x48 pixels from among the spheres.
 inline gs::scene known_panoramas() {
     return known_scene("synthetic:spheres,views=4,points=40,panorama=1,distance=0.5", 96);
 }
