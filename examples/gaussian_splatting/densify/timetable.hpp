@@ -17,6 +17,7 @@ struct training_facts {
     /// and take milestones and progress from it.
     iteration_plan iterations{};
     int views = 1;                       ///< number of training views
+    std::size_t pixels = 0;              ///< number of pixels of all training views
     double extent = 1;                   ///< extent of the scene, see `scene::extent`
     bool white = false;                  ///< whether images have transparent parts, shown on white
     bool transparent = false;            ///< whether photos have transparent parts

@@ -24,10 +24,21 @@ std::array<float, 3> random_color(std::mt19937_64& random) {
     return {r, g, b};
 }
 
+std::size_t pixels_of(const view& v) {
+    return static_cast<std::size_t>(v.camera.width) * static_cast<std::size_t>(v.camera.height);
+}
+
+std::size_t pixels_of(const std::vector<view>& views) {
+    std::size_t pixels = 0;
+    for (const view& v : views) pixels += pixels_of(v);
+    return pixels;
+}
+
 training_setup setup_of(const scene& scene, const train_options& options, const schedule& schedule) {
     training_setup setup;
     setup.facts.iterations = schedule.iterations;
     setup.facts.views = static_cast<int>(scene.train.size());
+    setup.facts.pixels = pixels_of(scene.train);
     setup.facts.extent = schedule.extent;
     setup.facts.white = scene.has_alpha && options.background.color == std::array<float, 3>{1, 1, 1};
     setup.facts.transparent = scene.has_alpha;
@@ -364,17 +375,12 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
 }
 
 std::size_t default_cap(const scene& scene) {
-    std::size_t pixels = 0;
-    for (const view& v : scene.train)
-        pixels += static_cast<std::size_t>(v.camera.width) * static_cast<std::size_t>(v.camera.height);
-    return std::max<std::size_t>(pixels / 32, 10000);
+    return std::max<std::size_t>(pixels_of(scene.train) / 32, 10000);
 }
 
 int default_downscales(const scene& scene, const schedule& schedule) {
     std::size_t pixels = 0;
-    for (const view& v : scene.train)
-        pixels = std::max(
-            pixels, static_cast<std::size_t>(v.camera.width) * static_cast<std::size_t>(v.camera.height));
+    for (const view& v : scene.train) pixels = std::max(pixels, pixels_of(v));
     const auto leaves_whole_photos = [&](int downscales) {
         train::schedule with = schedule;
         with.num_downscales = downscales;

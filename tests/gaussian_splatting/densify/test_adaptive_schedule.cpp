@@ -60,6 +60,18 @@ TEST_CASE("the shorter densification is, the larger is the growth threshold, unl
     CHECK(threshold({.densify_until_iter = 0, .densify_grad_threshold = 3e-4}, 7000) == 3e-4);
 }
 
+TEST_CASE("photos of more than 600,000 pixels raise the growth threshold, at most to its double") {
+    const auto threshold = [](std::size_t pixels, const adaptive_config& config = {}) {
+        return adaptive_schedule(config, {.iterations = 30000, .views = 1000, .pixels = 1000 * pixels})
+            .growth_threshold();
+    };
+    CHECK(threshold(100000) == doctest::Approx(8e-5));
+    CHECK(threshold(600000) == doctest::Approx(8e-5));
+    CHECK(threshold(1350000) == doctest::Approx(1.2e-4));
+    CHECK(threshold(12000000) == doctest::Approx(1.6e-4));
+    CHECK(threshold(12000000, {.densify_grad_threshold = 3e-4}) == 3e-4);
+}
+
 TEST_CASE(
     "the penalty on opacities falls with the views, and is 0 for transparent photos, unless it is set") {
     gs::train::training_facts facts;

@@ -41,7 +41,8 @@ std::vector<option> growth_options(adaptive_config& c) {
          .value = positive(c.densify_grad_threshold),
          .help = "Mean gradient of a Gaussian's projected center above which the Gaussian grows, in units "
                  "of half the image size",
-         .default_text = "8e-5 if densification ends at iteration 15000, and higher if it ends earlier"},
+         .default_text = "8e-5 if densification ends at iteration 15000; higher if it ends earlier or photos "
+                         "have more than 600000 pixels"},
         {.names = "--budget",
          .value = whole(c.budget, 1, 100000000),
          .help = "Number of Gaussians that densification grows to in even steps, whatever the gradients "

@@ -41,7 +41,9 @@ densify_config adaptive_schedule::densify_config_at(int iteration, std::size_t g
 
 double adaptive_schedule::growth_threshold() const {
     const double shorter = 15000.0 / std::clamp(densify_until(), 1, 15000);
-    return config_.densify_grad_threshold.value_or(8e-5 * std::pow(shorter, 0.25));
+    const double mean_pixels = static_cast<double>(facts_.pixels) / std::max(1, facts_.views);
+    const double larger = std::clamp(mean_pixels / 600000, 1.0, 4.0);
+    return config_.densify_grad_threshold.value_or(8e-5 * std::pow(shorter, 0.25) * std::sqrt(larger));
 }
 
 int adaptive_schedule::densifications_from(int iteration) const {

@@ -32,7 +32,8 @@ class adaptive_schedule final : public timetable {
     /// Returns the mean gradient of its center, in halves of the image, from which a Gaussian
     /// grows. The default is 8e-5 if densification lasts 15,000 iterations. If it is shorter, the
     /// default is larger by the fourth root of the ratio, because a short training has no time for
-    /// many Gaussians.
+    /// many Gaussians. Photos of more than 600,000 pixels raise the default by the root of that
+    /// ratio, at most to its double: their finest details cost many Gaussians and gain little.
     double growth_threshold() const;
     /// Returns the number of densifications from this iteration on. Precondition: it is not after
     /// the last one.
