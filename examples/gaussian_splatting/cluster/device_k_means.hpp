@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 #include "../device/device.hpp"
 #include "k_means.hpp"
@@ -32,11 +31,11 @@ class device_k_means {
         const std::size_t k = std::min(most, count);
         const std::vector<std::uint32_t> coarse = coarse_labels(heaviest_first, k);
 
-        const std::vector<std::uint32_t> order = sorted_by(coarse, heaviest_first);
+        const std::vector<std::uint32_t> order = sorted_by_label(heaviest_first);
         gather(order);
         const std::vector<segment> segments = fine_segments(coarse, k);
         fit(segments, fine_iterations);
-        return result(segments, order);
+        return result(segments, count);
     }
 
   private:
@@ -48,6 +47,13 @@ class device_k_means {
         to.resize(from.size());
         device_.upload(to.data(), from.data(), from.size());
         device_.wait();
+    }
+
+    template <class T>
+    std::vector<T> downloaded(const buffer<T>& from, std::size_t count) {
+        std::vector<T> to(count);
+        device_.download(to.data(), from.data(), count);
+        return to;
     }
 
     /// Copies all points, or some, to `points_` and `weights_` in this order.
@@ -67,11 +73,9 @@ class device_k_means {
         std::ranges::transform(weights, keys.begin(),
                                [](float w) { return ~std::bit_cast<std::uint32_t>(w); });
         std::iota(order.begin(), order.end(), 0U);
-        upload(labels_, keys);
+        upload(keys_, keys);
         upload(list_, order);
-        device_.sort_pairs(labels_, list_, order.size());
-        device_.download(order.data(), list_.data(), order.size());
-        return order;
+        return sorted_list(order.size());
     }
 
     /// Clusters a sample coarsely, and returns the coarse cluster of each point.
@@ -88,24 +92,25 @@ class device_k_means {
         resize_labels(count);
         device_.zero(segment_of_point_.data(), count);
         assign(all_points_.data(), count);
-        std::vector<std::uint32_t> labels(count);
-        device_.download(labels.data(), labels_.data(), count);
-        return labels;
+        return downloaded(labels_, count);
     }
 
     static std::uint32_t groups_for(std::size_t centroids) {
         return static_cast<std::uint32_t>((centroids + group - 1) / group);
     }
 
-    /// Returns the indices of the points, sorted by label. Points of one label stay in this order.
-    static std::vector<std::uint32_t> sorted_by(const std::vector<std::uint32_t>& labels,
-                                                const std::vector<std::uint32_t>& order) {
-        std::vector<std::uint32_t> starts(*std::ranges::max_element(labels) + 1), sorted(labels.size());
-        for (const std::uint32_t label : labels) ++starts[label];
-        std::uint32_t first = 0;
-        for (std::uint32_t& start : starts) first += std::exchange(start, first);
-        for (const std::uint32_t i : order) sorted[starts[labels[i]]++] = i;
-        return sorted;
+    /// Returns the indices of the points, sorted by `labels_`. Points of one label stay in this order.
+    std::vector<std::uint32_t> sorted_by_label(const std::vector<std::uint32_t>& order) {
+        upload(list_, order);
+        keys_.resize(order.size());
+        device_.for_each_index(order.size(), gather_points{labels_.data(), list_.data(), 1, keys_.data()});
+        return sorted_list(order.size());
+    }
+
+    /// Returns `list_`, sorted by `keys_`.
+    std::vector<std::uint32_t> sorted_list(std::size_t count) {
+        device_.sort_pairs(keys_, list_, count);
+        return downloaded(list_, count);
     }
 
     /// Distributes `k` centroids to the coarse clusters in proportion to their points. Each gets at
@@ -183,24 +188,22 @@ class device_k_means {
     }
 
     /// Downloads the clustering, without the unused slots, in the original order of the points.
-    clustering result(const std::vector<segment>& segments, const std::vector<std::uint32_t>& order) {
-        std::vector<std::uint32_t> labels(order.size()), number_of_slot(slots_);
-        std::vector<float> slots(slots_ * width_);
-        device_.download(labels.data(), labels_.data(), labels.size());
-        device_.download(slots.data(), centroids_.data(), slots.size());
-        clustering all;
-        all.centroids.reserve(slots.size());
-        std::uint32_t number = 0;
+    clustering result(const std::vector<segment>& segments, std::size_t count) {
+        std::vector<std::uint32_t> number_of_slot(slots_), used;
         for (const segment& s : segments)
-            for (std::size_t slot = s.first_group * group; slot < s.first_group * group + s.centroids;
-                 ++slot) {
-                number_of_slot[slot] = number++;
-                for (std::size_t j = 0; j < width_; ++j)
-                    all.centroids.push_back(slots[centroid_index(slot, j, width_)]);
+            for (std::uint32_t i = 0; i < s.centroids; ++i) {
+                const auto slot = static_cast<std::uint32_t>(s.first_group * group + i);
+                number_of_slot[slot] = static_cast<std::uint32_t>(used.size());
+                used.push_back(slot);
             }
-        all.labels.resize(order.size());
-        for (std::size_t i = 0; i < order.size(); ++i) all.labels[order[i]] = number_of_slot[labels[i]];
-        return all;
+        upload(starts_, used);
+        points_.resize(used.size() * width_);
+        device_.for_each_index(used.size() * width_,
+                               collect_centroids{centroids_.data(), starts_.data(), width_, points_.data()});
+        upload(keys_, number_of_slot);
+        device_.for_each_index(count,
+                               number_labels{labels_.data(), keys_.data(), order_.data(), list_.data()});
+        return {downloaded(points_, used.size() * width_), downloaded(list_, count)};
     }
 
     Device device_;
@@ -209,7 +212,7 @@ class device_k_means {
     buffer<float> points_, weights_;          ///< those that are clustered, segment by segment
     buffer<float> centroids_, half_squares_;
     buffer<segment> segments_;
-    buffer<std::uint32_t> order_, segment_of_point_, segment_of_group_, labels_, list_, starts_;
+    buffer<std::uint32_t> order_, segment_of_point_, segment_of_group_, labels_, keys_, list_, starts_;
 };
 
 }  // namespace gs::cluster

@@ -24,12 +24,13 @@ struct segment {
     std::uint32_t centroids;  ///< the number of centroids in these groups; others are unused
 };
 
-/// Copies points in another order. One index per value.
+/// Copies points of `width` values in another order. One index per value.
+template <class T>
 struct gather_points {
-    const float* from;
+    const T* from;
     const std::uint32_t* order;
     std::size_t width;
-    float* to;
+    T* to;
 
     WARPAGG_HD void operator()(std::size_t i) const { to[i] = from[order[i / width] * width + i % width]; }
 };
@@ -197,6 +198,29 @@ struct move_centroids {
         }
         if (weight > 0) centroids[centroid_index(c, j, width)] = sum / weight;
     }
+};
+
+/// Copies the centroids of some slots, one after the other. One index per value.
+struct collect_centroids {
+    const float* centroids;
+    const std::uint32_t* slots;
+    std::size_t width;
+    float* to;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        to[i] = centroids[centroid_index(slots[i / width], i % width, width)];
+    }
+};
+
+/// Replaces slots by the numbers of their centroids, and restores the original order of the points. One
+/// index per point.
+struct number_labels {
+    const std::uint32_t* labels;
+    const std::uint32_t* number_of_slot;
+    const std::uint32_t* order;
+    std::uint32_t* to;
+
+    WARPAGG_HD void operator()(std::size_t i) const { to[order[i]] = number_of_slot[labels[i]]; }
 };
 
 }  // namespace gs::cluster
