@@ -52,7 +52,9 @@ void by_emulator(const problem<size>& p, float* sums) {
         for (std::size_t k = 0; k < values; ++k)
             v[k] = w.load_row(p.held.data(), static_cast<std::ptrdiff_t>((i * values + k) * size));
         const auto active = w.load_row(p.active.data(), static_cast<std::ptrdiff_t>(i * size)) != 0u;
-        warpagg::warp_reduce_atomic(w, sums + p.record[i] * values, v, active);
+        // The default of nine values commits the values of fewer than eight lanes without reducing them.
+        warpagg::warp_reduce_atomic(w, sums + p.record[i] * values, v, active,
+                                    warpagg::policy<warpagg::gate::always>{});
     }
 }
 
