@@ -19,7 +19,11 @@ using namespace gs_test;
 /// The ray that is bent to `bent`: a fixed point of small steps.
 glm::dvec2 undistorted(const distorted_case& lens, glm::dvec2 bent) {
     glm::dvec2 ray = bent;
-    for (int i = 0; i < 200; ++i) ray -= 0.7 * (lens.distort(ray) - bent);
+    for (int i = 0; i < 200; ++i) {
+        const glm::dvec2 miss = lens.distort(ray) - bent;
+        ray -= 0.7 * miss;
+        if (glm::length(miss) < 1e-12) break;
+    }
     return ray;
 }
 
@@ -28,13 +32,14 @@ double painted(glm::dvec2 ray) { return 127 + 60 * std::sin(3 * ray.x) + 50 * st
 
 void write_distorted_photo(const std::filesystem::path& file, const distorted_case& lens) {
     const gs::camera c = intrinsics_of(lens.camera);
-    std::vector<float> planes;
-    for (int plane = 0; plane < 3; ++plane)
-        for (int y = 0; y < c.height; ++y)
-            for (int x = 0; x < c.width; ++x) {
-                const glm::dvec2 ray = undistorted(lens, {(x + 0.5 - c.cx) / c.fx, (y + 0.5 - c.cy) / c.fy});
-                planes.push_back(static_cast<float>(painted(ray) / 255));
-            }
+    std::vector<float> plane;
+    for (int y = 0; y < c.height; ++y)
+        for (int x = 0; x < c.width; ++x) {
+            const glm::dvec2 ray = undistorted(lens, {(x + 0.5 - c.cx) / c.fx, (y + 0.5 - c.cy) / c.fy});
+            plane.push_back(static_cast<float>(painted(ray) / 255));
+        }
+    std::vector<float> planes = plane;
+    for (int more = 0; more < 2; ++more) planes.insert(planes.end(), plane.begin(), plane.end());
     std::filesystem::create_directories(file.parent_path());
     gs::write_png(file, c.width, c.height, planes);
 }
@@ -73,7 +78,7 @@ TEST_CASE("photos of a lens with distortion become those of a pinhole camera") {
         model.points = {{{0, 0, 1}, {1, 2, 3}, 0}};
         write_binary(folder / "sparse/0", model);
         write_distorted_photo(folder / "images/a.png", lens);
-        write_distorted_photo(folder / "images/b.png", lens);
+        std::filesystem::copy(folder / "images/a.png", folder / "images/b.png");
         std::vector<std::string> said;
         const gs::scene scene = gs::load_scene(options_for(folder.path()),
                                                [&](const std::string& line) { said.push_back(line); });
