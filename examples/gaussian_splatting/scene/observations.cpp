@@ -105,6 +105,7 @@ void point_observer::observe(std::size_t v, const image& photo) {
         std::optional<observation> o = look(photo, p);
         if (!o) continue;
         o->view = static_cast<std::uint32_t>(v);
+        o->point = p.point;
         o->direction = glm::vec3(glm::normalize(scene_.points[p.point].position - taken_with.center()));
         o->footprint = static_cast<float>(p.depth / std::sqrt(taken_with.fx * taken_with.fy));
         by_view_[v].emplace_back(p.point / static_cast<std::uint32_t>(step_), *o);

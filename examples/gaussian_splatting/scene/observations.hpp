@@ -15,10 +15,11 @@ namespace gs {
 /// The appearance of one scene point in one photo.
 struct observation {
     std::uint32_t view = 0;
-    glm::vec3 color{0};      ///< mean of the 3×3 pixels around it, as displayed, in [0, 1]
-    glm::vec3 direction{0};  ///< from the camera to the point, of length one
-    float footprint = 0;     ///< width of a pixel at the point's depth, in units of the scene
-    float roughness = 0;     ///< (brightest - darkest) / brightest of these pixels
+    glm::vec3 color{0};       ///< mean of the 3×3 pixels around it, as displayed, in [0, 1]
+    glm::vec3 direction{0};   ///< from the camera to the point, of length one
+    float footprint = 0;      ///< width of a pixel at the point's depth, in units of the scene
+    float roughness = 0;      ///< (brightest - darkest) / brightest of these pixels
+    std::uint32_t point = 0;  ///< index in `scene::points`
 };
 
 /// The observations of each point.
