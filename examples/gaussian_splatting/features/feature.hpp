@@ -12,6 +12,7 @@
 
 #include "../model/gaussians.hpp"
 #include "../scene/scene_statistics.hpp"
+#include "explanation.hpp"
 
 namespace gs::train {
 class engine;
@@ -56,6 +57,8 @@ class feature {
 
     /// Returns the finding for a scene. Cost: up to a second per thousand photos.
     virtual finding analyze(const scene_statistics& statistics) const = 0;
+    /// Returns what a person needs to believe or overrule the finding. May decode photos.
+    virtual explanation explain(const scene_statistics&, const finding&) const { return {}; }
     /// Returns whether the initial values come from `analyze` even if the user adds the effect to
     /// the recommended effects.
     virtual bool begins_from_photos() const { return false; }

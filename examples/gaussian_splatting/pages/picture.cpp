@@ -14,12 +14,13 @@
 namespace gs::pages {
 namespace {
 
-constexpr int longest_side = 960, jpeg_quality = 88;
+constexpr int longest_side = 960, longest_side_of_thumbnail = 640, jpeg_quality = 88;
 constexpr double brightest_error = 0.25;
 
 using color = std::array<double, 3>;
 constexpr std::array<color, 5> error_colors{
     {{0, 0, 4}, {87, 16, 110}, {188, 55, 84}, {249, 142, 9}, {252, 255, 164}}};
+constexpr std::array<std::array<std::uint8_t, 3>, 2> stripe_colors{{{60, 0, 50}, {255, 0, 200}}};
 
 std::uint8_t error_channel(double error, std::size_t channel) {
     constexpr std::size_t steps = error_colors.size() - 1;
@@ -37,11 +38,11 @@ image opaque_image(int width, int height) {
     return made;
 }
 
-image small(const image& pixels) {
+image small(const image& pixels, int longest) {
     const int longer = std::max(pixels.width, pixels.height);
-    if (longer <= longest_side) return pixels;
+    if (longer <= longest) return pixels;
     const auto side = [&](int length) {
-        return std::max(1, static_cast<int>(std::lround(double(length) * longest_side / longer)));
+        return std::max(1, static_cast<int>(std::lround(double(length) * longest / longer)));
     };
     return downsample(pixels, side(pixels.width), side(pixels.height));
 }
@@ -68,8 +69,30 @@ image error_image(const image& a, const image& b, const std::string& name) {
     return made;
 }
 
+image thumbnail(const image& photo) {
+    image shown = small(photo, longest_side_of_thumbnail);
+    const int pattern = std::max(2, std::max(shown.width, shown.height) / 64);
+    for (int y = 0; y < shown.height; ++y)
+        for (int x = 0; x < shown.width; ++x) {
+            const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(shown.width) +
+                           static_cast<std::size_t>(x);
+            std::uint8_t* const rgba = &shown.rgba[4 * i];
+            if (shown.is_masked(i)) {
+                std::ranges::copy(stripe_colors[static_cast<std::size_t>((x + y) / pattern % 2)], rgba);
+            } else {
+                const int checker = (x / pattern + y / pattern) % 2 == 0 ? 150 : 210;
+                for (std::size_t c = 0; c < 3; ++c)
+                    rgba[c] = static_cast<std::uint8_t>(
+                        std::min(255, rgba[c] + (255 - int{rgba[3]}) * checker / 255));
+            }
+        }
+    for (std::size_t i = 3; i < shown.rgba.size(); i += 4) shown.rgba[i] = 255;
+    shown.has_alpha = shown.has_mask = false;
+    return shown;
+}
+
 std::string data_url(const image& pixels) {
-    const image shown = small(pixels);
+    const image shown = small(pixels, longest_side);
     std::vector<std::uint8_t> rgb(shown.rgba.size() / 4 * 3);
     for (std::size_t i = 0; i < rgb.size() / 3; ++i)
         std::copy_n(shown.rgba.begin() + static_cast<std::ptrdiff_t>(4 * i), 3,

@@ -17,6 +17,10 @@ image image_of(int width, int height, const std::vector<float>& planes);
 /// sizes differ.
 image error_image(const image& a, const image& b, const std::string& name);
 
+/// Returns a photo for a page: opaque, and at most 640 pixels on its longer side. Transparent parts
+/// show a checkerboard, and masked pixels stripes.
+image thumbnail(const image& photo);
+
 /// Returns the image as a JPEG in a data URL. Downsamples it to at most 960 pixels on its longer
 /// side.
 std::string data_url(const image& pixels);

@@ -133,6 +133,23 @@ TEST_CASE("pages: images are JPEGs in data URLs of bounded size") {
     CHECK(data_url(plain_image(4000, 10, 1)).size() < 20000);
 }
 
+TEST_CASE("pages: a thumbnail is small and opaque, with patterns for what is not part of the photo") {
+    gs::image photo = plain_image(4, 1, 0.5F);
+    for (std::size_t c = 0; c < 4; ++c) photo.rgba[4 + c] = 0;
+    photo.has_alpha = true;
+    photo.mask_pixel(2);
+    const gs::image shown = thumbnail(photo);
+    CHECK(int{shown.rgba[0]} == 128);
+    CHECK(int{shown.rgba[4]} == 150);
+    CHECK(int{shown.rgba[8]} == 255);
+    CHECK(int{shown.rgba[9]} == 0);
+    for (std::size_t i = 0; i < 4; ++i) CHECK(int{shown.rgba[4 * i + 3]} == 255);
+    CHECK_FALSE(shown.has_alpha);
+    CHECK_FALSE(shown.has_mask);
+    CHECK(thumbnail(plain_image(20, 2000, 1)).height == 640);
+    CHECK(thumbnail(plain_image(20, 2000, 1)).width == 6);
+}
+
 TEST_CASE("pages: the report escapes texts and shows no folders") {
     const std::string page = page_of({sample_run("<script>alert(1)</script>"), {}, true});
     CHECK(page.find("<script>alert") == page.npos);

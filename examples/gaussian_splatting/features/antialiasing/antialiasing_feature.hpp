@@ -16,6 +16,7 @@ class antialiasing_feature final : public feature {
                "photos have the same distance";
     }
     finding analyze(const scene_statistics& statistics) const override;
+    explanation explain(const scene_statistics& statistics, const finding& found) const override;
     void prepare(const selected_feature&, scene&, gaussians&) const override;
 };
 

@@ -18,6 +18,7 @@ class background_feature final : public feature {
         return {alpha, alpha ? "photos have transparent parts" : "all photos are opaque",
                 alpha ? "white" : "black"};
     }
+    explanation explain(const scene_statistics& statistics, const finding& found) const override;
 };
 
 }  // namespace gs::features

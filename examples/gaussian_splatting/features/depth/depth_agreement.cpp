@@ -16,7 +16,6 @@ namespace gs::features {
 namespace {
 
 constexpr std::size_t least_points = 10;
-constexpr double least_correlation = 0.5;
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -89,6 +88,7 @@ depth_agreement compare_depths(const scene& of) {
     depth_agreement found;
     found.photos = of.train.size();
     found.fits.resize(of.train.size());
+    found.correlations.assign(of.train.size(), std::nan(""));
     std::vector<std::optional<depth_line>> lines(of.train.size());
     for_each_in_parallel(of.train.size(), [&](std::size_t v) { lines[v] = line_of(of.train[v], of.points); });
     std::vector<double> correlations;
@@ -97,7 +97,8 @@ depth_agreement compare_depths(const scene& of) {
         if (!lines[v]) continue;
         ++found.told;
         correlations.push_back(lines[v]->correlation);
-        if (lines[v]->correlation < least_correlation) continue;
+        found.correlations[v] = lines[v]->correlation;
+        if (lines[v]->correlation < depth_agreement::least_correlation) continue;
         ++found.agreeing;
         found.fits[v] = {static_cast<float>(lines[v]->scale), static_cast<float>(lines[v]->offset)};
     }

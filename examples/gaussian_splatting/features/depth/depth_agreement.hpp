@@ -13,10 +13,13 @@ namespace gs::features {
 /// The agreement of the training photos' depth maps with the scene's points.
 struct depth_agreement {
     std::size_t photos = 0, with_map = 0;
-    std::size_t told = 0;         ///< number of maps with values at 10 visible points or more
-    std::size_t agreeing = 0;     ///< number of these with a correlation of 0.5 or more
-    double correlation = 0;       ///< median correlation of the `told` maps
-    std::vector<depth_fit> fits;  ///< by photo, values to inverse depths; scale 0: not agreeing
+    std::size_t told = 0;              ///< number of maps with values at 10 visible points or more
+    std::size_t agreeing = 0;          ///< number of these with `least_correlation` or more
+    double correlation = 0;            ///< median correlation of the `told` maps
+    std::vector<depth_fit> fits;       ///< by photo, values to inverse depths; scale 0: not agreeing
+    std::vector<double> correlations;  ///< by photo; NaN for maps that are not `told`
+
+    static constexpr double least_correlation = 0.5;  ///< of a map that agrees
 };
 /// Compares the depth maps of all training photos with the scene's points.
 depth_agreement compare_depths(const scene& of);

@@ -19,6 +19,7 @@ class depth_feature final : public feature {
         return "helps if photos and points are few; an iteration with a depth map takes up to twice the time";
     }
     finding analyze(const scene_statistics& statistics) const override;
+    explanation explain(const scene_statistics& statistics, const finding& found) const override;
     std::vector<float> neutral_values(const scene& scene) const override;
     std::string obstacle(const scene& scene, const std::vector<float>& values) const override;
     /// Removes depth maps that no step uses.

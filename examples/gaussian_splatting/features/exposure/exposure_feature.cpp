@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "exposure_feature.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,8 @@ namespace {
 
 constexpr double least_spread = 0.1;  ///< root mean square of log2 of the brightness
 constexpr double least_errors = 3;    ///< smallest spread, in standard errors
+
+double percent(double log2) { return 100 * (std::exp2(log2) - 1); }
 
 std::vector<float> values_of(const photo_brightness& brightness, std::size_t photos) {
     std::vector<exposure> all(photos, identity_exposure);
@@ -54,12 +57,41 @@ finding exposure_feature::analyze(const scene_statistics& statistics) const {
     const double spread = errors.empty() ? 0 : std::sqrt(square / static_cast<double>(errors.size()));
     const double error = median(errors);
     const bool varies = spread >= least_spread && spread >= least_errors * error;
-    const auto percent = [](double log2) { return 100 * (std::exp2(log2) - 1); };
     return {
         varies,
         text("the brightness of the same points differs by %.1f %% between photos (standard error %.1f %%)",
              percent(spread), percent(error)),
         varies ? "on" : "off", std::move(values)};
+}
+
+explanation exposure_feature::explain(const scene_statistics& statistics, const finding&) const {
+    explanation made{.condition = text("the brightness differs by at least %.1f %%, and by at least %.0f "
+                                       "standard errors",
+                                       percent(least_spread), least_errors)};
+    const photo_brightness& brightness = statistics.brightness();
+    std::vector<double> shown(brightness.log2.size(), std::nan(""));
+    std::vector<std::size_t> order;
+    for (std::size_t v = 0; v < shown.size(); ++v) {
+        if (brightness.error[v] == 0) continue;
+        shown[v] = percent(brightness.log2[v]);
+        order.push_back(v);
+    }
+    if (order.empty()) return made;
+    const auto last = static_cast<double>(shown.size());
+    made.charts.push_back(
+        {"Brightness of photos relative to their mean (%)",
+         "photo",
+         {curve_of_photos("photo", shown),
+          level_line("typical difference that calls for exposure", last, percent(least_spread)),
+          level_line("the same below the mean", last, percent(-least_spread))}});
+    std::ranges::sort(order, {}, [&](std::size_t v) { return shown[v]; });
+    const auto add = [&](std::size_t v, const char* label) {
+        made.photos.push_back(shown_photo(statistics.scene().train[v], label,
+                                          text("Points in it: %+.1f %% brightness.", shown[v])));
+    };
+    add(order.front(), "Darkest photo");
+    add(order.back(), "Brightest photo");
+    return made;
 }
 
 std::vector<float> exposure_feature::neutral_values(const scene& scene) const {

@@ -20,6 +20,7 @@ class exposure_feature final : public feature {
                "slower";
     }
     finding analyze(const scene_statistics& statistics) const override;
+    explanation explain(const scene_statistics& statistics, const finding& found) const override;
     bool begins_from_photos() const override { return true; }
     std::vector<float> neutral_values(const scene& scene) const override;
     void schedule(const selected_feature& selected, train::training& training) const override;

@@ -16,6 +16,7 @@ class lens_feature final : public feature {
     }
     bool is_selectable() const override { return false; }
     finding analyze(const scene_statistics& statistics) const override;
+    explanation explain(const scene_statistics& statistics, const finding& found) const override;
 };
 
 }  // namespace gs::features

@@ -14,6 +14,7 @@ class masks_feature final : public feature {
         return "keep moving objects out of the scene; have no cost";
     }
     finding analyze(const scene_statistics& statistics) const override;
+    explanation explain(const scene_statistics& statistics, const finding& found) const override;
     std::string obstacle(const scene& scene, const std::vector<float>&) const override;
 };
 

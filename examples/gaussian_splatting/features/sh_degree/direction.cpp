@@ -20,8 +20,6 @@ constexpr float one_size = 1.6f;
 constexpr double outlier = 4.0;  ///< standard deviations; another object hid the point
 
 constexpr std::size_t some_points = 10;
-constexpr double least_share = 0.03;       ///< smallest gain of a degree, relative to degree 0
-constexpr double least_amplitude = 0.002;  ///< smallest gain of a degree, root mean square
 
 /// Keeps the largest set of observations in which the footprints differ by at most a factor of
 /// `one_size`. From a larger distance, the color of a point mixes with its surroundings.
@@ -39,11 +37,10 @@ void keep_one_size(std::vector<observation>& seen) {
             seen.begin() + static_cast<std::ptrdiff_t>(first + most)};
 }
 
-/// Appends the squared residuals of the observations of one point, for SH degrees 0 to 3. A
+/// Returns the squared residuals of the observations of one point, for SH degrees 0 to 3. A
 /// residual is the difference between an observation and its leave-one-out prediction. Each square
 /// is the mean over color channels.
-void add_residuals(const std::vector<observation>& seen, double ridge,
-                   std::vector<std::array<double, 4>>& residuals) {
+std::vector<std::array<double, 4>> residuals_of(const std::vector<observation>& seen, double ridge) {
     const std::size_t n = seen.size();
     glm::dvec3 mean(0);
     for (const observation& o : seen) mean += glm::dvec3(o.color) / double(n);
@@ -90,24 +87,36 @@ void add_residuals(const std::vector<observation>& seen, double ridge,
             left[i][static_cast<std::size_t>(degree)] = glm::dot(rest, rest) / 3;
         }
     }
-    residuals.insert(residuals.end(), left.begin(), left.end());
+    return left;
 }
 
-std::array<double, 4> unexplained_with(const observed_points& points, double ridge) {
-    std::vector<std::vector<std::array<double, 4>>> residuals(points.size());
+/// The squared residuals of the observations of each point. Those of outliers are clipped.
+using point_residuals = std::vector<std::vector<std::array<double, 4>>>;
+
+point_residuals residuals_with(const observed_points& points, double ridge) {
+    point_residuals residuals(points.size());
     for_each_in_parallel(points.size(), [&](std::size_t p) {
         if (points[p].size() >= scene_statistics::least_photos_of_point)
-            add_residuals(points[p], ridge, residuals[p]);
+            residuals[p] = residuals_of(points[p], ridge);
     });
     std::vector<double> sizes;
     for (const auto& of_point : residuals)
         for (const auto& r : of_point) sizes.push_back(r[0]);
     const double limit = outlier * outlier * 1.4826 * 1.4826 * median(sizes);
-    std::array<double, 4> sum{};
+    for (auto& of_point : residuals)
+        for (auto& r : of_point)
+            for (double& x : r) x = std::min(x, limit);
+    return residuals;
+}
+
+std::array<double, 4> mean_of(const point_residuals& residuals) {
+    std::size_t count = 0;
+    for (const auto& of_point : residuals) count += of_point.size();
+    std::array<double, 4> mean{};
     for (const auto& of_point : residuals)
         for (const auto& r : of_point)
-            for (std::size_t d = 0; d < 4; ++d) sum[d] += std::min(r[d], limit) / double(sizes.size());
-    return sum;
+            for (std::size_t d = 0; d < 4; ++d) mean[d] += r[d] / double(count);
+    return mean;
 }
 
 }  // namespace
@@ -128,17 +137,32 @@ std::array<double, 4> unexplained_by_direction(const observed_points& points) {
     std::array<double, 4> least;
     least.fill(std::numeric_limits<double>::infinity());
     for (const double ridge : ridges) {
-        const std::array<double, 4> by_ridge = unexplained_with(points, ridge);
+        const std::array<double, 4> by_ridge = mean_of(residuals_with(points, ridge));
         for (std::size_t d = 0; d < 4; ++d) least[d] = std::min(least[d], by_ridge[d]);
     }
     return least;
 }
 
-direction_statistics measure_direction(const scene_statistics& statistics) {
-    direction_statistics found;
-    found.has_points = !statistics.scene().points.empty();
+std::vector<double> explained_by_direction(const observed_points& points, int degree) {
+    const auto d = static_cast<std::size_t>(degree);
+    point_residuals best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const double ridge : ridges) {
+        point_residuals by_ridge = residuals_with(points, ridge);
+        const double unexplained = mean_of(by_ridge)[d];
+        if (!(unexplained < least)) continue;
+        least = unexplained;
+        best = std::move(by_ridge);
+    }
+    std::vector<double> explained(points.size(), 0.0);
+    for (std::size_t p = 0; p < best.size(); ++p)
+        for (const auto& r : best[p]) explained[p] += (r[0] - r[d]) / double(best[p].size());
+    return explained;
+}
+
+observed_points comparable_points(const scene_statistics& statistics) {
     observed_points points = statistics.smooth_points();
-    if (points.empty()) return found;
+    if (points.empty()) return points;
     const photo_brightness& brightness = statistics.brightness();
     for (auto& seen : points) {
         std::erase_if(seen, [&](const observation& o) { return brightness.error[o.view] == 0; });
@@ -147,6 +171,13 @@ direction_statistics measure_direction(const scene_statistics& statistics) {
     }
     std::erase_if(points,
                   [](const auto& seen) { return seen.size() < scene_statistics::least_photos_of_point; });
+    return points;
+}
+
+direction_statistics measure_direction(const scene_statistics& statistics) {
+    direction_statistics found;
+    found.has_points = !statistics.scene().points.empty();
+    const observed_points points = comparable_points(statistics);
     found.points = points.size();
     if (!points.empty()) found.unexplained = unexplained_by_direction(points);
     return found;

@@ -12,6 +12,7 @@
 #include "../../training/training.hpp"
 #include "../text.hpp"
 #include "direction.hpp"
+#include "direction_explanation.hpp"
 #include "revise_sh_degree.hpp"
 
 namespace gs::features {
@@ -67,6 +68,14 @@ finding sh_degree_feature::analyze(const scene_statistics& statistics) const {
             "degree %zu reduces the unexplained difference between photos of a point from %.2f %% to %.2f %%",
             up_to, 100 * std::sqrt(found.unexplained[0]), 100 * std::sqrt(found.unexplained[up_to])),
         choice, std::move(values)};
+}
+
+explanation sh_degree_feature::explain(const scene_statistics& statistics, const finding& found) const {
+    const int degree = first_sh_degree(found.values);
+    explanation made = explain_direction(statistics, degree == 0 ? 3 : degree);
+    for (int other = 0; other <= 3; ++other)
+        if (other != degree) made.options.push_back("--sh-degree " + std::to_string(other));
+    return made;
 }
 
 void sh_degree_feature::prepare(const selected_feature& selected, scene&, gaussians& model) const {

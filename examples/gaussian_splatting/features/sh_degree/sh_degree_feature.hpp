@@ -20,6 +20,7 @@ class sh_degree_feature final : public feature {
                "the memory of degree 0";
     }
     finding analyze(const scene_statistics& statistics) const override;
+    explanation explain(const scene_statistics& statistics, const finding& found) const override;
     std::vector<float> neutral_values(const scene&) const override { return {3, 0}; }
     void prepare(const selected_feature& selected, scene&, gaussians& model) const override;
     void schedule(const selected_feature& selected, train::training& training) const override;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sky_feature.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "../text.hpp"
@@ -26,6 +28,34 @@ sky_fit best_fit(const scene_statistics& statistics) {
     return evened.share > found.share ? evened : found;
 }
 
+/// Returns the area of the cells of one photo, predicted or not, as a share of the photo.
+double share_of(const std::vector<sky_cell>& cells, bool is_predicted, const camera& taken_with) {
+    double area = 0;
+    for (const sky_cell& c : cells)
+        if (c.is_predicted == is_predicted) area += double(c.side) * c.side;
+    return area / (double(taken_with.width) * taken_with.height);
+}
+
+/// Returns the cells as rectangles, of which neighbors in a row are one.
+std::vector<pages::mark> marks_of(const std::vector<sky_cell>& cells) {
+    std::vector<pages::mark> marks;
+    for (const sky_cell& c : cells) {
+        const pages::mark made{.left = double(c.left),
+                               .top = double(c.top),
+                               .width = double(c.side),
+                               .height = double(c.side),
+                               .color = c.is_predicted ? 0 : 1};
+        const bool continues = !marks.empty() && marks.back().top == made.top &&
+                               marks.back().left + marks.back().width == made.left &&
+                               marks.back().color == made.color;
+        if (continues)
+            marks.back().width += made.width;
+        else
+            marks.push_back(made);
+    }
+    return marks;
+}
+
 }  // namespace
 
 finding sky_feature::analyze(const scene_statistics& statistics) const {
@@ -40,6 +70,38 @@ finding sky_feature::analyze(const scene_statistics& statistics) const {
                  "of them, with a brightness of %.0f %%",
                  100 * s.empty, s.empty > 0 ? 100 * s.share / s.empty : 0.0, 100 * s.brightness),
             exists ? "on" : "off", std::move(s.coefficients)};
+}
+
+explanation sky_feature::explain(const scene_statistics& statistics, const finding&) const {
+    explanation made{.condition =
+                         text("the direction predicts at least %.0f %% of all pixels and %.0f %% of "
+                              "the smooth ones without points, with a brightness of at least %.0f %%",
+                              100 * least_share, 100 * least_of_empty, 100 * least_brightness)};
+    const std::vector<view>& views = statistics.scene().train;
+    const sky_fit found = best_fit(statistics);
+    if (found.cells.empty()) return made;
+    std::vector<double> sky, other;
+    std::vector<std::size_t> order;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        sky.push_back(100 * share_of(found.cells[v], true, views[v].camera));
+        other.push_back(100 * share_of(found.cells[v], false, views[v].camera));
+        order.push_back(v);
+    }
+    made.charts.push_back({"Smooth areas without points (% of the photo)",
+                           "photo",
+                           {curve_of_photos("found as sky", sky), curve_of_photos("not predicted", other)},
+                           true});
+    const auto add = [&](std::size_t v, const char* label) {
+        made.photos.push_back(shown_photo(
+            views[v], label,
+            "Blue: found as sky. Orange: smooth and without points, but the direction does not predict it.",
+            marks_of(found.cells[v])));
+    };
+    std::ranges::sort(order, std::greater(), [&](std::size_t v) { return sky[v]; });
+    add(order.front(), "Most sky");
+    if (order.size() > 2) add(order[order.size() / 2], "Typical photo");
+    if (order.size() > 1) add(order.back(), "Least sky");
+    return made;
 }
 
 std::vector<float> sky_feature::neutral_values(const scene&) const {

@@ -19,6 +19,7 @@ class sky_feature final : public feature {
         return "removes floaters in front of a sky; iterations are slower";
     }
     finding analyze(const scene_statistics& statistics) const override;
+    explanation explain(const scene_statistics& statistics, const finding& found) const override;
     bool begins_from_photos() const override { return true; }
     std::vector<float> neutral_values(const scene&) const override;
     std::string obstacle(const scene& scene, const std::vector<float>&) const override;

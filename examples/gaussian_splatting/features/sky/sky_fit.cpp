@@ -23,6 +23,7 @@ constexpr std::size_t terms = sh_coefficients(sky_degree);
 
 /// A square of a photo without points.
 struct cell {
+    int left, top, side;
     std::array<double, terms> basis{};
     glm::dvec3 color{0};
 };
@@ -80,8 +81,7 @@ photo_cells cells_of(const camera& c, const image& photo, const std::vector<colo
             if (near_points[static_cast<std::size_t>(row * across + column)] != 0) continue;
             const auto color = smooth_color(photo, column * side, row * side, side);
             if (!color) continue;
-            cell one;
-            one.color = *color;
+            cell one{.left = column * side, .top = row * side, .side = side, .color = *color};
             sh_basis<double>(sky_degree, c.ray((column + 0.5) * side, (row + 0.5) * side), one.basis.data());
             found.empty.push_back(one);
         }
@@ -178,11 +178,14 @@ sky_fit fit_sky(const scene& of, const std::vector<double>& brighter) {
     }
     std::size_t predicted = 0;
     glm::dvec3 colors(0);
+    found.cells.resize(photos.size());
     for (std::size_t v = 0; v < photos.size(); ++v)
         for (std::size_t i = 0; i < rest[v].size(); ++i) {
+            const cell& c = photos[v].empty[i];
+            found.cells[v].push_back({c.left, c.top, c.side, rest[v][i] <= sky_tolerance});
             if (rest[v][i] > sky_tolerance) continue;
             ++predicted;
-            colors += photos[v].empty[i].color;
+            colors += c.color;
         }
     found.empty = static_cast<double>(empty) / static_cast<double>(all);
     found.share = static_cast<double>(predicted) / static_cast<double>(all);

@@ -8,14 +8,21 @@
 
 namespace gs::features {
 
+/// A smooth square of an image without points, in pixels.
+struct sky_cell {
+    int left, top, side;
+    bool is_predicted;  ///< whether the other images predict its color, so that it counts as sky
+};
+
 /// The sky in the training images: smooth parts without points, whose color depends only on the
 /// direction. The other images therefore predict the color of such a part.
 struct sky_fit {
-    bool has_points = false;          ///< whether the scene has points; if not, the rest is 0
-    double share = 0;                 ///< share of the images' area predicted to `sky_tolerance`
-    double empty = 0;                 ///< share of their area that is smooth and has no points
-    double brightness = 0;            ///< mean of the predicted part over its channels, in [0, 1]
-    std::vector<float> coefficients;  ///< see `gaussians::sky`
+    bool has_points = false;                   ///< whether the scene has points; if not, the rest is 0
+    double share = 0;                          ///< share of the images' area predicted to `sky_tolerance`
+    double empty = 0;                          ///< share of their area that is smooth and has no points
+    double brightness = 0;                     ///< mean of the predicted part over its channels, in [0, 1]
+    std::vector<float> coefficients;           ///< see `gaussians::sky`
+    std::vector<std::vector<sky_cell>> cells;  ///< by training image, row by row
 };
 inline constexpr double sky_tolerance = 0.06;  ///< root mean square over channels
 
