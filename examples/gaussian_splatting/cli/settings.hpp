@@ -58,6 +58,7 @@ struct settings {
     pose_source poses = pose_source::given;
     std::optional<int> video_frames;
     std::string output;
+    std::string html;  ///< web page of inspect; empty if there is none
     std::string ply;
     std::vector<std::string> runs;  ///< folders of the runs that compare reads
     device_kind device = device_kind::automatic;

@@ -80,6 +80,7 @@ const std::map<std::string, option_case> cases{
           return s.checkpoint_iterations == std::set{10, 30};
       }}},
     {"--keep-checkpoints", {{"3"}, [](const settings& s) { return s.keep_checkpoints == 3; }}},
+    {"--html", {{"page.html"}, [](const settings& s) { return s.html == "page.html"; }}},
     {"--no-viewer", {{}, [](const settings& s) { return s.no_viewer; }}},
     {"--viewer-size", {{"5MB"}, [](const settings& s) { return s.viewer_size == 5'000'000U; }}},
     {"input", {{"a.ply"}, [](const settings& s) { return s.ply == "a.ply"; }}},

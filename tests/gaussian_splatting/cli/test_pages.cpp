@@ -6,6 +6,7 @@
 
 #include "cli/run_images.hpp"
 #include "run_program.hpp"
+#include "small_scene.hpp"
 #include "small_training.hpp"
 
 using namespace gs_test;
@@ -93,4 +94,54 @@ TEST_CASE("compare refuses folders that are no runs") {
     write_file(folder / "a/metrics.json", "{}");
     check_refusal({"compare", folder / "a", folder / "a", "-o", folder / "page.html"}, {"settings.json"});
     CHECK(!fs::exists(folder / "page.html"));
+}
+
+TEST_CASE("inspect --html writes the evidence for each effect") {
+    const temporary_folder folder;
+    const fs::path page_file = folder / "page.html";
+    const words scene{"inspect", "-d", "synthetic:spheres,sky=0.7,exposure=0.3,views=12"};
+    const outcome o = run(scene + words{"--html", page_file.string(), "-o", folder / "effects.json"});
+    CAPTURE(o.err);
+    REQUIRE(o.code == 0);
+    CHECK(says(o.out, {"page " + page_file.string()}));
+    const std::string page = read_file(page_file);
+    CHECK(says(page, {"Effects of synthetic:spheres,sky=0.7,exposure=0.3,views=12", "Training photos: 12",
+                      "Darkest photo", "Most sky", "class=\"mark0\"", "<code>--effects auto,-sky</code>",
+                      "<code>--effects auto,+direction</code>", "<code>--sh-degree 3</code>",
+                      "<code>--background white</code>", "no training photo has masked pixels"}));
+    const json effects = read_json(folder / "effects.json").at("effects");
+    REQUIRE(effects.size() == 8);
+    for (const json& effect : effects) {
+        const auto name = effect.at("name").get<std::string>();
+        CAPTURE(name);
+        CHECK(says(page, {"id=\"" + name + "\"><h2>", effect.at("evidence").get<std::string>()}));
+    }
+    CHECK(page.find(folder.path().string()) == page.npos);
+    CHECK(contents(folder.path()).size() == 2);
+}
+
+TEST_CASE("inspect --html shows photos of a scene without its folders") {
+    const temporary_folder folder;
+    small_scene scene;
+    scene.write(folder / "secret/garden");
+    check_success({"inspect", "-d", folder / "secret/garden", "--html", folder / "page.html"});
+    const std::string page = read_file(folder / "page.html");
+    CHECK(says(page, {"<title>Effects of garden</title>", "photo_0.png", "cannot decide"}));
+    CHECK(page.find("secret") == page.npos);
+}
+
+TEST_CASE("inspect --html leaves an earlier page as it is if it fails, and refuses bad names first") {
+    const temporary_folder folder;
+    write_file(folder / "page.html", "earlier");
+    check_refusal({"inspect", "-d", "synthetic:spheres,shine=1", "--html", folder / "page.html"},
+                  {"'shine'"});
+    CHECK(read_file(folder / "page.html") == "earlier");
+    // The names are checked before the scene is read.
+    const words broken{"inspect", "-d", "synthetic:none", "--html"};
+    check_refusal(broken + words{folder.path().string()},
+                  {folder.path().string(), "is a folder", "name a file"});
+    check_refusal(broken + words{folder / "none/page.html"}, {folder / "none", "does not exist", "make it"});
+    check_refusal(broken + words{folder / "page.html", "-o", folder / "page.html"},
+                  {"--html and --output", "page.html", "different names"});
+    CHECK(contents(folder.path()).size() == 1);
 }

@@ -23,6 +23,7 @@ from browser import Browser, require_browser  # noqa: E402
 
 SCENE = ["-d", "synthetic:spheres,views=9", "-r", "96"]
 EFFECTS_SCENE = ["-d", "synthetic:spheres,sky=0.7,scales=4,gloss=1,views=9", "-r", "64"]
+EVIDENCE_SCENE = "synthetic:spheres,sky=0.7,exposure=0.3,gloss=0.6,scales=4,passers=0.1,depths=0.05,views=12"
 SIZES = {"desktop": (1280, 800, 1, False), "phone": (390, 844, 2, True)}
 # Software draws many frames of moving cameras, so their windows are small.
 SMALL, SMALL_TOUCH = (320, 240, 1, False), (240, 320, 1, True)
@@ -78,6 +79,7 @@ class Pages(unittest.TestCase):
                         "--sh-degree-interval", "10", "--sh-lr", "0.03", "-o", cls.folder / "effects", *EFFECTS_SCENE)
         cls.run_program("train", "-i", "100", "--device", "cpu", "--eval", "-o", cls.folder / "held_out", *SCENE)
         cls.run_program("train", "-i", "120", "--device", "cpu", "--eval", "-o", cls.folder / "longer", *SCENE)
+        cls.run_program("inspect", "--html", cls.folder / "inspect.html", "-d", EVIDENCE_SCENE)
         cls.run_program("compare", cls.folder / "held_out", cls.folder / "longer", "-o", cls.folder / "compare.html")
 
     @classmethod
@@ -195,7 +197,7 @@ class Pages(unittest.TestCase):
         self.check_quiet()
 
     def test_reports_fit_each_size_of_screen(self):
-        for page in ("run/report.html", "held_out/report.html", "compare.html"):
+        for page in ("run/report.html", "held_out/report.html", "compare.html", "inspect.html"):
             for name, size in SIZES.items():
                 with self.subTest(page + " " + name):
                     self.open(page, size)
@@ -204,6 +206,26 @@ class Pages(unittest.TestCase):
                         "[...document.images].filter(i => !i.closest('[hidden]')).every(i => i.naturalWidth > 0)"))
                     self.keep_screenshot(page.replace("/", "_").replace(".html", "_") + name)
                     self.check_quiet()
+
+    def test_marks_lie_over_their_photo(self):
+        # The sky of the scene fills the corners of its photos.
+        for name, size in SIZES.items():
+            with self.subTest(name):
+                self.open("inspect.html", size)
+                self.assertEqual(self.browser.evaluate(
+                    "[...document.querySelectorAll('.marked')].filter(m => m.querySelector('svg')).map(m => {"
+                    " const photo = m.querySelector('img').getBoundingClientRect();"
+                    " return [...m.querySelectorAll('rect, circle')].every(shape => {"
+                    "  const r = shape.getBoundingClientRect(), x = (r.left + r.right) / 2, y = (r.top + r.bottom) / 2;"
+                    "  return x >= photo.left && x <= photo.right && y >= photo.top && y <= photo.bottom }) })"
+                    ".filter(inside => !inside).length"), 0)
+                self.assertTrue(self.browser.evaluate(
+                    "(() => { const m = [...document.querySelectorAll('#sky .marked')][0],"
+                    " photo = m.querySelector('img').getBoundingClientRect();"
+                    " return [...m.querySelectorAll('rect.mark0')].some(shape => {"
+                    "  const r = shape.getBoundingClientRect();"
+                    "  return Math.abs(r.left - photo.left) < 1 && Math.abs(r.top - photo.top) < 1 }) })()"))
+                self.check_quiet()
 
     def test_the_slider_moves_the_line_between_the_images(self):
         self.open("held_out/report.html", SIZES["desktop"])

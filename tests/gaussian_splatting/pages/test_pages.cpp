@@ -11,6 +11,7 @@
 #include "../../support/temporary_folder.hpp"
 #include "pages/base64.hpp"
 #include "pages/compare_page.hpp"
+#include "pages/inspect_page.hpp"
 #include "pages/line_chart.hpp"
 #include "pages/page_text.hpp"
 #include "pages/picture.hpp"
@@ -219,4 +220,69 @@ TEST_CASE("pages: a comparison marks the best value and the settings that differ
     CHECK(page.find("class=\"differs\"><th>data") == page.npos);
     CHECK(page.find("someone") == page.npos);
     CHECK(page.find("<b>") == page.find("<b>Worst view"));
+}
+
+namespace {
+
+inspected_effect sample_effect() {
+    return {.name = "sky",
+            .recommended = true,
+            .evidence = "40 % <blue>",
+            .condition = "at least 2 % & more",
+            .choice = "on",
+            .costs_and_gains = "removes floaters",
+            .overruled_by = {"--effects auto,-sky"},
+            .obstacle = "",
+            .charts = {{"Area <1>", "photo", {{"sky", {{1, 2}, {2, 3}}}}, true}},
+            .photos = {{.label = "Most sky",
+                        .name = "/home/someone/<a>.jpg",
+                        .note = "Blue: \"sky\"",
+                        .pixels = plain_image(4, 2, 1),
+                        .width = 400,
+                        .height = 200,
+                        .marks = {{10, 20, 30, 40}, {100, 50, 0, 0, 1}}}}};
+}
+
+std::string page_of(const std::vector<inspected_effect>& effects) {
+    std::ostringstream out;
+    write_inspect_page(out, {"<garden>", 12, effects});
+    return out.str();
+}
+
+}  // namespace
+
+TEST_CASE("pages: evidence has the decision, its condition, and the option that overrules it") {
+    inspected_effect effect = sample_effect();
+    const std::string page = page_of({effect});
+    CHECK(says(page,
+               {"<title>Effects of &lt;garden&gt;</title>", "Training photos: 12", "<a href=\"#sky\">sky</a>",
+                "<section class=\"evidence\" id=\"sky\">", "class=\"verdict yes\">recommended<",
+                "40 % &lt;blue&gt;", "Recommended if</th><td>at least 2 % &amp; more</td>",
+                "<code>--effects auto,-sky</code>", "removes floaters", "Area &lt;1&gt;"}));
+    effect.recommended = false;
+    effect.overruled_by = {"--effects auto,+sky"};
+    CHECK(says(page_of({effect}), {">not recommended<", "<code>--effects auto,+sky</code>"}));
+    effect.obstacle = "no <sky>";
+    const std::string impossible = page_of({effect});
+    CHECK(says(impossible, {"cannot be trained with the effect: no &lt;sky&gt;"}));
+    CHECK(impossible.find("<code>--effects") == impossible.npos);
+    effect.recommended.reset();
+    CHECK(says(page_of({effect}), {">cannot decide<"}));
+    effect.obstacle.clear();
+    effect.overruled_by.clear();
+    CHECK(says(page_of({effect}), {"No option; the files of the scene decide"}));
+}
+
+TEST_CASE("pages: marks of a photo have its coordinates, and its name has no folders") {
+    const std::string page = page_of({sample_effect()});
+    CHECK(says(page,
+               {"<svg viewBox=\"0 0 400 200\"",
+                "<rect x=\"10\" y=\"20\" width=\"30\" height=\"40\" class=\"mark0\"/>",
+                "<circle r=\"8.0\" cx=\"100\" cy=\"50\" class=\"mark1\"/>",
+                "<b>Most sky</b> &lt;a&gt;.jpg<br>Blue: &quot;sky&quot;", "src=\"data:image/jpeg;base64,"}));
+    CHECK(page.find("someone") == page.npos);
+    for (const char* foreign : {"http:", "https:", "<script", "url("}) {
+        CAPTURE(foreign);
+        CHECK(page.find(foreign) == page.npos);
+    }
 }
