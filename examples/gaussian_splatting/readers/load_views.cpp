@@ -143,6 +143,7 @@ std::vector<view> load_views(const std::vector<image_record>& records, const loa
         photo_source source{records[i], fitted[i], pinholes[i], scaled[i]};
         views[i] = streams ? streamed_view(std::make_shared<const photo_source>(std::move(source)))
                            : resident_view(source);
+        views[i].removed_distortion = records[i].distortion;
     });
     report_count(records, &image_record::mask, " has a mask", " have masks", log);
     report_count(records, &image_record::depth, " has a depth map", " have depth maps", log);

@@ -12,6 +12,7 @@
 #include "../image/depth_map.hpp"
 #include "../image/image.hpp"
 #include "camera.hpp"
+#include "lens.hpp"
 #include "normalization.hpp"
 
 namespace gs {
@@ -27,8 +28,9 @@ struct photo {
 struct view {
     std::string name;  ///< path relative to the images folder, with its ending
     gs::camera camera;
-    image pixels;        ///< has size and flags, but no values if `is_streamed`
-    depth_map depths{};  ///< has the photo's size, or is empty; has no values if `is_streamed`
+    image pixels;               ///< has size and flags, but no values if `is_streamed`
+    depth_map depths{};         ///< has the photo's size, or is empty; has no values if `is_streamed`
+    lens removed_distortion{};  ///< of the file, which loading has removed from the photo
 
     /// Decodes the photo, and replaces the argument, whose memory it reuses. Empty if the view holds
     /// the photo. Threads may call it. Throws `error`, for example if the file has changed since the

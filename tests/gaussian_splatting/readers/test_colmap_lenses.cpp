@@ -88,6 +88,8 @@ TEST_CASE("photos of a lens with distortion become those of a pinhole camera") {
         const gs::camera was = intrinsics_of(lens.camera);
         for (const gs::view& view : scene.train) {
             const gs::camera& is = view.camera;
+            CHECK(glm::distance(view.removed_distortion.distort({0.3, -0.2}), lens.distort({0.3, -0.2})) <
+                  1e-12);
             REQUIRE(std::pair{is.width, is.height} == std::pair{was.width, was.height});
             CHECK(std::pair{is.cx, is.cy} == std::pair{was.cx, was.cy});
             CHECK(is.fx / was.fx == doctest::Approx(is.fy / was.fy).epsilon(rounding));
