@@ -251,6 +251,28 @@ TEST_CASE("explain: a lens is drawn as a curve, and each kind of lens as a photo
     CHECK(photo_labelled(all, "Widest pinhole photo").name == scene.train[2].name);
 }
 
+TEST_CASE("explain: lens distortion that loading removed is drawn as a shift") {
+    gs::scene scene = explained_scene("spheres,views=3,points=300");
+    const gs::scene_statistics statistics(scene);
+    const auto finding_of_lens = [&] {
+        for (const auto& f : all_features())
+            if (f->name() == "lens") return f->analyze(statistics);
+        return finding{};
+    };
+    CHECK(finding_of_lens().evidence == "all cameras are pinhole cameras");
+    scene.train[0].removed_distortion.k1 = -0.1;
+    scene.train[2].removed_distortion.k1 = -0.2;
+    CHECK(finding_of_lens().evidence == "2 of 3 photos had lens distortion, which loading removed");
+    const explanation found = explained("lens", scene);
+    CHECK(photo_labelled(found, "Photo with the strongest distortion").name == scene.train[2].name);
+    const gs::camera& c = scene.train[2].camera;
+    const double corner = std::hypot(c.width - c.cx, c.height - c.cy) / c.fx;
+    REQUIRE(found.charts.size() == 2);
+    const auto& [share, shift] = found.charts[1].curves[0].points.back();
+    CHECK(share == 100);
+    CHECK(shift == doctest::Approx(-0.2 * std::pow(corner, 3) * c.fx));
+}
+
 TEST_CASE("explain: transparent parts of a photo appear as a checkerboard") {
     const explanation found = explained("background", explained_scene("alpha,views=3,points=300"));
     const gs::image& shown = photo_labelled(found, "Transparent photo").pixels;

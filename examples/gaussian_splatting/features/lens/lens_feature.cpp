@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -20,6 +22,33 @@ double diagonal_of(const camera& c) {
         std::hypot(std::max(c.cx, c.width - c.cx) / c.fx, std::max(c.cy, c.height - c.cy) / c.fy);
     const double half = c.fisheye ? c.fisheye->angle(corner) : std::atan(corner);
     return 360 / std::numbers::pi * half;
+}
+
+/// Returns how far the removed distortion moved a ray toward a corner of the photo: outward, in
+/// pixels. `share`: of the distance to the corner.
+double shift_of(const view& v, double share) {
+    const camera& c = v.camera;
+    const glm::dvec2 ray =
+        share * glm::dvec2(std::max(c.cx, c.width - c.cx) / c.fx, std::max(c.cy, c.height - c.cy) / c.fy);
+    return c.fx * (glm::length(v.removed_distortion.distort(ray)) - glm::length(ray));
+}
+
+pages::line_chart distortion_chart(const view& v) {
+    constexpr int steps = 50;
+    pages::curve shift{"shift", {}};
+    for (int i = 0; i <= steps; ++i)
+        shift.points.emplace_back(100.0 * i / steps, shift_of(v, static_cast<double>(i) / steps));
+    return {"Outward shift by lens distortion (pixels)",
+            "distance from the center (% of the way to the corner)",
+            {std::move(shift)}};
+}
+
+/// Returns the photo from which the strongest lens distortion was removed, or `end`.
+std::vector<view>::const_iterator most_distorted(const std::vector<view>& views) {
+    const auto found = std::ranges::max_element(views, {}, [](const view& v) {
+        return v.removed_distortion.is_none() ? -1 : std::abs(shift_of(v, 1));
+    });
+    return found == views.end() || found->removed_distortion.is_none() ? views.end() : found;
 }
 
 /// Returns how far from the center rays appear, for a fisheye lens and for a pinhole camera.
@@ -59,7 +88,14 @@ finding lens_feature::analyze(const scene_statistics& statistics) const {
         return {true, with_fisheye + ", and " + are_panoramas, "fisheye and panorama"};
     if (photos > 0) return {true, with_fisheye, "fisheye"};
     if (panoramas > 0) return {true, are_panoramas, "panorama"};
-    return {false, "all cameras are pinhole cameras, or their photos were undistorted", "pinhole"};
+    const auto distorted = std::ranges::count_if(
+        statistics.scene().train, [](const view& v) { return !v.removed_distortion.is_none(); });
+    if (distorted > 0)
+        return {false,
+                text("%zu of %zu photos had lens distortion, which loading removed",
+                     static_cast<std::size_t>(distorted), all),
+                "pinhole"};
+    return {false, "all cameras are pinhole cameras", "pinhole"};
 }
 
 explanation lens_feature::explain(const scene_statistics& statistics, const finding&) const {
@@ -83,6 +119,13 @@ explanation lens_feature::explain(const scene_statistics& statistics, const find
     add(lens_model::pinhole, "Widest pinhole photo",
         "Straight lines of the scene must be straight here. If they bend, the camera model of the files is "
         "wrong.");
+    if (const auto distorted = most_distorted(views); distorted != views.end()) {
+        made.charts.push_back(distortion_chart(*distorted));
+        made.photos.push_back(shown_photo(*distorted, "Photo with the strongest distortion",
+                                          text("Loading removed its lens distortion, which moved a corner by "
+                                               "%.1f pixels.",
+                                               std::abs(shift_of(*distorted, 1)))));
+    }
     add(lens_model::fisheye, "Widest fisheye photo",
         "Straight lines of the scene bend around the center. If they are straight, the camera model of the "
         "files is wrong.");
