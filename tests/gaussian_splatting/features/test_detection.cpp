@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <random>
@@ -122,6 +124,21 @@ TEST_CASE("a sky is what it was made of, and begins from that") {
     bare.points.clear();
     CHECK_FALSE(fit_sky(bare, {}).has_points);
     CHECK_THROWS_WITH_AS(made("alpha,sky=1"), doctest::Contains("it has no sky"), gs::error);
+}
+
+TEST_CASE("synthetic walls are behind the spheres, at a finite distance") {
+    const auto corner_depths = [](const std::string& parameters) {
+        const gs::scene scene = made(parameters);
+        std::set<std::uint16_t> values;
+        const gs::depth_map& map = scene.train[0].depths;
+        for (const int x : {0, map.width - 1})
+            for (const int y : {0, map.height - 1})
+                values.insert(map.values[static_cast<std::size_t>(y * map.width + x)]);
+        return values.size();
+    };
+    CHECK(corner_depths("spheres,views=1,depths=0") == 1);
+    CHECK(corner_depths("spheres,views=1,depths=0,walls=0.5") > 1);
+    CHECK_THROWS_WITH_AS(made("alpha,walls=1"), doctest::Contains("it has no walls"), gs::error);
 }
 
 TEST_CASE("a scene without points is not told what it needs") {
@@ -289,12 +306,12 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
     CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
     CHECK(refusal("spheres,glos=0.5") ==
           "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
-          "sky, fisheye, panorama, depths, points, views, noise");
+          "sky, walls, fisheye, panorama, depths, points, views, noise");
     CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
     CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
     CHECK(refusal("spheres,") ==
           "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
-          "sky, fisheye, panorama, depths, points, views, noise");
+          "sky, walls, fisheye, panorama, depths, points, views, noise");
     CHECK(refusal("spheres,gloss=nan") ==
           "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
     CHECK(refusal("spheres,views=4,depths=0") == "");
@@ -302,6 +319,8 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
     CHECK(
         refusal("spheres,panorama=1,fisheye=90") ==
         "a synthetic scene has either a 'fisheye' or a 'panorama', not both: spheres,panorama=1,fisheye=90");
+    CHECK(refusal("spheres,sky=1,walls=1") ==
+          "a synthetic scene has either a 'sky' or 'walls', not both: spheres,sky=1,walls=1");
     CHECK(refusal("spheres,views=4.5") ==
           "the 'views' of a synthetic scene is a whole number from 1 to 48, not '4.5'");
     CHECK(refusal("spheres,depths=-1") ==

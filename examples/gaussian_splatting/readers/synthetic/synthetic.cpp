@@ -21,6 +21,7 @@
 #include "../size_text.hpp"
 #include "synthetic_cameras.hpp"
 #include "synthetic_parameters.hpp"
+#include "synthetic_walls.hpp"
 
 namespace gs {
 namespace {
@@ -120,9 +121,10 @@ world world_of(const std::string& text) {
         if (how.world == candidate.name) {
             world made = candidate.make();
             made.how = how;
-            if (how.sky > 0 && made.transparent)
+            if ((how.sky > 0 || how.walls > 0) && made.transparent)
                 throw error("the synthetic scene '" + how.world +
-                            "' is transparent where it has nothing: it has no sky");
+                            "' is transparent where it has nothing: it has no " +
+                            (how.sky > 0 ? "sky" : "walls"));
             return made;
         }
         known += (known.empty() ? "" : ", ") + std::string(candidate.name);
@@ -216,6 +218,11 @@ vec sky(const world& w, const vec& direction) {
     return w.how.sky * (glm::mix(low, high, 0.5 + 0.5 * direction.z) + near_sun * glow);
 }
 
+/// Returns the color behind all surfaces.
+vec color_behind(const world& w, const vec& origin, const vec& direction) {
+    return w.how.walls > 0 ? wall_color(w.how, place_on_walls(w.how, origin, direction)) : sky(w, direction);
+}
+
 /// Returns the color of a surface under a warm sun and a cool sky, as displayed, in [0, 1]. Glossy
 /// surfaces also show the sun as a Phong lobe and the sky in the mirrored direction, more strongly
 /// at grazing angles (Schlick's formula). Precondition: `to_eye` has length one.
@@ -279,8 +286,8 @@ void render_row(const world& w, const camera& c, std::size_t photo, int row, std
             const double y = row + (sample / samples_per_side + 0.5) / samples_per_side;
             const vec direction = c.ray(x, y);
             const std::optional<surface_point> hit = first_hit(w, origin, direction);
-            if (!hit && w.how.sky == 0) continue;
-            color += hit ? shade(w, *hit, -direction) : sky(w, direction);
+            if (!hit && w.how.sky == 0 && w.how.walls == 0) continue;
+            color += hit ? shade(w, *hit, -direction) : color_behind(w, origin, direction);
             ++hits;
         }
         constexpr double weight = 1.0 / (samples_per_side * samples_per_side);
@@ -322,8 +329,12 @@ depth_map estimated_depths(const world& w, const camera& c, std::size_t photo) {
     std::vector<double> inverse;
     for (int row = 0; row < c.height; ++row)
         for (int column = 0; column < c.width; ++column) {
-            const std::optional<surface_point> hit = first_hit(w, c.center(), c.ray(column + 0.5, row + 0.5));
-            const auto seen = hit ? c.see(hit->position) : std::nullopt;
+            const vec origin = c.center(), direction = c.ray(column + 0.5, row + 0.5);
+            std::optional<vec> place;
+            if (const std::optional<surface_point> hit = first_hit(w, origin, direction))
+                place = hit->position;
+            if (!place && w.how.walls > 0) place = place_on_walls(w.how, origin, direction);
+            const auto seen = place ? c.see(*place) : std::nullopt;
             inverse.push_back(seen ? 1 / seen->depth : 0);
         }
     const double nearest = *std::ranges::max_element(inverse);

@@ -67,4 +67,8 @@ std::vector<view> synthetic_views(int size, const synthetic_parameters& how) {
     return views;
 }
 
+double farthest_camera(const synthetic_parameters& how) {
+    return camera_distance * how.distance * how.scales;
+}
+
 }  // namespace gs

@@ -13,4 +13,7 @@ namespace gs {
 /// The cameras lie on a spiral and look at the origin. Panoramas are level and have any heading.
 std::vector<view> synthetic_views(int size, const synthetic_parameters& how);
 
+/// Returns the largest distance of such a camera from the origin.
+double farthest_camera(const synthetic_parameters& how);
+
 }  // namespace gs

@@ -26,6 +26,7 @@ constexpr parameter parameters[] = {{"gloss", &synthetic_parameters::gloss, 0, 1
                                     {"distance", &synthetic_parameters::distance, 0.25, 16},
                                     {"passers", &synthetic_parameters::passers, 0, 0.5},
                                     {"sky", &synthetic_parameters::sky, 0, 1},
+                                    {"walls", &synthetic_parameters::walls, 0, 1},
                                     {"fisheye", &synthetic_parameters::fisheye, 0, 190},
                                     {"panorama", &synthetic_parameters::panorama, 0, 1, true},
                                     {"depths", &synthetic_parameters::depths, 0, 10},
@@ -68,6 +69,8 @@ synthetic_parameters parse_synthetic(const std::string& text) {
     }
     if (result.fisheye > 0 && result.panorama > 0)
         throw error("a synthetic scene has either a 'fisheye' or a 'panorama', not both: " + text);
+    if (result.sky > 0 && result.walls > 0)
+        throw error("a synthetic scene has either a 'sky' or 'walls', not both: " + text);
     return result;
 }
 

@@ -17,6 +17,7 @@ struct synthetic_parameters {
     double passers = 0;    ///< share of each photo that a masked disc hides, 0 to 0.5
     double depths = -1;    ///< relative noise of depth maps, 0 to 10; negative for no depth maps
     double sky = 0;        ///< brightness of the sky, which depends only on direction, 0 to 1
+    double walls = 0;      ///< brightness of smooth walls around scene and cameras, 0 to 1; 0 for none
     double points = 3000;  ///< number of points, 1 to 100000
     double views = 48;     ///< largest number of training images, 1 to 48
     double fisheye = 0;    ///< degrees across a fisheye image, 0 to 190; 0 for pinhole cameras
@@ -25,8 +26,8 @@ struct synthetic_parameters {
 };
 
 /// Parses "WORLD", "WORLD,gloss=0.5,noise=0.02" and so on. Throws `error` for a parameter that is
-/// unknown, repeated or out of range, and for a fisheye lens together with panoramas. Does not check
-/// `world`.
+/// unknown, repeated or out of range, for a fisheye lens together with panoramas, and for a sky
+/// together with walls. Does not check `world`.
 synthetic_parameters parse_synthetic(const std::string& text);
 
 }  // namespace gs
