@@ -26,9 +26,10 @@ BACKGROUND = "background"
 CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales", "sky": "sky", "masks": "passers", "depth": "depths",
           "lens": "fisheye"}
 EFFECTS = [*CAUSES, BACKGROUND]
-PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"passers": 0.1}, {"depths": 0.05}, {"depths": 2}, {"fisheye": 60},
-        {"noise": 0.03}]
+PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"walls": 0.8}, {"passers": 0.1}, {"depths": 0.05}, {"depths": 2},
+        {"fisheye": 60}, {"noise": 0.03}]
 SKYLESS = "alpha"  # pixels without a surface are transparent
+SURROUNDINGS = {"sky", "walls"}  # parameters that SKYLESS lacks
 RIGHT_DEPTHS = 0.05  # more noise hides the order of depths
 MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "sky": (0.3, 1), "passers": (0.05, 0.2),
          "depths": (0.01, 0.02), "fisheye": (50, 70)}
@@ -36,7 +37,7 @@ MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "sky": (0
 
 def synthetic(kind, world, parameters):
     """A scene and which effects it has by how it is made."""
-    parameters = {name: value for name, value in parameters.items() if name != "sky" or world != SKYLESS}
+    parameters = {name: value for name, value in parameters.items() if name not in SURROUNDINGS or world != SKYLESS}
     given = [f"{name}={value:g}" for name, value in parameters.items() if value]
     truth = {effect: bool(parameters.get(cause)) for effect, cause in CAUSES.items()}
     truth["depth"] = truth["depth"] and parameters["depths"] <= RIGHT_DEPTHS
@@ -46,7 +47,7 @@ def synthetic(kind, world, parameters):
 
 def pure():
     return [synthetic("pure", world, parameters) for world in WORLDS for parameters in PURE
-            if "sky" not in parameters or world != SKYLESS]
+            if SURROUNDINGS.isdisjoint(parameters) or world != SKYLESS]
 
 
 def mixtures(count, seed, noises):

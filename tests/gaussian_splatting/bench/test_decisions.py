@@ -91,10 +91,11 @@ class Program(unittest.TestCase):
             self.assertEqual(os.listdir(folder), ["decisions.json"])
             result = json.loads(file.read_text())
             text = subprocess.run([*SCRIPT, "table", file], check=True, capture_output=True, text=True).stdout
-        self.assertEqual([r["kind"] for r in result["runs"]], ["pure"] * 19 + ["mixture"])
+        self.assertEqual([r["kind"] for r in result["runs"]], ["pure"] * 20 + ["mixture"])
         for one in result["runs"]:
             self.assertEqual(list(one["effects"]), list(one["truth"]))
         self.assertIn("| `alpha,exposure=0.3` | right: no | right: yes | right: no | right: no | right: no | right: no | right: no | right: yes |", text)
+        self.assertIn("| `spheres,walls=0.8` |" + " right: no |" * 8, text)
         self.assertNotIn("Photos", text)
 
     def test_what_is_wrong_is_said_in_a_sentence(self):

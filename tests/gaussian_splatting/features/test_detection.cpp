@@ -19,6 +19,8 @@
 #include "features/depth/depth_agreement.hpp"
 #include "features/feature.hpp"
 #include "features/sh_degree/direction.hpp"
+#include "features/sky/sky_cells.hpp"
+#include "features/sky/sky_distance.hpp"
 #include "features/sky/sky_fit.hpp"
 #include "model/spherical_harmonics.hpp"
 #include "readers/load_scene.hpp"
@@ -44,6 +46,8 @@ finding analyzed(std::string_view name, const gs::scene& scene) {
     return {};
 }
 
+sky_fit sky_of(const gs::scene& scene) { return fit_sky(scene, divide_photos(scene), {}); }
+
 direction_statistics direction_of(const gs::scene& scene) {
     return measure_direction(gs::scene_statistics(scene));
 }
@@ -62,6 +66,8 @@ TEST_CASE("long: detection recommends the effects that a scene was made with, an
         {"spheres,scales=4", {"antialiasing"}},
         {"spheres,sky=0.4,noise=0.03", {"sky"}},
         {"spheres,sky=1,exposure=0.3,scales=4", {"sky", "exposure", "antialiasing"}},
+        {"spheres,walls=0.8", {}},
+        {"spheres,walls=0.8,exposure=0.3,noise=0.01", {"exposure"}},
         {"spheres,passers=0.1", {"masks"}},
         {"spheres,fisheye=60,gloss=0.6,sky=0.8", {"lens", "direction", "sky"}},
         {"alpha,fisheye=60", {"lens", "background"}},
@@ -97,7 +103,7 @@ TEST_CASE("lenses are reported: fisheye lenses, panoramas, or both") {
 
 TEST_CASE("a sky is what it was made of, and begins from that") {
     const gs::scene scene = made("spheres,sky=0.8");
-    const sky_fit found = fit_sky(scene, {});
+    const sky_fit found = sky_of(scene);
     CHECK(found.share > 0.3);
     CHECK(found.share > 0.99 * found.empty);
     double square = 0, values = 0;
@@ -119,11 +125,46 @@ TEST_CASE("a sky is what it was made of, and begins from that") {
         }
     }
     CHECK(std::sqrt(square / values) < 0.02);
-    CHECK(fit_sky(made("spheres,sky=0.04"), {}).brightness < 0.08);
+    CHECK(sky_of(made("spheres,sky=0.04")).brightness < 0.08);
     gs::scene bare = scene;
     bare.points.clear();
-    CHECK_FALSE(fit_sky(bare, {}).has_points);
+    CHECK_FALSE(sky_of(bare).has_points);
     CHECK_THROWS_WITH_AS(made("alpha,sky=1"), doctest::Contains("it has no sky"), gs::error);
+}
+
+TEST_CASE("a smooth wall is not a sky, because the photos disagree about it at infinity") {
+    const auto distance_of = [](const gs::scene& scene, const std::vector<double>& brighter) {
+        const std::vector<photo_cells> cells = divide_photos(scene);
+        return measure_distance(scene, cells, fit_sky(scene, cells, brighter), brighter);
+    };
+    const gs::scene room = made("spheres,walls=0.8");
+    const sky_fit wall = sky_of(room);
+    CHECK(wall.share > 0.3);  // a function of the direction predicts the wall, too
+    CHECK(wall.share > 0.9 * wall.empty);
+    CHECK(wall.brightness > 0.3);
+    const sky_distance near = distance_of(room, {});
+    CHECK(near.is_near());
+    CHECK(near.near_only > 10 * near.far_only);
+    CHECK(near.distance > 1);
+    const finding found = analyzed("sky", room);
+    CHECK(found.recommended == false);
+    CHECK(found.evidence.find("these are near") != std::string::npos);
+
+    const gs::scene outdoors = made("spheres,sky=0.8");
+    const sky_distance far = distance_of(outdoors, {});
+    CHECK(far.distance > 0);  // the photos were compared
+    CHECK_FALSE(far.is_near());
+    CHECK(analyzed("sky", outdoors).recommended == true);
+    CHECK(analyzed("sky", outdoors).evidence.find("near") == std::string::npos);
+
+    // The brightness of the photos must be known, or exposures look like a disagreement.
+    gs::scene exposed = made("spheres,walls=0.8,exposure=0.3,scales=4");
+    CHECK(distance_of(exposed, gs::scene_statistics(exposed).brightness().log2).is_near());
+    // One camera has no parallax.
+    gs::scene alone = room;
+    alone.train.resize(1);
+    CHECK(distance_of(alone, {}).distance == 0);
+    CHECK_FALSE(distance_of(alone, {}).is_near());
 }
 
 TEST_CASE("synthetic walls are behind the spheres, at a finite distance") {

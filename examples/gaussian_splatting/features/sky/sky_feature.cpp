@@ -3,10 +3,15 @@
 #include "sky_feature.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "../text.hpp"
+#include "sky_distance.hpp"
 #include "sky_fit.hpp"
 
 namespace gs::features {
@@ -17,74 +22,110 @@ constexpr double least_share = 0.02;       ///< smallest share of the photos' ar
 constexpr double least_of_empty = 0.5;     ///< smallest share of the smooth area without points
 constexpr double least_brightness = 0.08;  ///< a darker sky is treated as black
 
+struct measured_sky {
+    std::vector<photo_cells> cells;
+    sky_fit fit;
+    sky_distance distance;
+};
+
 /// Fits the sky to the photos as they are and, if their brightness is known, to photos of equalized
 /// brightness. Returns the fit with the larger share, because an overexposed sky is white in every
 /// photo.
-sky_fit best_fit(const scene_statistics& statistics) {
-    sky_fit found = fit_sky(statistics.scene(), {});
+measured_sky measure_sky(const scene_statistics& statistics) {
+    const scene& photos = statistics.scene();
+    if (photos.points.empty()) return {};
+    std::vector<photo_cells> cells = divide_photos(photos);
     const std::vector<double>& brightness = statistics.brightness().log2;
-    if (brightness.empty()) return found;
-    sky_fit evened = fit_sky(statistics.scene(), brightness);
-    return evened.share > found.share ? evened : found;
+    sky_fit found = fit_sky(photos, cells, {}), evened;
+    if (!brightness.empty()) evened = fit_sky(photos, cells, brightness);
+    const bool even = evened.share > found.share;
+    if (even) found = std::move(evened);
+    const sky_distance distance =
+        measure_distance(photos, cells, found, even ? brightness : std::vector<double>{});
+    return {std::move(cells), std::move(found), distance};
 }
 
-/// Returns the area of the cells of one photo, predicted or not, as a share of the photo.
-double share_of(const std::vector<sky_cell>& cells, bool is_predicted, const camera& taken_with) {
-    double area = 0;
-    for (const sky_cell& c : cells)
-        if (c.is_predicted == is_predicted) area += double(c.side) * c.side;
-    return area / (double(taken_with.width) * taken_with.height);
+/// Returns for each square of a photo whether it counts as sky, or nothing for squares that may not.
+std::vector<std::optional<bool>> is_sky(const photo_cells& photo,
+                                        const std::vector<std::uint32_t>& predicted) {
+    std::vector<std::optional<bool>> found(photo.cells.size());
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (photo.cells[i].shows == photo_cell::content::smooth && !photo.cells[i].near_points)
+            found[i] = false;
+    for (const std::uint32_t i : predicted) found[i] = true;
+    return found;
 }
 
-/// Returns the cells as rectangles, of which neighbors in a row are one.
-std::vector<pages::mark> marks_of(const std::vector<sky_cell>& cells) {
+/// Returns the area of squares as a percentage of the photo.
+double percentage(const photo_cells& photo, const std::vector<std::optional<bool>>& squares, bool sky,
+                  const camera& taken_with) {
+    const auto count = static_cast<double>(std::ranges::count(squares, std::optional(sky)));
+    return 100 * count * photo.side * photo.side / (double(taken_with.width) * taken_with.height);
+}
+
+/// Returns the squares as rectangles, of which neighbors in a row are one.
+std::vector<pages::mark> marks_of(const photo_cells& photo, const std::vector<std::optional<bool>>& squares) {
     std::vector<pages::mark> marks;
-    for (const sky_cell& c : cells) {
-        const pages::mark made{.left = double(c.left),
-                               .top = double(c.top),
-                               .width = double(c.side),
-                               .height = double(c.side),
-                               .color = c.is_predicted ? 0 : 1};
-        const bool continues = !marks.empty() && marks.back().top == made.top &&
-                               marks.back().left + marks.back().width == made.left &&
-                               marks.back().color == made.color;
-        if (continues)
-            marks.back().width += made.width;
-        else
-            marks.push_back(made);
-    }
+    const double side = photo.side;
+    for (int row = 0; row < photo.down; ++row)
+        for (int column = 0; column < photo.across; ++column) {
+            const auto square = squares[static_cast<std::size_t>(row * photo.across + column)];
+            if (!square) continue;
+            const pages::mark made{.left = column * side,
+                                   .top = row * side,
+                                   .width = side,
+                                   .height = side,
+                                   .color = *square ? 0 : 1};
+            const bool continues = !marks.empty() && marks.back().top == made.top &&
+                                   marks.back().left + marks.back().width == made.left &&
+                                   marks.back().color == made.color;
+            if (continues)
+                marks.back().width += side;
+            else
+                marks.push_back(made);
+        }
     return marks;
 }
 
 }  // namespace
 
 finding sky_feature::analyze(const scene_statistics& statistics) const {
-    sky_fit s = best_fit(statistics);
+    auto [cells, s, distance] = measure_sky(statistics);
     s.coefficients.resize(sky_width);
     if (!s.has_points) return {{}, "cannot decide: the scene has no points", "off", s.coefficients};
     if (statistics.scene().has_alpha) return {false, has_alpha, "off"};
-    const bool exists =
-        s.share >= least_share && s.share >= least_of_empty * s.empty && s.brightness >= least_brightness;
-    return {exists,
-            text("%.1f %% of the pixels are smooth and without points; the direction alone predicts %.0f %% "
-                 "of them, with a brightness of %.0f %%",
-                 100 * s.empty, s.empty > 0 ? 100 * s.share / s.empty : 0.0, 100 * s.brightness),
-            exists ? "on" : "off", std::move(s.coefficients)};
+    const bool exists = s.share >= least_share && s.share >= least_of_empty * s.empty &&
+                        s.brightness >= least_brightness && !distance.is_near();
+    std::string evidence = text(
+        "%.1f %% of the pixels are smooth and without points; the direction alone predicts %.0f %% "
+        "of them, with a brightness of %.0f %%",
+        100 * s.empty, s.empty > 0 ? 100 * s.share / s.empty : 0.0, 100 * s.brightness);
+    if (distance.is_near())
+        evidence += text(
+            "; these are near: %.0f %% of comparisons between photos match only at a distance "
+            "of %g camera extents, %.0f %% only at infinity",
+            100 * distance.near_only, distance.distance, 100 * distance.far_only);
+    return {exists, std::move(evidence), exists ? "on" : "off", std::move(s.coefficients)};
 }
 
 explanation sky_feature::explain(const scene_statistics& statistics, const finding&) const {
-    explanation made{.condition =
-                         text("the direction predicts at least %.0f %% of all pixels and %.0f %% of "
-                              "the smooth ones without points, with a brightness of at least %.0f %%",
-                              100 * least_share, 100 * least_of_empty, 100 * least_brightness)};
+    explanation made{
+        .condition = text("the direction predicts at least %.0f %% of all pixels and %.0f %% of the smooth "
+                          "ones without points, with a brightness of at least %.0f %%; ",
+                          100 * least_share, 100 * least_of_empty, 100 * least_brightness) +
+                     text("the comparisons between photos that match only at a finite distance exceed "
+                          "those that match only at infinity by at most %.0f %%",
+                          100 * sky_distance::largest_excess)};
     const std::vector<view>& views = statistics.scene().train;
-    const sky_fit found = best_fit(statistics);
-    if (found.cells.empty()) return made;
+    const measured_sky measured = measure_sky(statistics);
+    if (measured.fit.predicted.empty()) return made;
+    std::vector<std::vector<std::optional<bool>>> squares;
     std::vector<double> sky, other;
     std::vector<std::size_t> order;
     for (std::size_t v = 0; v < views.size(); ++v) {
-        sky.push_back(100 * share_of(found.cells[v], true, views[v].camera));
-        other.push_back(100 * share_of(found.cells[v], false, views[v].camera));
+        squares.push_back(is_sky(measured.cells[v], measured.fit.predicted[v]));
+        sky.push_back(percentage(measured.cells[v], squares[v], true, views[v].camera));
+        other.push_back(percentage(measured.cells[v], squares[v], false, views[v].camera));
         order.push_back(v);
     }
     made.charts.push_back({"Smooth areas without points (% of the photo)",
@@ -95,7 +136,7 @@ explanation sky_feature::explain(const scene_statistics& statistics, const findi
         made.photos.push_back(shown_photo(
             views[v], label,
             "Blue: found as sky. Orange: smooth and without points, but the direction does not predict it.",
-            marks_of(found.cells[v])));
+            marks_of(measured.cells[v], squares[v])));
     };
     std::ranges::sort(order, std::greater(), [&](std::size_t v) { return sky[v]; });
     add(order.front(), "Most sky");
