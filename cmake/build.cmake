@@ -44,7 +44,7 @@ target_compile_options(warpagg_options INTERFACE
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${WARPAGG_WERROR}>>:-Werror>
     # GCC 12 reports overlaps in std::string's operator+ that cannot occur (its bug 105651).
     $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict>
-    # Less garbage collection in GCC: up to a gigabyte of memory for a large source, which compiles faster.
+    # GCC compiles faster if it collects garbage only above a gigabyte.
     "$<$<COMPILE_LANG_AND_ID:CXX,GNU>:SHELL:--param ggc-min-expand=300 --param ggc-min-heapsize=1048576>"
     # Tests compare bits, so only an explicit fma may contract.
     $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>

@@ -130,13 +130,13 @@ explanation sky_feature::explain(const scene_statistics& statistics, const findi
     }
     made.charts.push_back({"Smooth areas without points (% of the photo)",
                            "photo",
-                           {curve_of_photos("found as sky", sky), curve_of_photos("not predicted", other)},
+                           {curve_of_photos("predicted", sky), curve_of_photos("not predicted", other)},
                            true});
     const auto add = [&](std::size_t v, const char* label) {
-        made.photos.push_back(shown_photo(
-            views[v], label,
-            "Blue: found as sky. Orange: smooth and without points, but the direction does not predict it.",
-            marks_of(measured.cells[v], squares[v])));
+        made.photos.push_back(shown_photo(views[v], label,
+                                          "Smooth and without points. Blue: the direction predicts the "
+                                          "color, as of a sky. Orange: it does not.",
+                                          marks_of(measured.cells[v], squares[v])));
     };
     std::ranges::sort(order, std::greater(), [&](std::size_t v) { return sky[v]; });
     add(order.front(), "Most sky");
