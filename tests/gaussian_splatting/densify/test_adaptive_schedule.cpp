@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "densify/adaptive/adaptive_schedule.hpp"
 
@@ -87,6 +88,18 @@ TEST_CASE(
 
 TEST_CASE("pruning follows densification, half-way to the end at the latest") {
     adaptive_config config{.densify_from_iter = 400, .densify_until_iter = 600};
+    const auto share = [](int iterations, bool transparent, int until = 100000) {
+        return adaptive_schedule(
+                   {.densify_until_iter = until < 100000 ? std::optional<int>(until) : std::nullopt},
+                   {.iterations = iterations, .views = 20, .transparent = transparent})
+            .share_to_prune();
+    };
+    CHECK(share(5000, true) == 0.2);
+    CHECK(share(7000, true) == doctest::Approx(0.2));
+    CHECK(share(15000, true) == doctest::Approx(1 - 0.8 * std::cbrt(3.5 / 7.5)));
+    CHECK(share(100000, true) == 0.6);
+    CHECK(share(30000, true, 29999) == 0.2);
+    CHECK(share(30000, false) == 0.2);
     CHECK(adaptive_schedule(config, {.iterations = 1000}).share_to_prune() == 0.2);
     config.prune_share = 0;
     CHECK(adaptive_schedule(config, {.iterations = 1000, .views = 50}).prune_after() == 0);

@@ -56,7 +56,10 @@ double adaptive_schedule::share_to_prune() const {
     const int interval = config_.densification_interval;
     const int first = (config_.densify_from_iter / interval + 1) * interval;
     const bool grows = first < densify_until() && densify_until() < facts_.iterations.last();
-    return config_.prune_share.value_or(grows && !config_.budget ? 0.2 : 0.0);
+    if (!grows || config_.budget) return config_.prune_share.value_or(0.0);
+    const int left = facts_.iterations.last() - densify_until();
+    const double by_time = 1 - 0.8 * std::cbrt(3500.0 / left);
+    return config_.prune_share.value_or(facts_.transparent ? std::clamp(by_time, 0.2, 0.6) : 0.2);
 }
 
 int adaptive_schedule::prune_after() const {
