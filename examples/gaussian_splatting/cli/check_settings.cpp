@@ -64,14 +64,18 @@ void check_orbit(const settings& s) {
 }
 
 void check_ranks(const settings& s) {
-    if (s.ranks == 1) return;
-    if (s.device == device_kind::cuda)
-        throw error("--ranks trains on the CPU only: leave out --ranks or --device cuda");
-    if (s.viewer) throw error("--ranks has no live view: leave out --ranks or --viewer");
+    if (s.ranks == 1 && s.gpus == 1) return;
+    const std::string option = s.ranks == 1 ? "--gpus" : "--ranks";
+    if (s.ranks > 1 && s.gpus != 1)
+        throw error("--ranks trains on the CPU only: leave out --ranks or --gpus");
+    if (s.ranks > 1 && s.device == device_kind::cuda)
+        throw error("--ranks trains on the CPU only: give --gpus instead, or leave out --device cuda");
+    if (s.gpus != 1 && s.device == device_kind::cpu)
+        throw error("--gpus trains on GPUs: give --ranks instead, or leave out --device cpu");
+    if (s.viewer) throw error(option + " has no live view: leave out " + option + " or --viewer");
     if (s.poses != pose_source::given)
-        throw error(
-            "--ranks needs a scene with camera poses: train with --poses auto and without --ranks first, and "
-            "then give the folder colmap of its output as --data");
+        throw error(option + " needs a scene with camera poses: train with --poses auto and without " +
+                    option + " first, and then give the folder colmap of its output as --data");
 }
 
 void check_video_frames(const settings& s) {

@@ -12,24 +12,32 @@
 
 namespace gs::cli {
 
-photos::photo_limits photo_limits(const settings& s, const device::profiler& device) {
-    // The Gaussians, and the program itself, need the remaining memory. Users may leave less for them.
-    const auto ranks = static_cast<std::uint64_t>(s.ranks);
-    const auto share = [&](std::uint64_t bytes) { return bytes / ranks / 10 * (s.photo_memory ? 9 : 6); };
-    photos::photo_limits limits;
-    limits.host = share(available_host_bytes());
+namespace {
+
+/// Returns the free device memory for this rank. Each rank has its own GPU, but not its own host.
+std::uint64_t own_device_bytes(const device::profiler& device, int ranks) {
     const std::uint64_t free = device.free_device_bytes();
+    return device.shares_host_memory() ? free / static_cast<std::uint64_t>(ranks) : free;
+}
+
+}  // namespace
+
+photos::photo_limits photo_limits(const settings& s, const device::profiler& device, int ranks) {
+    // The Gaussians, and the program itself, need the remaining memory. Users may leave less for them.
+    const auto share = [&](std::uint64_t bytes) { return bytes / 10 * (s.photo_memory ? 9 : 6); };
+    photos::photo_limits limits;
+    limits.host = share(available_host_bytes() / static_cast<std::uint64_t>(ranks));
+    const std::uint64_t free = own_device_bytes(device, ranks);
     limits.device = share(std::min(free, s.max_memory.value_or(free)));
     limits.total = device.shares_host_memory() ? limits.host : limits.host + limits.device;
     if (s.photo_memory) limits.total = *s.photo_memory;
     return limits;
 }
 
-std::uint64_t device_limit(const settings& s, const device::profiler& device) {
+std::uint64_t device_limit(const settings& s, const device::profiler& device, int ranks) {
     if (s.max_memory) return *s.max_memory;
     if (s.deterministic) return 0;
-    const std::uint64_t of_rank = device.free_device_bytes() / static_cast<std::uint64_t>(s.ranks);
-    return (device.used_device_bytes() + of_rank) / 10 * 9;
+    return (device.used_device_bytes() + own_device_bytes(device, ranks)) / 10 * 9;
 }
 
 load_options with_limit(load_options source, const photos::photo_limits& limits) {

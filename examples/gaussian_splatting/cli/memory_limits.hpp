@@ -13,12 +13,12 @@
 namespace gs::cli {
 
 /// Returns the limits of --photo-memory, or shares of the available memory. Photos are the same
-/// wherever they are, so the limits do not change results.
-photos::photo_limits photo_limits(const settings& s, const device::profiler& device);
+/// wherever they are, so the limits do not change results. The ranks share the host's memory.
+photos::photo_limits photo_limits(const settings& s, const device::profiler& device, int ranks);
 
 /// Returns the limit of --max-memory, or a share of the available memory. Returns 0, which means no
 /// limit, for --deterministic without --max-memory: the result must not depend on the machine.
-std::uint64_t device_limit(const settings& s, const device::profiler& device);
+std::uint64_t device_limit(const settings& s, const device::profiler& device, int ranks);
 
 /// Returns the scene to load, whose photos stay in their files if they exceed the limits.
 load_options with_limit(load_options source, const photos::photo_limits& limits);

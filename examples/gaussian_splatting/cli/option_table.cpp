@@ -251,12 +251,16 @@ rows run_options(settings& s) {
           .commands = {train},
           .value = flag(s.deterministic),
           .help = "Makes runs with the same seed write the same model bit for bit, with any number of "
-                  "threads and ranks; training takes longer"},
+                  "threads, ranks and GPUs; training takes longer"},
+         {.names = "--gpus",
+          .commands = {train},
+          .value = count_or_all(s.gpus, ranks::most_ranks),
+          .help = "Number of GPUs that train together; needs NCCL",
+          .is_recorded = false},
          {.names = "--ranks",
           .commands = {train},
           .value = whole(s.ranks, 1, ranks::most_ranks),
-          .help = "Number of processes that train the model together on the CPU, each on a strip of the "
-                  "view; they share the threads",
+          .help = "Number of processes that train the model together on the CPU; they share the threads",
           .is_rare = true,
           .is_recorded = false}});
 }
@@ -446,7 +450,7 @@ rows evaluation_options(settings& s) {
                       "left halves"});
     of_views({.names = "--lpips",
               .value = text(s.lpips, "FILE"),
-              .help = "Computes LPIPS with weights of scripts/convert_lpips_weights.py",
+              .help = "Adds LPIPS, with weights of scripts/convert_lpips_weights.py",
               .default_text = "none"});
     return grouped("Evaluation", table);
 }

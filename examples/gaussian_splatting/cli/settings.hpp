@@ -65,7 +65,8 @@ struct settings {
     background_kind background = background_kind::automatic;
     std::uint64_t seed = 0;
     bool deterministic = false;
-    int ranks = 1;                   ///< number of processes that train together
+    int ranks = 1;                   ///< number of processes that train together on the CPU
+    int gpus = 1;                    ///< number of GPUs that train together; 0: all
     std::string config;              ///< file with further options
     nlohmann::ordered_json given{};  ///< values of the options that the user gave, by `option::key`
     cli::log_level log_level = log_level::info;

@@ -33,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 
 train::train_options options_of(const settings& s, const scene& scene, const command_context& context,
-                                const device::profiler& device, features::feature_set features) {
+                                const device::profiler& device, int ranks, features::feature_set features) {
     train::train_options o;
     o.schedule = s.schedule;
     o.schedule.transparent = scene.has_alpha;
@@ -46,7 +46,7 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     o.max_cap =
         s.max_cap.value_or(std::max(train::default_cap(scene), s.densification.target_count().value_or(0)));
     o.seed = s.seed;
-    o.max_device_bytes = device_limit(s, device);
+    o.max_device_bytes = device_limit(s, device, ranks);
     o.background = context.background(scene.has_alpha && !features.is_on("exposure"));
     o.save_iterations = s.save_iterations;
     o.test_iterations = s.test_iterations;
@@ -139,10 +139,11 @@ training_run::training_run(const settings& s, const load_options& source,
       checkpoint_(checkpoint_to_resume(s, [this](const std::string& line) { context_.warn(line); })),
       engine_(std::move(engine)),
       lpips_(context_.load_lpips()),
-      limits_(photo_limits(s, engine_->profile())),
+      limits_(photo_limits(s, engine_->profile(), ranks_.count())),
       scene_(context_.load(with_limit(source, limits_))),
       photo_memory_(photo_memory(scene_, limits_)),
-      options_(options_of(s, scene_, context_, engine_->profile(), resolve_effects(s, scene_, context_))),
+      options_(options_of(s, scene_, context_, engine_->profile(), ranks_.count(),
+                          resolve_effects(s, scene_, context_))),
       bar_(s.log_level < log_level::info) {
     if (ranks_.is_first()) output_.emplace(s.output);
     options_.gradient = gradient;
@@ -393,7 +394,7 @@ fs::path training_run::renders_folder() const {
 }  // namespace
 
 void train(const settings& s) {
-    if (s.ranks > 1) return train_in_ranks(s);
+    if (s.ranks > 1 || s.gpus != 1) return train_in_ranks(s);
     ranks::communicator alone;
     train(s, command_context(s).make_engine(), s.deterministic ? accumulator::fixed : accumulator::native,
           alone);

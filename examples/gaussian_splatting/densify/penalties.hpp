@@ -60,7 +60,7 @@ struct penalty_weights {
     double opacity = 0, scale = 0;
 };
 
-/// Runs `lower_by_penalty` on all Gaussians, unless both weights are zero.
+/// Runs `lower_by_penalty` on the Gaussians of this rank, unless both weights are zero.
 template <device::device Device>
 void apply_penalties(const penalty_weights& weights, double extent, int iteration,
                      const step_context<Device>& c) {
@@ -68,13 +68,13 @@ void apply_penalties(const penalty_weights& weights, double extent, int iteratio
     const auto count = static_cast<double>(c.count);
     const double left = std::pow(adam<float>::beta2, iteration);
     c.device.for_each_index(
-        c.count, lower_by_penalty{c.parameters.values.write(), c.parameters.second.read(),
-                                  c.parameters.last_step.data(), static_cast<std::uint32_t>(iteration),
-                                  static_cast<float>(1 / (1 - left)),
-                                  c.rates[static_cast<std::size_t>(parameter::opacity)],
-                                  c.rates[static_cast<std::size_t>(parameter::log_scale)],
-                                  static_cast<float>(weights.opacity / count),
-                                  static_cast<float>(weights.scale / (3 * count * extent)), c.capacity});
+        c.own, lower_by_penalty{c.parameters.values.write(), c.parameters.second.read(),
+                                c.parameters.last_step.data(), static_cast<std::uint32_t>(iteration),
+                                static_cast<float>(1 / (1 - left)),
+                                c.rates[static_cast<std::size_t>(parameter::opacity)],
+                                c.rates[static_cast<std::size_t>(parameter::log_scale)],
+                                static_cast<float>(weights.opacity / count),
+                                static_cast<float>(weights.scale / (3 * count * extent)), c.capacity});
 }
 
 }  // namespace gs::train

@@ -37,6 +37,8 @@ struct step_context : trained_gaussians<Device> {
     /// The capacity of the tile lists. If `capacity.exceeded()`, the step is skipped and kernels
     /// must change nothing.
     raster::list_capacity capacity;
+    /// The Gaussians of this rank. The parameters of others are old, and changes to them are lost.
+    ranks::share own;
 };
 
 /// The argument of `strategy::run`.

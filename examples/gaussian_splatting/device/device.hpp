@@ -12,6 +12,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <warpagg/warp/concept.hpp>
 
@@ -82,6 +83,7 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 /// - `for_each_index(n, f)`: runs `f(i)` for each i in [0, n).
 /// - `for_each_warp<W>(n, f)`: runs `f(W{}, i)` for each i in [0, n), on one warp each. W is `warp`
 ///   by default. A kernel that `has_scratch` gets its scratch memory as a third argument.
+///   Both also take a `ranks::share` of the indices instead of n.
 /// - `iteration(key, f)`: runs `f()`, which launches one training iteration. `f` does not wait,
 ///   and allocates only in the first iteration with this key. From the second one on, a device may
 ///   capture the launches and submit them as one graph.
@@ -110,6 +112,10 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 /// - `ranks()`: the ranks, for values on the host.
 /// - `sum_over_ranks(p, n)`: gives all ranks the sums of n values in device memory: see
 ///   `ranks::communicator::sum`.
+/// - `sum_for_owners(shares, p, block_size, n)`: gives each rank the sums of its own share of n values,
+///   `block_size` for each block. Afterwards the other values are unspecified.
+/// - `gather(shares, arrays)`: gives all ranks the shares of the others: see
+///   `ranks::communicator::gather`.
 ///
 /// Times of an iteration's stages
 /// - `begin(stage)`: marks where a stage begins.
@@ -124,12 +130,15 @@ float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, s
                    archetype::range* ranges, std::uint64_t* required,
                    typename D::template buffer<std::uint32_t> numbers,
                    typename D::template buffer<std::uint64_t> sums, typename D::transfer& transfer,
-                   ranks::communicator& ranks) {
+                   ranks::communicator& ranks, const ranks::share& part, const ranks::shares& shares,
+                   std::span<const ranks::shared_array> arrays) {
     { c.name() } -> std::same_as<std::string>;
     { c.resident_warps() } -> std::same_as<std::size_t>;
     d.for_each_index(n, archetype::index_kernel{});
     d.for_each_warp(n, archetype::warp_kernel{});
     d.template for_each_warp<typename D::narrow_warp>(n, archetype::warp_kernel{});
+    d.for_each_index(part, archetype::index_kernel{});
+    d.template for_each_warp<typename D::narrow_warp>(part, archetype::warp_kernel{});
     d.zero(p, n);
     d.copy(p, from, n);
     d.upload(p, from, n);
@@ -147,6 +156,8 @@ float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, s
     d.join(ranks);
     { d.ranks() } -> std::same_as<ranks::communicator&>;
     d.sum_over_ranks(p, n);
+    d.sum_for_owners(shares, p, n, n);
+    d.gather(shares, arrays);
     d.begin(stage::project);
     d.pause_times(true);
     d.sample_times(1);

@@ -97,6 +97,8 @@ std::vector<std::unique_ptr<engine> (*)()> cpu_engines();
 std::unique_ptr<engine> make_cpu_engine();
 /// Creates a GPU engine. Throws `error` if no GPU can be used.
 std::unique_ptr<engine> make_cuda_engine();
+/// Returns the number of GPUs that CUDA finds.
+int count_gpus();
 /// Returns whether a GPU can be used. If not, sets `reason` to the reason.
 bool cuda_is_available(std::string& reason);
 

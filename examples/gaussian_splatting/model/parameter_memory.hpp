@@ -61,6 +61,14 @@ class parameter_memory {
     void zero(Device& device) {
         for (auto& a : arrays_) device.zero(a.data(), a.size());
     }
+    /// Appends all arrays, for `device::gather`.
+    void share(std::vector<ranks::shared_array>& arrays) const {
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            if (arrays_[p].size() > 0)
+                arrays.push_back(ranks::shared_array::of(arrays_[p].data(),
+                                                         block_length * width_of(static_cast<parameter>(p)),
+                                                         arrays_[p].size()));
+    }
     /// Saves or loads all arrays. Waits for the device.
     void exchange(state_archive& archive, Device& device) {
         for (std::size_t p = 0; p < parameter_count; ++p)

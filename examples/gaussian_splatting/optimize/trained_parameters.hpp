@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "../device/device.hpp"
 #include "../model/parameter_memory.hpp"
@@ -26,6 +27,11 @@ struct trained_parameters {
         return values.fits(count, sh_degree) && first.fits(count, sh_degree) &&
                second.fits(count, sh_degree) && last_step.size() == count &&
                first.gaussians_with_sh() == with_sh && second.gaussians_with_sh() == with_sh;
+    }
+    /// Appends all arrays, for `device::gather`.
+    void share(std::vector<ranks::shared_array>& arrays) const {
+        for (const auto* memory : {&values, &first, &second}) memory->share(arrays);
+        arrays.push_back(ranks::shared_array::of(last_step.data(), block_length, last_step.size()));
     }
     /// Saves or loads all parameters. Waits for the device.
     void exchange(state_archive& archive, Device& device) {

@@ -77,6 +77,25 @@ std::size_t read_choice(const std::string& word, const std::vector<std::string>&
 
 std::string alternatives(const std::vector<std::string>& names) { return enumerated(names, " or "); }
 
+option_value count_or_all(int& member, int most) {
+    return {.type = "INTEGER",
+            .range = "1 to " + std::to_string(most) + ", or all",
+            .read =
+                [=, &member](const std::string& word) {
+                    if (word == "all") {
+                        member = 0;
+                        return;
+                    }
+                    const auto number = number_in<int>(word);
+                    if (!number || *number < 1 || *number > most)
+                        throw refused_word("must be a whole number from 1 to " + std::to_string(most) +
+                                           ", or all, not '" + word + "'");
+                    member = *number;
+                },
+            .json = [&member] { return member == 0 ? json_of(std::string("all")) : json_of(member); },
+            .suggestions = {"all"}};
+}
+
 option_value text(std::string& member, const std::string& type) {
     return {.type = type,
             .range = "",

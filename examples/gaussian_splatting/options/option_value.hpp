@@ -106,6 +106,9 @@ option_value whole(Member& member, std::uint64_t least, std::uint64_t most) {
             .json = [&member] { return json_of(member); }};
 }
 
+/// A whole number from 1 to `most`, or the word all, which sets `member` to 0.
+option_value count_or_all(int& member, int most);
+
 /// A positive number that float can hold.
 template <class Member>
 option_value positive(Member& member) {

@@ -20,7 +20,7 @@ namespace gs::ranks {
 
 namespace {
 
-enum operation : std::uint32_t { sum_of = 0, minimum_of = 16, maximum_of = 32 };
+enum operation : std::uint32_t { sum_of = 0, minimum_of = 16, maximum_of = 32, gather_of = 48 };
 
 /// Returns a number that the types of a collective function do not share.
 template <class T>
@@ -57,29 +57,57 @@ void communicator::barrier() {
     }
 }
 
+template <class Take>
+void communicator::show(std::uint32_t operation, std::size_t size, const void* bytes, std::size_t count,
+                        const Take& take) {
+    const std::size_t which = exchanges_++ % 2;
+    shared_memory::slot& own = memory_->slots[static_cast<std::size_t>(rank_)][which];
+    own.values = size;
+    own.operation = operation;
+    if (count > 0) std::memcpy(own.bytes, bytes, count);
+    barrier();
+    for (int r = 0; r < count_; ++r) {
+        const shared_memory::slot& other = memory_->slots[static_cast<std::size_t>(r)][which];
+        if (other.values != own.values || other.operation != own.operation)
+            throw std::logic_error("ranks " + std::to_string(rank_) + " and " + std::to_string(r) +
+                                   " disagree about their next exchange");
+        take(r, other.bytes);
+    }
+}
+
 template <class T, class Combine>
 void communicator::reduce(std::uint32_t operation, T* values, std::size_t n, const Combine& combine) {
     if (count_ == 1) return;
     constexpr std::size_t at_once = shared_memory::slot_bytes / sizeof(T);
     for (std::size_t first = 0; first < n || first == 0; first += at_once) {
-        const std::size_t size = std::min(at_once, n - first), which = exchanges_++ % 2;
+        const std::size_t size = std::min(at_once, n - first);
         T* const part = values + first;
-        shared_memory::slot& own = memory_->slots[static_cast<std::size_t>(rank_)][which];
-        own.values = n;
-        own.operation = operation | number_of_type<T>();
-        std::copy_n(part, size, reinterpret_cast<T*>(own.bytes));
-        barrier();
-        for (int r = 0; r < count_; ++r) {
-            const shared_memory::slot& other = memory_->slots[static_cast<std::size_t>(r)][which];
-            if (other.values != own.values || other.operation != own.operation)
-                throw std::logic_error("ranks " + std::to_string(rank_) + " and " + std::to_string(r) +
-                                       " disagree about their next exchange");
-            const T* const theirs = reinterpret_cast<const T*>(other.bytes);
+        show(operation | number_of_type<T>(), n, part, size * sizeof(T), [&](int r, const std::byte* bytes) {
+            const T* const theirs = reinterpret_cast<const T*>(bytes);
             if (r == 0)
                 std::copy_n(theirs, size, part);
             else
                 for (std::size_t i = 0; i < size; ++i) part[i] = combine(part[i], theirs[i]);
-        }
+        });
+    }
+}
+
+void communicator::gather(const shares& all, const shared_array& array) {
+    if (count_ == 1) return;
+    constexpr std::size_t at_once = shared_memory::slot_bytes;
+    std::size_t longest = 0;
+    for (int r = 0; r < count_; ++r) longest = std::max(longest, array.part(all, r).size());
+    const auto piece = [&](int rank, std::size_t first) {
+        const auto part = array.part(all, rank);
+        return part.subspan(std::min(first, part.size()),
+                            std::min(at_once, part.size() - std::min(first, part.size())));
+    };
+    for (std::size_t first = 0; first < longest; first += at_once) {
+        const auto own = piece(rank_, first);
+        show(gather_of, array.bytes, own.data(), own.size(), [&](int r, const std::byte* bytes) {
+            if (r == rank_) return;
+            std::copy_n(bytes, piece(r, first).size(), piece(r, first).begin());
+        });
     }
 }
 

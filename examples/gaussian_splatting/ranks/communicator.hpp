@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "shares.hpp"
+
 namespace gs::ranks {
 
 /// The largest number of ranks.
@@ -48,6 +50,8 @@ class communicator {
     template <class T>
     void maximum(T* values, std::size_t n);
     /// @}
+    /// Gives all ranks the parts of the others. Each rank has its own part of the array.
+    void gather(const shares& all, const shared_array& array);
     /// Returns the value of rank 0.
     double from_first(double value);
     /// Returns whether any rank passes true.
@@ -57,6 +61,11 @@ class communicator {
   private:
     template <class T, class Combine>
     void reduce(std::uint32_t operation, T* values, std::size_t n, const Combine& combine);
+    /// Shows some bytes to the other ranks, and calls `take(rank, theirs)` for each rank, in order.
+    /// `operation` and `size` identify the whole exchange, which all ranks must agree on.
+    template <class Take>
+    void show(std::uint32_t operation, std::size_t size, const void* bytes, std::size_t count,
+              const Take& take);
 
     shared_memory* memory_ = nullptr;
     int rank_ = 0, count_ = 1;

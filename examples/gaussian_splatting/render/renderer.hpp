@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 #include "../core/error.hpp"
 #include "../device/device.hpp"
+#include "../model/gaussian_shares.hpp"
 #include "blend/blend_backward.hpp"
 #include "blend/blend_forward.hpp"
 #include "blend/depth_splats.hpp"
@@ -20,6 +20,7 @@
 #include "project/project_backward.hpp"
 #include "tiles/bin.hpp"
 #include "tiles/view_strip.hpp"
+#include "tiles/visible_splats.hpp"
 
 namespace gs::raster {
 
@@ -37,22 +38,23 @@ class renderer {
     using warp = typename Device::warp;
     using model = parameter_arrays<const Real>;
 
-    explicit renderer(Device& device) : device_(device), sums_(device) {
+    explicit renderer(Device& device) : device_(device), visible_(device), sums_(device) {
         device_.zero(reserve(pairs_, 2).data(), 2);
         device_.zero(reserve(required_, 1).data(), 1);
     }
 
     /// Sets the effects of all later draws; initially none. The lens comes from the view.
     void set_effects(const effect_set& effects) { effects_ = effects; }
-    /// Limits all later draws to the strip of this rank, or draws whole views. With a strip, `list` and
-    /// the backward pass are collective functions of all ranks, whose strips must differ. The backward
-    /// pass then returns the sums over all ranks.
+    /// Limits all later draws to the strip of this rank, or draws whole views. With a strip, `list`,
+    /// `blend_depths` and the backward pass are collective functions of all ranks, whose strips must
+    /// differ. If it `shares_gaussians`, a rank projects its own share of the Gaussians, needs the
+    /// parameters of these only, and passes only their gradients to the sink.
     void set_strip(const std::optional<view_strip>& strip) { strip_ = strip; }
 
     /// Counts the instances (Gaussian, tile) of a whole view: see `instances`.
     void measure(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         project_all(gaussians, count, view, sh_degree);
-        list_by_tile(count, 0, boxes_);
+        list_by_tile(0, boxes_, nullptr);
     }
     /// Returns the number of instances of the last view that was drawn or measured. Waits for the
     /// device.
@@ -105,7 +107,7 @@ class renderer {
         device_.begin(stage::project);
         project_all(gaussians, count, view, sh_degree, dropped);
         device_.begin(stage::bin);
-        bin(count);
+        bin();
         device_.begin(stage::blend_forward);
         const std::size_t pixels =
             static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
@@ -113,7 +115,6 @@ class renderer {
         transmittance_.resize(pixels);
         last_.resize(pixels);
         checkpoints_.resize(segments() * checkpoint_values);
-        count_ = count;
         gaussians_ = gaussians;
         sh_degree_ = sh_degree;
         effects_.depth = false;
@@ -133,10 +134,11 @@ class renderer {
     /// `blend`. The time of this and the next function counts as forward blending.
     void blend_depths() {
         with_lens(camera_.lens(), [&]<lens_model Lens> {
-            device_.for_each_index(count_, depth_splats<Real, effect_set{.lens = Lens}>{
-                                               gaussians_.mean, for_device<Real>(camera_), splats_.data(),
-                                               reserve(near_, count_).data()});
+            device_.for_each_index(own_gaussians(), depth_splats<Real, effect_set{.lens = Lens}>{
+                                                        gaussians_.mean, for_device<Real>(camera_),
+                                                        splats_.data(), reserve(near_, count_).data()});
         });
+        if (shares_gaussians()) visible_.collect(near_.data(), near_visible_);
         background_ = {};
         with_cut(
             [&]<class Shape> { blend_forward_by<Shape>(background_, depth_lists(), pairs_.data() + 1); });
@@ -146,7 +148,7 @@ class renderer {
     void backward_depths(const Real* gradient, float largest, accumulator how) {
         with_cut([&]<class Shape> {
             Accumulators::template with_kernel<Real, Shape>(how, [&](auto kernel) {
-                sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()));
+                sums_.begin(kernel, listed_count(), largest, kernel.template warps_of_sum<warp>(tiles()));
                 launch_backward(kernel, depth_lists(), gradient);
                 sums_.set_depths_aside(kernel);
             });
@@ -160,12 +162,13 @@ class renderer {
     template <class Sink>
     void backward(const Real* render_gradient, float largest, accumulator how, int learned_sh_degree,
                   const Sink& sink, visibility* seen) {
-        const Real* sums = pixel_sums(render_gradient, largest, how);
+        const Real* sums = sums_by_pixel(render_gradient, largest, how, owners());
+        if (shares_gaussians()) sums = visible_.by_gaussian(sums, count_);
         device_.begin(device::stage::project_backward);
         using narrow = typename Device::narrow_warp;
         with_effects(effects_of(camera_), [&]<effect_set Effects> {
             device_.template for_each_warp<narrow>(
-                (count_ + narrow::size - 1) / narrow::size,
+                own_warps<narrow>(),
                 project_backward<narrow, Real, Sink, Effects>{
                     gaussians_, count_, for_device<value_t<narrow, Real>>(camera_), sh_degree_,
                     learned_sh_degree, splats_.data(), tiles_.data(), sums, sink, seen, capacity()});
@@ -175,33 +178,19 @@ class renderer {
     /// The first half of `backward`. Returns the sums of each Gaussian that was drawn, the input of
     /// `project_backward`.
     const Real* pixel_sums(const Real* render_gradient, float largest, accumulator how) {
-        const Real* sums = nullptr;
-        with_cut([&]<class Shape> {
-            Accumulators::visit(how, [&]<class Variant>(Variant) {
-                using kernel = typename Variant::template kernel<Real, Shape>;
-                if (background_image_.planes == nullptr) {
-                    sums = blend_backward_by(kernel{}, render_gradient, largest).data();
-                } else if constexpr (Variant::supports_background_image) {
-                    using before_colors =
-                        typename Variant::template kernel<Real, Shape, image_background<Real>>;
-                    sums = blend_backward_by(before_colors{}, render_gradient, largest).data();
-                } else {
-                    throw error(
-                        "this accumulator has no gradient for an image in front of a learned background");
-                }
-            });
-        });
-        return sums;
+        return sums_by_pixel(render_gradient, largest, how, nullptr);
     }
 
     /// Runs the blending part of `backward` with this kernel, whose members it sets. Returns the
     /// sums: see `project_backward`.
     template <class Kernel>
-    const buffer<Real>& blend_backward_by(Kernel kernel, const Real* render_gradient, float largest) {
-        sums_.begin(kernel, count_, largest, kernel.template warps_of_sum<warp>(tiles()), effects_.depth);
+    const buffer<Real>& blend_backward_by(Kernel kernel, const Real* render_gradient, float largest,
+                                          const ranks::shares* owners = nullptr) {
+        sums_.begin(kernel, listed_count(), largest, kernel.template warps_of_sum<warp>(tiles()),
+                    effects_.depth);
         device_.begin(device::stage::blend_backward);
         launch_backward(kernel, lists(), render_gradient);
-        return sums_.end(kernel);
+        return sums_.end(kernel, owners);
     }
     /// See `gradient_sums`.
     std::uint32_t* fault() const { return sums_.fault(); }
@@ -217,14 +206,58 @@ class renderer {
     row_range own_rows() const {
         return strip_ ? strip_->own_pixels(camera_.height) : row_range{0, camera_.height};
     }
-    /// The number of instances in each tile row of the last view that all ranks drew together.
-    const std::vector<std::uint64_t>& row_lengths() const { return row_lengths_; }
+    /// The Gaussians of the last view that this rank projects and passes to the sink of `backward`.
+    ranks::share own_gaussians() const {
+        if (!shares_gaussians()) return {0, count_};
+        return shares_of(count_, device_.ranks()).of(device_.ranks().rank());
+    }
+    /// The number of instances in each tile row of the last view that all ranks drew together, on the
+    /// device. Zero if there was no memory for the lists of a row.
+    std::span<const std::uint64_t> row_lengths() const { return {lengths_.data(), tiles_down_}; }
     /// The flag that tells whether the last view's instances fit.
     list_capacity capacity() const { return {required_.data(), capacity_}; }
     /// A counter on the device: pixel-Gaussian pairs that all calls of `forward` have evaluated.
     const unsigned long long* pairs() const { return pairs_.data(); }
 
   private:
+    const Real* sums_by_pixel(const Real* render_gradient, float largest, accumulator how,
+                              const ranks::shares* owners) {
+        const Real* sums = nullptr;
+        with_cut([&]<class Shape> {
+            Accumulators::visit(how, [&]<class Variant>(Variant) {
+                using kernel = typename Variant::template kernel<Real, Shape>;
+                if (background_image_.planes == nullptr) {
+                    sums = blend_backward_by(kernel{}, render_gradient, largest, owners).data();
+                } else if constexpr (Variant::supports_background_image) {
+                    using before_colors =
+                        typename Variant::template kernel<Real, Shape, image_background<Real>>;
+                    sums = blend_backward_by(before_colors{}, render_gradient, largest, owners).data();
+                } else {
+                    throw error(
+                        "this accumulator has no gradient for an image in front of a learned background");
+                }
+            });
+        });
+        return sums;
+    }
+
+    bool shares_gaussians() const { return strip_ && strip_->shares_gaussians; }
+    const ranks::shares* owners() const { return shares_gaussians() ? &visible_.shares() : nullptr; }
+    /// Returns the warps that project this rank's Gaussians.
+    template <class Warp>
+    ranks::share own_warps() const {
+        const ranks::share own = own_gaussians();
+        return {own.first / Warp::size, (own.last + Warp::size - 1) / Warp::size};
+    }
+
+    /// The splats that tile lists refer to, and their number.
+    /// @{
+    const buffer<splat<Real>>& listed_splats() const {
+        return shares_gaussians() ? visible_.splats : splats_;
+    }
+    std::size_t listed_count() const { return shares_gaussians() ? visible_.count() : count_; }
+    /// @}
+
     template <class T>
     static buffer<T>& reserve(buffer<T>& b, std::size_t n) {
         b.resize(n);
@@ -296,13 +329,12 @@ class renderer {
         return most_segments<Cut>(tiles(), capacity_ + (strip_ ? Cut::segment : 0));
     }
     tile_lists<Real> lists() const {
-        return {splats_.data(), gaussian_of_.data() + first_place_,
-                ranges_.data(), tiles_across_,
-                camera_.width,  camera_.height};
+        return {listed_splats().data(), gaussian_of_.data(), ranges_.data(),
+                tiles_across_,          camera_.width,       camera_.height};
     }
     tile_lists<Real> depth_lists() const {
         tile_lists<Real> all = lists();
-        all.splats = near_.data();
+        all.splats = shares_gaussians() ? near_visible_.data() : near_.data();
         return all;
     }
 
@@ -310,6 +342,7 @@ class renderer {
                      const dropout& dropped = {}) {
         require_drawable(view);
         camera_ = view;
+        count_ = count;
         tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
         using narrow = typename Device::narrow_warp;
@@ -317,20 +350,22 @@ class renderer {
             constexpr effect_set seen{Effects.antialiasing, Effects.lens};
             using projection = project<narrow, Real, seen>;
             device_.template for_each_warp<narrow>(
-                projection::warps(count),
+                own_warps<narrow>(),
                 projection{gaussians, count, for_device<value_t<narrow, Real>>(view), sh_degree,
                            tiles_across_, tiles_down_, reserve(splats_, count).data(),
                            reserve(boxes_, count).data(), reserve(depths_, count).data(),
                            reserve(order_, count).data(), reserve(tiles_, count).data(), dropped});
         });
+        if (shares_gaussians())
+            visible_.collect(own_gaussians(), splats_.data(), boxes_.data(), depths_.data(), tiles_.data());
     }
 
     /// Makes the list of Gaussians of each tile, front to back. Equal depths keep the order of the
     /// Gaussians.
-    void bin(std::size_t count) {
-        device_.sort_pairs(depths_, order_, count);
-        first_place_ = 0;
-        strip_ ? list_strip(count) : list_by_tile(count, capacity_, boxes_);
+    void bin() {
+        shares_gaussians() ? device_.sort_pairs(visible_.depths, visible_.order, visible_.count())
+                           : device_.sort_pairs(depths_, order_, count_);
+        strip_ ? list_strip() : list_by_tile(capacity_, boxes_, gaussian_of_.data());
         const row_range own = strip_ && strip_->own.count() > 0 ? strip_->own : all_rows();
         device_.for_each_index(
             segments(),
@@ -343,43 +378,48 @@ class renderer {
         device_.for_each_index(tiles_in(listed_rows()),
                                order_tiles{ranges_.data(), order(), first_tile(listed_rows())});
     }
-    void list_by_tile(std::size_t count, std::uint64_t reserved, const buffer<tile_box>& boxes) {
-        const splats_by_depth<Real> splats{order_.data(), splats_.data(), boxes.data(), tiles_across_};
-        const auto distribute = [&](const auto& items) {
-            device_.distribute(count, items, tiles(), reserved, gaussian_of_.data() + first_place_,
+    /// Calls f with the splats in the order of their depth, as items of `device::distribute`.
+    template <class F>
+    void with_items(const buffer<tile_box>& boxes, const F& f) const {
+        const buffer<std::uint32_t>& order = shares_gaussians() ? visible_.order : order_;
+        const splats_by_depth<Real> splats{order.data(), listed_splats().data(), boxes.data(), tiles_across_};
+        camera_.is_panorama ? f(panorama_splats_by_depth<Real>{splats, {camera_.width, tiles_across_}})
+                            : f(splats);
+    }
+    void list_by_tile(std::uint64_t reserved, const buffer<tile_box>& boxes, std::uint32_t* listed) {
+        with_items(boxes, [&](const auto& items) {
+            device_.distribute(listed_count(), items, tiles(), reserved, listed,
                                reserve(ranges_, tiles()).data(), required_.data());
-        };
-        camera_.is_panorama
-            ? distribute(panorama_splats_by_depth<Real>{splats, {camera_.width, tiles_across_}})
-            : distribute(splats);
+        });
     }
     /// Makes the tile lists of a strip. Other ranks must call this, too. Lists begin at the same place
     /// of a segment as in the lists of a whole view, so that the backward pass cuts them at the same
     /// places and computes the same bits.
-    void list_strip(std::size_t count) {
+    void list_strip() {
         const row_range listed = listed_rows();
-        row_lengths_.clear();
-        device_.for_each_index(count,
-                               clip_boxes{boxes_.data(), listed, reserve(clipped_boxes_, count).data()});
-        first_place_ = Cut::segment;
-        list_by_tile(count, capacity_, clipped_boxes_);
+        const buffer<tile_box>& boxes = shares_gaussians() ? visible_.boxes : boxes_;
         device_.for_each_index(
-            tiles_down_ + 1, measure_rows{ranges_.data(), tiles_across_, strip_->own, tiles_down_, capacity(),
-                                          reserve(lengths_, tiles_down_ + 1).data()});
+            listed_count(), clip_boxes{boxes.data(), listed, reserve(clipped_boxes_, listed_count()).data()});
+        list_by_tile(capacity_, clipped_boxes_, reserve(unmoved_, capacity_).data());
+        lengths_.resize(tiles_down_ + 1);
+        device_.for_each_index(lengths_.size(), measure_rows{ranges_.data(), tiles_across_, strip_->own,
+                                                             tiles_down_, capacity(), lengths_.data()});
+        with_items(clipped_boxes_, [&]<class Items>(const Items& items) {
+            const auto first = static_cast<std::uint32_t>(first_tile(strip_->own));
+            const auto last = static_cast<std::uint32_t>(first + tiles_in(strip_->own));
+            device_.for_each_index(listed_count(), count_unlisted<Items>{items, first, last, capacity(),
+                                                                         lengths_.data() + tiles_down_});
+        });
         device_.sum_over_ranks(lengths_.data(), lengths_.size());
-        std::vector<std::uint64_t> lengths(lengths_.size());
-        device_.download(lengths.data(), lengths_.data(), lengths.size());
-        if (lengths.back() > 0) return list_by_tile(count, 0, boxes_);  // some rank's lists do not fit
-        lengths.pop_back();
-        const std::uint64_t all = std::accumulate(lengths.begin(), lengths.end(), std::uint64_t{0});
-        const std::uint64_t before =
-            std::accumulate(lengths.begin(), lengths.begin() + listed.first, std::uint64_t{0});
-        const auto shift = static_cast<std::uint32_t>(before % Cut::segment);
-        device_.upload(required_.data(), &all, 1);
-        device_.wait();
-        device_.for_each_index(tiles_in(listed), shift_ranges{ranges_.data() + first_tile(listed), shift});
-        first_place_ -= shift;
-        row_lengths_ = std::move(lengths);
+        device_.zero(reserve(place_, 1).data(), 1);
+        device_.for_each_index(
+            lengths_.size(),
+            add_rows{lengths_.data(), static_cast<std::size_t>(listed.first), place_.data()});
+        device_.for_each_index(1, require_all{place_.data(), required_.data()});
+        const std::size_t threads = 32 * device_.resident_warps();
+        device_.for_each_index(threads, move_lists<Cut::segment>{
+                                            place_.data(), unmoved_.data(), gaussian_of_.data(), capacity_,
+                                            threads, ranges_.data() + first_tile(listed), tiles_in(listed)});
     }
 
     tile_order order() const {
@@ -389,21 +429,21 @@ class renderer {
     static vec3<Real> color(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
 
     Device& device_;
-    buffer<splat<Real>> splats_, near_;  ///< the second for `depth_splats`
+    buffer<splat<Real>> splats_, near_, near_visible_;  ///< the last two for `depth_splats`
     buffer<tile_box> boxes_, clipped_boxes_;
-    buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_;
+    buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_, unmoved_;
     buffer<std::uint64_t> required_, lengths_;
+    buffer<strip_place> place_;
     buffer<tile_range> ranges_;
     buffer<Real> render_, transmittance_, checkpoints_;
-    gradient_sums<Device, Real> sums_;  // knob: renderer_members
+    visible_splats<Device, Real> visible_;  ///< if the strip `shares_gaussians`
+    gradient_sums<Device, Real> sums_;      // knob: renderer_members
     buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
     buffer<unsigned long long> pairs_;  ///< one counter for colors, and an unused one for depths
     std::uint64_t capacity_ = 0;
 
     unsigned tiles_across_ = 0, tiles_down_ = 0;
     std::optional<view_strip> strip_;  ///< if unset, views are drawn whole
-    std::uint64_t first_place_ = 0;    ///< where the place 0 of the tile lists is in `gaussian_of_`
-    std::vector<std::uint64_t> row_lengths_;
 
     effect_set effects_;
 

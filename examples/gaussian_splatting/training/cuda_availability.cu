@@ -39,6 +39,11 @@ cuda_report report_of_this_machine() {
 
 }  // namespace
 
+int count_gpus() {
+    int count = 0;
+    return cudaGetDeviceCount(&count) == cudaSuccess ? count : 0;
+}
+
 bool cuda_is_available(std::string& reason) {
     reason = reason_against_gpu(report_of_this_machine());
     return reason.empty();

@@ -18,24 +18,18 @@
 #include "../features/device_features.hpp"
 #include "../features/sh_degree/prune_sh.hpp"
 #include "../metrics/image_comparison.hpp"
+#include "../model/gaussian_shares.hpp"
 #include "../optimize/adam.hpp"
 #include "../render/renderer.hpp"
+#include "clamp_render.hpp"
 #include "device_views.hpp"
 #include "engine_parts.hpp"
 #include "list_sizer.hpp"
 #include "step_monitor.hpp"
+#include "strip_lengths.hpp"
 #include "view_strips.hpp"
 
 namespace gs::train {
-
-/// Clamps a render to [0, 1], the range of images. One index per value.
-struct clamp_render {
-    const float* from;
-    float* to;
-    WARPAGG_HD void operator()(std::size_t i) const {
-        to[i] = warpagg::math::min(warpagg::math::max(from[i], 0.0f), 1.0f);
-    }
-};
 
 /// The engine for a device. It determines the order of the kernels and owns the memory that they
 /// share.
@@ -57,6 +51,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
           sh_(*this),
           views_(device_),
           lists_(device_),
+          strip_lengths_(device_),
           monitor_(device_),
           gather_(device_) {
         profiler_ = this;
@@ -87,6 +82,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
         begin_generation(model.count());
         lists_.reset(views_.count());
         device_.wait();
+        is_complete_ = true;
         steps_ = 0;
     }
 
@@ -103,7 +99,9 @@ class device_engine final : public engine, device::profiler, checkpointed {
     }
 
     void reserve(int downscales) override {
+        complete_parameters();
         if (static_cast<std::size_t>(downscales) != level_) set_level(static_cast<std::size_t>(downscales));
+        renderer_.set_strip({});
         lists_.reserve(renderer_, trained_.values.read(), count_, views_.train(level_));
     }
 
@@ -111,7 +109,8 @@ class device_engine final : public engine, device::profiler, checkpointed {
         const photo& shot = views_.train(level_)[plan.view];
         const auto loaded = views_.load(shot);
         target_image target = loaded.target(plan.background);
-        const auto strip = strip_of(plan.view, shot.camera);
+        auto strip = strips_.of(plan.view, shot.camera, loss_->reach(), device_.ranks());
+        if (strip) strip->shares_gaussians = true;
         renderer_.set_strip(strip);
         if (strip) target.rows = strip->own_pixels(shot.camera.height);
         loss_->set_target(target);
@@ -119,11 +118,13 @@ class device_engine final : public engine, device::profiler, checkpointed {
         s.gradient_scale = std::max(loss_->gradient_scale(), features_.gradient_scale(s));
         device_.iteration(key_of(s, target), [&] { iterate(s); });
         lists_.was_noted(plan.view, count_);
-        strips_.note(plan.view, renderer_.row_lengths());
+        if (strip) strip_lengths_.keep(plan.view, renderer_.row_lengths());
+        is_complete_ = !strip;
         if (views_.cache() != nullptr) views_.cache()->upload_ahead();
     }
 
     std::uint64_t densify(int iteration) override {
+        complete_parameters();
         drawn_views views(*this, views_.train(level_));
         const std::size_t most = growth_limit();
         const densify_report report =
@@ -136,6 +137,8 @@ class device_engine final : public engine, device::profiler, checkpointed {
     void adjust(int iteration) override { strategy_->adjust(iteration, in_training()); }
 
     step_report take_report() override {
+        complete_parameters();
+        strip_lengths_.take(strips_);
         const std::uint64_t skipped = monitor_.skipped();
         const auto sums = loss_->sums();
         device_.sum_over_ranks(sums.data(), sums.size());
@@ -190,6 +193,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
             on_.sh_degree_ = degree;
         }
         std::size_t prune(double change) override {
+            on_.complete_parameters();
             if (on_.count_ > 0 && on_.sh_degree_ > 0) {
                 drawn_views views(on_, on_.views_.smallest());
                 sh_pruner<Device>(on_.device_, on_.gather_)
@@ -284,6 +288,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
         archive.exchange("sh_degree", sh_degree_);
         archive.exchange("steps", steps_);
         trained_.exchange(archive, device_);
+        is_complete_ = true;
         exchange_buffer(archive, device_, "statistics", seen_);
         if (sh_degree_ < 0 || sh_degree_ > 3 || !trained_.fits(count_, sh_degree_) || seen_.size() != count_)
             throw error("the checkpoint has arrays that do not fit its number of Gaussians");
@@ -340,6 +345,19 @@ class device_engine final : public engine, device::profiler, checkpointed {
         if (views_.cache() != nullptr) views_.cache()->set_level(level);
         lists_.reset(views_.train(level).size());
         strips_.reset(views_.train(level).size());
+        std::vector<int> heights;
+        for (const photo& shot : views_.train(level)) heights.push_back(shot.camera.height);
+        strip_lengths_.reset(heights);
+    }
+
+    /// Gives all ranks the Gaussians of the others, of which they have no present state after a step.
+    void complete_parameters() {
+        if (is_complete_) return;
+        std::vector<ranks::shared_array> arrays;
+        trained_.share(arrays);
+        arrays.push_back(ranks::shared_array::of(seen_.data(), block_length, count_));
+        device_.gather(shares_of(count_, device_.ranks()), arrays);
+        is_complete_ = true;
     }
 
     trained_gaussians<Device> in_training() {
@@ -382,7 +400,8 @@ class device_engine final : public engine, device::profiler, checkpointed {
         features_.learn(s, gradient);
         renderer_.backward(gradient, s.gradient_scale, s.accumulate, plan.updates_sh ? plan.sh_degree : 0,
                            descent(plan), strategy_->wants(plan.iteration) ? seen_.data() : nullptr);
-        strategy_->after_step(plan.iteration, {in_training(), plan.rates, renderer_.capacity()});
+        strategy_->after_step(plan.iteration,
+                              {in_training(), plan.rates, renderer_.capacity(), renderer_.own_gaussians()});
         monitor_.close(renderer_, loss_->sums(), lists_.length(plan.view), plan.iteration);
     }
 
@@ -407,10 +426,6 @@ class device_engine final : public engine, device::profiler, checkpointed {
         for (std::size_t p = 0; p < parameter_count; ++p)
             step.rates[p] = static_cast<float>(plan.rates[p] * by_first);
         return step;
-    }
-
-    std::optional<raster::view_strip> strip_of(std::size_t view, const camera& camera) {
-        return strips_.of(view, camera, loss_->reach(), device_.ranks());
     }
 
     /// Returns the pairs of this rank's steps.
@@ -459,6 +474,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
     device_views<Device> views_;
     list_sizer<Device> lists_;
     view_strips strips_;
+    strip_lengths<Device> strip_lengths_;
     step_monitor<Device> monitor_;
     parameter_gather<Device> gather_;
     std::unique_ptr<loss<float>> loss_;
@@ -470,6 +486,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
     int sh_degree_ = 0;
     effect_set effects_;
     std::uint32_t steps_ = 0;
+    bool is_complete_ = true;  ///< whether this rank has the present state of all Gaussians
     std::uint64_t drawn_pairs_ = 0, pairs_of_others_ = 0;
     std::optional<renderer_type> apart_;  ///< see `render_options::separate_memory`
     std::size_t bytes_apart_ = 0;         ///< device memory that such renders have allocated

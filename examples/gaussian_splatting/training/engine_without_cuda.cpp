@@ -7,6 +7,8 @@ namespace gs::train {
 
 std::unique_ptr<engine> make_cuda_engine() { throw error("this program was built without CUDA"); }
 
+int count_gpus() { return 0; }
+
 bool cuda_is_available(std::string& reason) {
     reason = "this program was built without CUDA";
     return false;

@@ -66,9 +66,15 @@ class step_monitor {
         finite_check::memory found;
         device_.download(&found, faults_.data(), 1);
         reset();
-        // Ranks find most faults together, so the counts are not added.
         device_.ranks().minimum(found.first, fault_kind_count);
-        device_.ranks().maximum(found.count, fault_kind_count);
+        // Each rank checks its own Gaussians. All ranks find the other faults together.
+        for (std::size_t k = 0; k < fault_kind_count; ++k) {
+            const auto kind = static_cast<fault_kind>(k);
+            const bool is_of_gaussian = kind == fault_kind::gradient || kind == fault_kind::parameter;
+            std::uint64_t count = found.count[k];
+            is_of_gaussian ? device_.ranks().sum(&count, 1) : device_.ranks().maximum(&count, 1);
+            found.count[k] = count;
+        }
         return finite_check::decode(found);
     }
 

@@ -19,6 +19,9 @@ struct without_times : cpu {
 struct without_sums_over_ranks : cpu {
     void sum_over_ranks() = delete;
 };
+struct without_gather : cpu {
+    void gather() = delete;
+};
 struct without_uploads_beside_kernels : cpu {
     void begin_upload() = delete;
 };
@@ -40,6 +43,7 @@ TEST_CASE("device: a type that lacks one member is no model") {
     CHECK_FALSE(device<without_sort>);
     CHECK_FALSE(device<without_times>);
     CHECK_FALSE(device<without_sums_over_ranks>);
+    CHECK_FALSE(device<without_gather>);
     CHECK_FALSE(device<without_uploads_beside_kernels>);
     CHECK_FALSE(device<without_narrow_warp>);
     CHECK_FALSE(device<with_buffers_of_constant_size>);

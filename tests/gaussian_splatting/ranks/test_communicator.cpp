@@ -96,6 +96,28 @@ TEST_CASE("communicator: values that take several slots are exchanged in parts")
     }));
 }
 
+TEST_CASE("communicator: all ranks get the parts of the others") {
+    for (const int count : {2, 3, 5})
+        for (const std::size_t items : {0u, 40u, 1'000'000u}) {
+            CAPTURE(count);
+            CAPTURE(items);
+            CHECK(all_find(count, [&](communicator& all) {
+                const gs::ranks::shares shares(items, 32, count);
+                std::vector<std::uint64_t> values(items);
+                const auto own = shares.of(all.rank());
+                for (int round = 1; round < 3; ++round) {
+                    for (std::size_t i = own.first; i < own.last; ++i)
+                        values[i] = i * static_cast<std::size_t>(round);
+                    all.gather(shares, gs::ranks::shared_array::of(values.data(), 32, items));
+                    for (std::size_t i = 0; i < items; ++i)
+                        if (values[i] != i * static_cast<std::size_t>(round)) return false;
+                    all.barrier();
+                }
+                return true;
+            }));
+        }
+}
+
 TEST_CASE("communicator: ranks that disagree about an exchange end with an error") {
     for (const bool other_size : {false, true}) {
         const auto end = gs::ranks::run(2, [&](communicator& all) {

@@ -174,4 +174,10 @@ TEST_CASE("ranks: errors are reported once, and leave nothing behind") {
     check_refusal_without_trace(train + words{"--poses", "auto"}, {"--ranks", "--poses auto"});
     check_refusal_without_trace({"train", "-d", "no scene", "--ranks", "2", "--device", "cpu"}, {"no scene"});
     check_refusal_without_trace({"train", "-d", "synthetic:spheres", "--ranks", "0"}, {"--ranks", "'0'"});
+    check_refusal_without_trace(train + words{"--gpus", "2"}, {"--ranks", "--gpus"});
+    const words on_gpus{"train", "-d", "synthetic:spheres", "--gpus"};
+    check_refusal_without_trace(on_gpus + words{"0"}, {"--gpus", "1 to 64, or all", "'0'"});
+    check_refusal_without_trace(on_gpus + words{"2", "--device", "cpu"}, {"--gpus", "--device cpu"});
+    check_refusal_without_trace(on_gpus + words{"all", "--viewer", "8080"}, {"--gpus", "--viewer"});
+    check_refusal_without_trace(on_gpus + words{"64"}, {"--gpus 64", "GPU"});
 }

@@ -42,8 +42,8 @@ class mcmc final : public strategy<Device> {
         // Divided by the square of the extent, the noise does not depend on the unit of length.
         const double strength = config_.noise * rate / (facts_.extent * facts_.extent);
         device_.for_each_index(
-            c.count, add_noise{c.parameters.values.write(), static_cast<float>(strength), facts_.seed,
-                               static_cast<std::uint64_t>(iteration), c.capacity});
+            c.own, add_noise{c.parameters.values.write(), static_cast<float>(strength), facts_.seed,
+                             static_cast<std::uint64_t>(iteration), c.capacity});
         apply_penalties({config_.opacity_penalty, config_.scale_penalty}, facts_.extent, iteration, c);
     }
 

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -103,17 +104,21 @@ class basic_cpu {
     std::size_t resident_warps() const { return 16 * static_cast<std::size_t>(omp_get_max_threads()); }
 
     template <class F>
-    void for_each_index(std::size_t n, const F& f) {
-        key_check::launched<F>(n);
+    void for_each_index(const gs::ranks::share& part, const F& f) {
+        key_check::launched<F>(part.count());
 #pragma omp parallel for schedule(static)
-        for (std::size_t i = 0; i < n; ++i) f(i);
+        for (std::size_t i = part.first; i < part.last; ++i) f(i);
+    }
+    template <class F>
+    void for_each_index(std::size_t n, const F& f) {
+        for_each_index(gs::ranks::share{0, n}, f);
     }
     template <class W = warp, class F>
-    void for_each_warp(std::size_t n, const F& f) {
-        key_check::launched<F>(n);
-        const std::size_t share = std::clamp<std::size_t>(n / resident_warps(), 1, 8);
-#pragma omp parallel for schedule(dynamic, share)
-        for (std::size_t i = 0; i < n; ++i) {
+    void for_each_warp(const gs::ranks::share& part, const F& f) {
+        key_check::launched<F>(part.count());
+        const std::size_t at_once = std::clamp<std::size_t>(part.count() / resident_warps(), 1, 8);
+#pragma omp parallel for schedule(dynamic, at_once)
+        for (std::size_t i = part.first; i < part.last; ++i) {
             if constexpr (has_scratch<F, W>) {
                 typename F::template scratch<W> scratch;
                 f(W{}, static_cast<unsigned>(i), scratch);
@@ -121,6 +126,10 @@ class basic_cpu {
                 f(W{}, static_cast<unsigned>(i));
             }
         }
+    }
+    template <class W = warp, class F>
+    void for_each_warp(std::size_t n, const F& f) {
+        for_each_warp<W>(gs::ranks::share{0, n}, f);
     }
 
     template <class T>
@@ -233,6 +242,13 @@ class basic_cpu {
     template <class T>
     void sum_over_ranks(T* p, std::size_t n) {
         ranks_->sum(p, n);
+    }
+    template <class T>
+    void sum_for_owners(const gs::ranks::shares&, T* p, std::size_t, std::size_t n) {
+        ranks_->sum(p, n);
+    }
+    void gather(const gs::ranks::shares& shares, std::span<const gs::ranks::shared_array> arrays) {
+        for (const auto& array : arrays) ranks_->gather(shares, array);
     }
 
     void sample_times(int every) {

@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <cub/device/device_scan.cuh>
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -20,6 +22,7 @@
 #include "distribute.hpp"
 #include "graph.hpp"
 #include "memory.hpp"
+#include "peers.hpp"
 #include "sort.hpp"
 #include "times.hpp"
 #include "transfer.hpp"
@@ -50,10 +53,10 @@ struct sizes_of {
 };
 
 template <class F>
-__global__ void for_each_index(std::size_t n, F f) {
+__global__ void for_each_index(std::size_t first, std::size_t last, F f) {
     await_kernel_before();
-    const std::size_t i = std::size_t{blockIdx.x} * block_size + threadIdx.x;
-    if (i < n) f(i);
+    const std::size_t i = first + std::size_t{blockIdx.x} * block_size + threadIdx.x;
+    if (i < last) f(i);
 }
 
 /// The minimum number of resident blocks per multiprocessor. A kernel may set `warps_at_once` to
@@ -66,15 +69,16 @@ requires requires { F::warps_at_once; }
 constexpr int least_blocks<F> = F::warps_at_once / warps_per_block;
 
 template <class F>
-__global__ void __launch_bounds__(block_size, least_blocks<F>) for_each_warp(unsigned n, F f) {
+__global__ void __launch_bounds__(block_size, least_blocks<F>)
+    for_each_warp(unsigned first, unsigned last, F f) {
     await_kernel_before();
-    const unsigned i = blockIdx.x * warps_per_block + threadIdx.x / 32;
+    const unsigned i = first + blockIdx.x * warps_per_block + threadIdx.x / 32;
     using warp = warpagg::cuda_warp;
     if constexpr (has_scratch<F, warp>) {
         __shared__ typename F::template scratch<warp> scratch[warps_per_block];
-        if (i < n) f(warp{}, i, scratch[threadIdx.x / 32]);
+        if (i < last) f(warp{}, i, scratch[threadIdx.x / 32]);
     } else {
-        if (i < n) f(warp{}, i);
+        if (i < last) f(warp{}, i);
     }
 }
 
@@ -116,13 +120,22 @@ class cuda {
     std::size_t resident_warps() const { return resident_warps_; }
 
     template <class F>
+    void for_each_index(const gs::ranks::share& part, const F& f) {
+        launch(detail::for_each_index<F>, blocks(part.count(), detail::block_size), detail::block_size, 0,
+               part.first, part.last, f);
+    }
+    template <class F>
     void for_each_index(std::size_t n, const F& f) {
-        launch(detail::for_each_index<F>, blocks(n, detail::block_size), detail::block_size, 0, n, f);
+        for_each_index(gs::ranks::share{0, n}, f);
+    }
+    template <class W = warp, class F>
+    void for_each_warp(const gs::ranks::share& part, const F& f) {
+        launch(detail::for_each_warp<F>, blocks(part.count(), detail::warps_per_block), detail::block_size, 0,
+               static_cast<unsigned>(part.first), static_cast<unsigned>(part.last), f);
     }
     template <class W = warp, class F>
     void for_each_warp(std::size_t n, const F& f) {
-        launch(detail::for_each_warp<F>, blocks(n, detail::warps_per_block), detail::block_size, 0,
-               static_cast<unsigned>(n), f);
+        for_each_warp<W>(gs::ranks::share{0, n}, f);
     }
 
     template <class T>
@@ -196,24 +209,39 @@ class cuda {
 
     /// Runs an iteration. Iterations with equal keys need the same memory, which the first one
     /// allocates. The launches of later ones are captured and submitted as one graph, because a
-    /// capture cannot allocate. Timed iterations are not captured.
+    /// capture cannot allocate. Timed iterations are not captured, and neither are those of several
+    /// ranks, which exchange values on their way.
     template <class F>
     void iteration(const graph_key& key, const F& f) {
         const bool is_new = keys_.insert(key).second;
-        if (!is_new && !times_.is_sampled())
+        if (!is_new && !times_.is_sampled() && !peers_)
             graph_.launch(stream_, f);
         else
             f();
         end_iteration();
     }
 
-    /// A GPU trains alone.
-    void join(const gs::ranks::communicator& ranks) {
-        if (ranks.count() > 1) throw error("several ranks train on the CPU only: give --device cpu");
+    /// Several ranks need NCCL. Throws `error` if it is not installed.
+    void join(gs::ranks::communicator& ranks) {
+        ranks_ = &ranks;
+        if (ranks.count() > 1 && !peers_) peers_.emplace(ranks);
     }
-    gs::ranks::communicator& ranks() { return alone_; }
+    gs::ranks::communicator& ranks() { return *ranks_; }
     template <class T>
-    void sum_over_ranks(T*, std::size_t) {}
+    void sum_over_ranks(T* p, std::size_t n) {
+        if (peers_) peers_->sum(p, n, stream_);
+    }
+    template <class T>
+    void sum_for_owners(const gs::ranks::shares& shares, T* p, std::size_t block_size, std::size_t n) {
+        if (!peers_) return;
+        const gs::ranks::share own = shares.of(ranks_->rank(), block_size, n);
+        const T* theirs = peers_->exchange_parts(shares, p, block_size, n, stream_);
+        for_each_index(own.count(),
+                       add_parts<T>{p + own.first, theirs, own.count(), ranks_->rank(), ranks_->count()});
+    }
+    void gather(const gs::ranks::shares& shares, std::span<const gs::ranks::shared_array> arrays) {
+        if (peers_) peers_->gather(shares, arrays, stream_);
+    }
 
     void sample_times(int every) { times_.sample(every); }
     void pause_times(bool paused) { times_.pause(paused); }
@@ -275,7 +303,7 @@ class cuda {
         check(scan(scratch_.data(), bytes));
     }
 
-    gs::ranks::communicator alone_;
+    gs::ranks::communicator alone_, *ranks_ = &alone_;
     cuda_pool pool_;
     owned_stream stream_, upload_stream_;
     transfer launched_;  ///< marks the launches before an upload
@@ -289,6 +317,7 @@ class cuda {
     buffer<std::uint64_t> first_candidate_;  // memory of `distribute`, with the next two
     buffer<std::uint32_t> table_;
     buffer<unsigned> slices_done_;
+    std::optional<cuda_peers> peers_;  ///< the GPUs of the other ranks
 };
 static_assert(device<cuda>);
 

@@ -77,19 +77,22 @@ class gradient_sums {
         using in_memory = std::remove_pointer_t<decltype(kernel.sums)>;
         device_.for_each_index(sums_.size() / record_stride, set_red_aside<in_memory>{kernel.sums});
     }
-    /// Called after the kernel. Adds the sums of all ranks, and returns them as `Real`.
+    /// Called after the kernel. Adds the sums of all ranks, and returns them as `Real`. With `owners`, a
+    /// rank gets the sums of its own share of the Gaussians only.
     template <class Kernel>
-    const buffer<Real>& end(const Kernel& kernel) {
+    const buffer<Real>& end(const Kernel& kernel, const ranks::shares* owners = nullptr) {
         if constexpr (std::is_same_v<std::remove_pointer_t<decltype(kernel.sums)>, Real>) {
-            device_.sum_over_ranks(sums_.data(), sums_.size());
+            add_ranks(sums_.data(), owners);
         } else {
             if constexpr (requires { kernel.how.accumulating().fault; })
-                device_.sum_over_ranks(reinterpret_cast<std::int64_t*>(cells_.data()), cells_.size());
+                add_ranks(reinterpret_cast<std::int64_t*>(cells_.data()), owners);
             float unit = 1;
             if constexpr (requires { kernel.how.accumulating().scale; })
                 unit = 1 / kernel.how.accumulating().scale;
-            device_.for_each_index(sums_.size(),
-                                   round_sums<kept_by<Kernel>>{kernel.sums, unit, sums_.data()});
+            const std::size_t n = sums_.size();
+            device_.for_each_index(
+                owners == nullptr ? ranks::share{0, n} : owners->of(device_.ranks().rank(), record_stride, n),
+                round_sums<kept_by<Kernel>>{kernel.sums, unit, sums_.data()});
         }
         return sums_;
     }
@@ -104,6 +107,13 @@ class gradient_sums {
     std::uint32_t* fault() const { return fault_.data(); }
 
   private:
+    /// Precondition: there is one value per sum.
+    template <class T>
+    void add_ranks(T* values, const ranks::shares* owners) {
+        owners == nullptr ? device_.sum_over_ranks(values, sums_.size())
+                          : device_.sum_for_owners(*owners, values, record_stride, sums_.size());
+    }
+
     template <class Kernel>
     using kept_by = typename Kernel::policy::accumulate::storage;
 

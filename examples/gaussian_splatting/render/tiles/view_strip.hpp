@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "../../device/atomic.hpp"
 #include "../geometry/list_capacity.hpp"
 #include "../geometry/row_range.hpp"
 #include "tile_lists.hpp"
@@ -16,6 +17,7 @@ namespace gs::raster {
 struct view_strip {
     row_range own;
     int reach = 0;  ///< number of pixel rows beyond its own that it only renders, see `loss::reach`
+    bool shares_gaussians = false;  ///< whether the rank projects its own Gaussians only
 
     /// Returns the tile rows with tile lists, of a view with `down` tile rows.
     row_range listed(int down) const {
@@ -44,9 +46,9 @@ struct clip_boxes {
     }
 };
 
-/// Writes the length of the tile lists in each own tile row, and zero for other rows. Writes after them
-/// whether lists were longer than the memory for them, and their lengths are therefore unknown. One
-/// index per tile row, and one more.
+/// Writes the length of the tile lists in each own tile row, and zero for other rows. If the lists do
+/// not fit into their memory, all lengths are zero. Writes zero after them. One index per tile row,
+/// and one more.
 struct measure_rows {
     const tile_range* ranges;
     std::size_t tiles_across;
@@ -56,23 +58,84 @@ struct measure_rows {
     std::uint64_t* lengths;
 
     WARPAGG_HD void operator()(std::size_t row) const {
-        std::uint64_t length = 0;
-        if (row == rows)
-            length = capacity.exceeded() ? 1 : 0;
-        else if (static_cast<int>(row) >= own.first && static_cast<int>(row) < own.last)
-            length = ranges[(row + 1) * tiles_across - 1].end - ranges[row * tiles_across].begin;
-        lengths[row] = length;
+        const bool is_own = static_cast<int>(row) >= own.first && static_cast<int>(row) < own.last;
+        lengths[row] = row < rows && is_own && !capacity.exceeded()
+                           ? ranges[(row + 1) * tiles_across - 1].end - ranges[row * tiles_across].begin
+                           : 0;
     }
 };
 
-/// Moves tile lists to later places. One index per tile.
-struct shift_ranges {
-    tile_range* ranges;
-    std::uint32_t places;
+/// Counts the instances in own tile rows if the lists do not fit into their memory. One index per
+/// item: see `device::items`.
+template <class Items>
+struct count_unlisted {
+    Items items;
+    std::uint32_t first_tile, last_tile;
+    list_capacity capacity;
+    std::uint64_t* number;
 
-    WARPAGG_HD void operator()(std::size_t tile) const {
-        ranges[tile].begin += places;
-        ranges[tile].end += places;
+    WARPAGG_HD void operator()(std::size_t i) const {
+        if (!capacity.exceeded()) return;
+        const auto item = items(i);
+        unsigned long long found = 0;
+        for (std::uint32_t k = 0; k < item.size(); ++k) {
+            const std::uint32_t tile = item.bucket(k);
+            if (tile >= first_tile && tile < last_tile) ++found;
+        }
+        device::atomic_add(reinterpret_cast<unsigned long long*>(number), found);
+    }
+};
+
+/// Where the lists of a strip are among the lists of the whole view.
+struct strip_place {
+    unsigned long long all;     ///< number of instances of the whole view
+    unsigned long long before;  ///< number of instances in the tile rows before those with lists
+    std::uint64_t listed;       ///< number of instances in the lists of the strip
+};
+
+/// Adds the lengths of tile rows to the place. One index per length that `measure_rows` writes.
+struct add_rows {
+    const std::uint64_t* lengths;
+    std::size_t first_listed;
+    strip_place* place;  ///< initially zero
+
+    WARPAGG_HD void operator()(std::size_t row) const {
+        if (lengths[row] == 0) return;
+        device::atomic_add(&place->all, static_cast<unsigned long long>(lengths[row]));
+        if (row < first_listed)
+            device::atomic_add(&place->before, static_cast<unsigned long long>(lengths[row]));
+    }
+};
+
+/// Replaces the number of listed instances by that of the whole view. One index.
+struct require_all {
+    strip_place* place;
+    std::uint64_t* required;
+
+    WARPAGG_HD void operator()(std::size_t) const {
+        place->listed = *required;
+        *required = place->all;
+    }
+};
+
+/// Moves tile lists to the places of a segment that they have in the lists of the whole view. One
+/// index per thread.
+template <unsigned Segment>
+struct move_lists {
+    const strip_place* place;
+    const std::uint32_t* from;
+    std::uint32_t* to;
+    std::uint64_t capacity;
+    std::size_t threads;
+    tile_range* ranges;  ///< of the tiles with lists
+    std::size_t tiles;
+
+    WARPAGG_HD void operator()(std::size_t thread) const {
+        const auto by = static_cast<std::uint32_t>(place->before % Segment);
+        const std::uint64_t listed = place->listed < capacity ? place->listed : capacity;
+        for (std::size_t i = thread; i < tiles; i += threads)
+            ranges[i] = {ranges[i].begin + by, ranges[i].end + by};
+        for (std::size_t i = thread; i < listed; i += threads) to[i + by] = from[i];
     }
 };
 

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstring>
+#include <span>
+#include <warpagg/core/compiler.hpp>
+
+#include "../../ranks/communicator.hpp"
+#include "memory.hpp"
+#include "nccl.hpp"
+
+namespace gs::device {
+
+/// Adds the parts of all ranks in the order of ranks, so that the sums do not depend on the order in
+/// which parts arrive. One index per value.
+template <class T>
+struct add_parts {
+    T* own;           ///< the part of this rank, which becomes the sum
+    const T* theirs;  ///< the parts of all ranks; its own is unused
+    std::size_t count;
+    int rank, ranks;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        T sum(0);
+        for (int r = 0; r < ranks; ++r) {
+            const T part = r == rank ? own[i] : theirs[static_cast<std::size_t>(r) * count + i];
+            sum = r == 0 ? part : sum + part;
+        }
+        own[i] = sum;
+    }
+};
+
+/// The GPUs of all ranks, connected by NCCL. All functions are collective. They run in the order of the
+/// stream, and don't wait.
+class cuda_peers {
+  public:
+    explicit cuda_peers(ranks::communicator& all) : rank_(all.rank()), count_(all.count()) {
+        ncclUniqueId id{};
+        if (all.is_first()) nccl_.check(nccl_.unique_id(&id));
+        std::array<std::uint64_t, sizeof(id) / sizeof(std::uint64_t)> words{};
+        std::memcpy(words.data(), &id, sizeof(id));
+        all.sum(words.data(), words.size());
+        std::memcpy(&id, words.data(), sizeof(id));
+        nccl_.check(nccl_.init_rank(&group_, count_, id, rank_));
+        connect();
+    }
+    cuda_peers(const cuda_peers&) = delete;
+    cuda_peers& operator=(const cuda_peers&) = delete;
+
+    /// Gives all ranks the sums of n values. All ranks get the same bits.
+    template <class T>
+    void sum(T* values, std::size_t n, cudaStream_t stream) {
+        nccl_.check(nccl_.all_reduce(values, values, n, nccl_type<T>(), ncclSum, group_, stream));
+    }
+    /// Sends each rank its part of the values. Returns the parts that this rank got: see `add_parts`.
+    template <class T>
+    const T* exchange_parts(const ranks::shares& shares, T* values, std::size_t block_size, std::size_t n,
+                            cudaStream_t stream) {
+        const auto array = ranks::shared_array::of(values, block_size, n);
+        const std::size_t bytes = array.part(shares, rank_).size();
+        received_.resize(bytes * static_cast<std::size_t>(count_));
+        for_each_other([&](int other) {
+            send(array.part(shares, other), other, stream);
+            receive({received_.data() + static_cast<std::size_t>(other) * bytes, bytes}, other, stream);
+        });
+        return reinterpret_cast<const T*>(received_.data());
+    }
+    /// Gives all ranks the parts of the others.
+    void gather(const ranks::shares& shares, std::span<const ranks::shared_array> arrays,
+                cudaStream_t stream) {
+        for_each_other([&](int other) {
+            for (const auto& array : arrays) {
+                send(array.part(shares, rank_), other, stream);
+                receive(array.part(shares, other), other, stream);
+            }
+        });
+    }
+
+  private:
+    /// Makes the first exchange, because NCCL connects GPUs when they first need it.
+    void connect() {
+        received_.resize(sizeof(double) * static_cast<std::size_t>(count_));
+        double* const values = reinterpret_cast<double*>(received_.data());
+        check(cudaMemsetAsync(values, 0, received_.size(), cudaStreamLegacy));
+        sum(values, static_cast<std::size_t>(count_), cudaStreamLegacy);
+        const ranks::shared_array array[] = {
+            ranks::shared_array::of(values, 1, static_cast<std::size_t>(count_))};
+        gather({static_cast<std::size_t>(count_), 1, count_}, array, cudaStreamLegacy);
+        check(cudaStreamSynchronize(cudaStreamLegacy));
+    }
+    /// Calls f for each other rank. The copies that it begins run together.
+    template <class F>
+    void for_each_other(const F& f) {
+        nccl_.check(nccl_.group_start());
+        for (int other = 0; other < count_; ++other)
+            if (other != rank_) f(other);
+        nccl_.check(nccl_.group_end());
+    }
+    void send(std::span<const std::byte> bytes, int rank, cudaStream_t stream) {
+        if (!bytes.empty())
+            nccl_.check(nccl_.send(bytes.data(), bytes.size(), ncclInt8, rank, group_, stream));
+    }
+    void receive(std::span<std::byte> bytes, int rank, cudaStream_t stream) {
+        if (!bytes.empty())
+            nccl_.check(nccl_.receive(bytes.data(), bytes.size(), ncclInt8, rank, group_, stream));
+    }
+
+    nccl nccl_;
+    ncclComm_t group_ = nullptr;
+    int rank_, count_;
+    cuda_buffer<std::byte> received_;
+};
+
+}  // namespace gs::device

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ranks/shares.hpp"
+
+using gs::ranks::share;
+using gs::ranks::shared_array;
+using gs::ranks::shares;
+
+TEST_CASE("shares: consecutive whole blocks, which differ by at most one block") {
+    for (const std::size_t items : {0u, 1u, 31u, 32u, 33u, 95u, 1000u})
+        for (const int ranks : {1, 2, 3, 7}) {
+            CAPTURE(items);
+            CAPTURE(ranks);
+            const shares all(items, 32, ranks);
+            std::size_t end = 0, least = items, most = 0;
+            for (int r = 0; r < ranks; ++r) {
+                const share own = all.of(r);
+                CHECK(own.first == end);
+                CHECK((own.first % 32 == 0 || own.count() == 0));
+                end = own.last;
+                const std::size_t blocks = (own.count() + 31) / 32;
+                least = r == 0 ? blocks : std::min(least, blocks);
+                most = std::max(most, blocks);
+            }
+            CHECK(end == items);
+            CHECK(most - least <= 1);
+        }
+}
+
+TEST_CASE("shares: parts of arrays with several values per item, padding, or fewer items") {
+    const shares all(70, 32, 2);  // blocks 0 and 1 to 2
+    CHECK(all.of(0) == share{0, 32});
+    CHECK(all.of(1) == share{32, 70});
+    CHECK(all.of(0, 96, 3 * 96) == share{0, 96});
+    CHECK(all.of(1, 96, 3 * 96) == share{96, 288});
+    CHECK(all.of(1, 32, 70) == share{32, 70});
+    CHECK(all.of(1, 32, 32) == share{32, 32});
+    CHECK(all.of(0, 32, 20) == share{0, 20});
+
+    std::vector<std::uint32_t> values(70);
+    const auto array = shared_array::of(values.data(), 32, values.size());
+    CHECK(array.bytes == 280);
+    CHECK(array.part(all, 1).size() == 38 * 4);
+    CHECK(array.part(all, 1).data() == reinterpret_cast<std::byte*>(values.data() + 32));
+}
