@@ -18,9 +18,9 @@
 #include "gradients/gradient_sums.hpp"
 #include "project/project.hpp"
 #include "project/project_backward.hpp"
+#include "project/visible_splats.hpp"
 #include "tiles/bin.hpp"
 #include "tiles/view_strip.hpp"
-#include "tiles/visible_splats.hpp"
 
 namespace gs::raster {
 

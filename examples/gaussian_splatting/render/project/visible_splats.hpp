@@ -8,8 +8,8 @@
 
 #include "../../device/device.hpp"
 #include "../geometry/splat.hpp"
-#include "../project/project_backward.hpp"
-#include "tile_reach.hpp"
+#include "../tiles/tile_reach.hpp"
+#include "project_backward.hpp"
 
 namespace gs::raster {
 
