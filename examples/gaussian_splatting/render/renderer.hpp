@@ -127,6 +127,12 @@ class renderer {
             background_image == nullptr ? blend_forward_by<Shape>(background_, lists(), pairs_.data())
                                         : blend_forward_by<Shape>(background_image_, lists(), pairs_.data());
         });
+        if (!strip_) return;
+        device_.zero(reserve(work_, tiles_down_).data(), tiles_down_);
+        device_.for_each_index(tiles_in(strip_->own),
+                               measure_work{last_.data(), static_cast<unsigned>(camera_.width),
+                                            static_cast<unsigned>(camera_.height), tiles_across_,
+                                            first_tile(strip_->own), work_.data()});
     }
 
     /// Called between both parts: draws the inverse depths, the sum of w_i / z_i with the weights
@@ -211,9 +217,9 @@ class renderer {
         if (!shares_gaussians()) return {0, count_};
         return shares_of(count_, device_.ranks()).of(device_.ranks().rank());
     }
-    /// The number of instances in each tile row of the last view that all ranks drew together, on the
-    /// device. Zero if there was no memory for the lists of a row.
-    std::span<const std::uint64_t> row_lengths() const { return {lengths_.data(), tiles_down_}; }
+    /// The number of splats that sampled pixels of the last view blend, by tile row, on the device. Zero
+    /// for rows of other ranks.
+    std::span<const unsigned long long> row_work() const { return {work_.data(), tiles_down_}; }
     /// The flag that tells whether the last view's instances fit.
     list_capacity capacity() const { return {required_.data(), capacity_}; }
     /// A counter on the device: pixel-Gaussian pairs that all calls of `forward` have evaluated.
@@ -363,6 +369,7 @@ class renderer {
     /// Makes the list of Gaussians of each tile, front to back. Equal depths keep the order of the
     /// Gaussians.
     void bin() {
+        if (strip_) clip();
         shares_gaussians() ? device_.sort_pairs(visible_.depths, visible_.order, visible_.count())
                            : device_.sort_pairs(depths_, order_, count_);
         strip_ ? list_strip() : list_by_tile(capacity_, boxes_, gaussian_of_.data());
@@ -392,14 +399,19 @@ class renderer {
                                reserve(ranges_, tiles()).data(), required_.data());
         });
     }
+    /// Limits the boxes of all splats to the tile rows with lists.
+    void clip() {
+        const buffer<tile_box>& boxes = shares_gaussians() ? visible_.boxes : boxes_;
+        const buffer<std::uint32_t>& depths = shares_gaussians() ? visible_.depths : depths_;
+        device_.for_each_index(listed_count(),
+                               clip_boxes{boxes.data(), listed_rows(),
+                                          reserve(clipped_boxes_, listed_count()).data(), depths.data()});
+    }
     /// Makes the tile lists of a strip. Other ranks must call this, too. Lists begin at the same place
     /// of a segment as in the lists of a whole view, so that the backward pass cuts them at the same
     /// places and computes the same bits.
     void list_strip() {
         const row_range listed = listed_rows();
-        const buffer<tile_box>& boxes = shares_gaussians() ? visible_.boxes : boxes_;
-        device_.for_each_index(
-            listed_count(), clip_boxes{boxes.data(), listed, reserve(clipped_boxes_, listed_count()).data()});
         list_by_tile(capacity_, clipped_boxes_, reserve(unmoved_, capacity_).data());
         lengths_.resize(tiles_down_ + 1);
         device_.for_each_index(lengths_.size(), measure_rows{ranges_.data(), tiles_across_, strip_->own,
@@ -439,6 +451,7 @@ class renderer {
     visible_splats<Device, Real> visible_;  ///< if the strip `shares_gaussians`
     gradient_sums<Device, Real> sums_;      // knob: renderer_members
     buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
+    buffer<unsigned long long> work_;
     buffer<unsigned long long> pairs_;  ///< one counter for colors, and an unused one for depths
     std::uint64_t capacity_ = 0;
 

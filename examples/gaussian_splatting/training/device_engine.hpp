@@ -25,8 +25,8 @@
 #include "device_views.hpp"
 #include "engine_parts.hpp"
 #include "list_sizer.hpp"
+#include "row_work.hpp"
 #include "step_monitor.hpp"
-#include "strip_lengths.hpp"
 #include "view_strips.hpp"
 
 namespace gs::train {
@@ -51,7 +51,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
           sh_(*this),
           views_(device_),
           lists_(device_),
-          strip_lengths_(device_),
+          row_work_(device_),
           monitor_(device_),
           gather_(device_) {
         profiler_ = this;
@@ -118,7 +118,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
         s.gradient_scale = std::max(loss_->gradient_scale(), features_.gradient_scale(s));
         device_.iteration(key_of(s, target), [&] { iterate(s); });
         lists_.was_noted(plan.view, count_);
-        if (strip) strip_lengths_.keep(plan.view, renderer_.row_lengths());
+        if (strip) row_work_.keep(plan.view, renderer_.row_work());
         is_complete_ = !strip;
         if (views_.cache() != nullptr) views_.cache()->upload_ahead();
     }
@@ -138,7 +138,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
 
     step_report take_report() override {
         complete_parameters();
-        strip_lengths_.take(strips_);
+        row_work_.take(strips_);
         const std::uint64_t skipped = monitor_.skipped();
         const auto sums = loss_->sums();
         device_.sum_over_ranks(sums.data(), sums.size());
@@ -347,7 +347,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
         strips_.reset(views_.train(level).size());
         std::vector<int> heights;
         for (const photo& shot : views_.train(level)) heights.push_back(shot.camera.height);
-        strip_lengths_.reset(heights);
+        row_work_.reset(heights);
     }
 
     /// Gives all ranks the Gaussians of the others, of which they have no present state after a step.
@@ -474,7 +474,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
     device_views<Device> views_;
     list_sizer<Device> lists_;
     view_strips strips_;
-    strip_lengths<Device> strip_lengths_;
+    row_work<Device> row_work_;
     step_monitor<Device> monitor_;
     parameter_gather<Device> gather_;
     std::unique_ptr<loss<float>> loss_;

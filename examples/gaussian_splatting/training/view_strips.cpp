@@ -27,13 +27,14 @@ row_range balanced_rows(std::span<const std::uint64_t> weights, int part, int pa
 std::optional<raster::view_strip> view_strips::of(std::size_t view, const camera& camera, int reach,
                                                   const ranks::communicator& ranks) const {
     if (ranks.count() == 1) return {};
-    constexpr std::uint64_t work_of_pixels = 16;  // of a tile: about as much as so many instances
+    // The time for a pixel without splats is about that for 16 splats.
+    constexpr std::uint64_t work_of_tile = 16 * raster::samples_per_tile;
     const auto in_tiles = [](int pixels) {
         return static_cast<std::size_t>((pixels + raster::tile_size - 1) / raster::tile_size);
     };
-    std::vector<std::uint64_t> weights(in_tiles(camera.height), in_tiles(camera.width) * work_of_pixels);
-    if (view < lengths_.size() && lengths_[view].size() == weights.size())
-        for (std::size_t row = 0; row < weights.size(); ++row) weights[row] += lengths_[view][row];
+    std::vector<std::uint64_t> weights(in_tiles(camera.height), in_tiles(camera.width) * work_of_tile);
+    if (view < work_.size() && work_[view].size() == weights.size())
+        for (std::size_t row = 0; row < weights.size(); ++row) weights[row] += work_[view][row];
     return raster::view_strip{balanced_rows(weights, ranks.rank(), ranks.count()), reach};
 }
 

@@ -47,7 +47,7 @@ TEST_CASE("strips: the loss decides how many tile rows beyond its own a rank ren
     CHECK(middle.own_pixels(50) == row_range{32, 50});
 }
 
-TEST_CASE("strips: known lengths of tile lists move the borders between ranks") {
+TEST_CASE("strips: known work of tile rows moves the borders between ranks") {
     gs::camera camera;
     camera.width = 16;
     camera.height = 64;

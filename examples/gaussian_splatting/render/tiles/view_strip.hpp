@@ -29,11 +29,13 @@ struct view_strip {
     }
 };
 
-/// Limits boxes to some tile rows. One index per Gaussian.
+/// Limits boxes to some tile rows. Splats without a tile there get the largest depth, so that they are
+/// sorted behind all others. One index per splat.
 struct clip_boxes {
     const tile_box* boxes;
     row_range rows;
     tile_box* limited_boxes;
+    std::uint32_t* depths;  ///< sort keys: see `project`
 
     WARPAGG_HD void operator()(std::size_t i) const {
         const auto limited = [this](std::uint16_t row) {
@@ -42,7 +44,32 @@ struct clip_boxes {
             return row < first ? first : row > last ? last : row;
         };
         const tile_box box = boxes[i];
-        limited_boxes[i] = {box.x0, limited(box.y0), box.x1, limited(box.y1)};
+        const tile_box in_rows{box.x0, limited(box.y0), box.x1, limited(box.y1)};
+        limited_boxes[i] = in_rows;
+        if (in_rows.size() == 0) depths[i] = 0xffffffffu;
+    }
+};
+
+/// The number of pixels of a whole tile that `measure_work` samples.
+inline constexpr unsigned samples_per_tile = 16;
+
+/// Adds the numbers of splats that sampled pixels of each own tile row blend. One index per own tile.
+struct measure_work {
+    const std::uint32_t* last;  ///< see `blend_forward`
+    unsigned width, height, tiles_across;
+    std::size_t first_tile;
+    unsigned long long* work;  ///< by tile row
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        const auto tile = static_cast<unsigned>(first_tile + i), row = tile / tiles_across;
+        constexpr unsigned step = 4;
+        static_assert(tile_size / step * (tile_size / step) == samples_per_tile);
+        unsigned long long sum = 0;
+        for (unsigned y = row * tile_size; y < (row + 1) * tile_size && y < height; y += step)
+            for (unsigned k = 0, x = tile % tiles_across * tile_size; k < tile_size && x + k < width;
+                 k += step)
+                sum += last[std::size_t{y} * width + x + k];
+        device::atomic_add(work + row, sum);
     }
 };
 

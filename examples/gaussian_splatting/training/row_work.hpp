@@ -14,13 +14,14 @@
 
 namespace gs::train {
 
-/// Collects the lengths of the tile rows of each view on the device, so that no step waits for them.
+/// Collects the work of the tile rows of each view on the device, so that no step waits for it: see
+/// `renderer::row_work`.
 template <device::device Device>
-class strip_lengths {
+class row_work {
   public:
-    explicit strip_lengths(Device& device) : device_(device) {}
+    explicit row_work(Device& device) : device_(device) {}
 
-    /// Forgets all lengths. `heights`: the number of pixel rows of each view.
+    /// Forgets the work. `heights`: the number of pixel rows of each view.
     void reset(const std::vector<int>& heights) {
         first_row_.assign(1, 0);
         for (const int height : heights)
@@ -29,17 +30,20 @@ class strip_lengths {
                 static_cast<std::size_t>((height + raster::tile_size - 1) / raster::tile_size));
         is_new_.assign(heights.size(), false);
     }
-    /// Keeps the lengths of a view: see `renderer::row_lengths`.
-    void keep(std::size_t view, std::span<const std::uint64_t> lengths) {
-        lengths_.resize(first_row_.back());
-        device_.copy(lengths_.data() + first_row_[view], lengths.data(), lengths.size());
+    /// Keeps the work of this rank in a view.
+    void keep(std::size_t view, std::span<const unsigned long long> work) {
+        work_.resize(first_row_.back());
+        device_.copy(work_.data() + first_row_[view], work.data(), work.size());
         is_new_[view] = true;
     }
-    /// Passes the lengths of all views that have new ones to `strips`. Waits for the device.
+    /// Passes the work of all ranks in views that were drawn since the last call to `strips`. All
+    /// ranks must call this. Waits for the device.
     void take(view_strips& strips) {
         if (std::ranges::find(is_new_, true) == is_new_.end()) return;
-        std::vector<std::uint64_t> all(lengths_.size());
-        device_.download(all.data(), lengths_.data(), all.size());
+        std::vector<unsigned long long> of_rank(work_.size());
+        device_.download(of_rank.data(), work_.data(), of_rank.size());
+        std::vector<std::uint64_t> all(of_rank.begin(), of_rank.end());
+        device_.ranks().sum(all.data(), all.size());
         for (std::size_t view = 0; view < is_new_.size(); ++view) {
             if (!is_new_[view]) continue;
             const auto begin = all.begin();
@@ -51,8 +55,8 @@ class strip_lengths {
 
   private:
     Device& device_;
-    typename Device::template buffer<std::uint64_t> lengths_;
-    std::vector<std::size_t> first_row_;  ///< where the lengths of each view begin
+    typename Device::template buffer<unsigned long long> work_;
+    std::vector<std::size_t> first_row_;  ///< where the rows of each view begin
     std::vector<bool> is_new_;
 };
 
