@@ -76,7 +76,10 @@ class signals_to_first_rank {
         auto& message = memory.messages[static_cast<std::size_t>(rank)];
         std::strncpy(message.data(), e.what(), message.size() - 1);
     }
-    std::exit(code);
+    // Libraries may have threads of their own that wait, for example NCCL. Destroying what they wait for
+    // could take forever, so static objects stay.
+    std::fflush(nullptr);
+    _exit(code);
 }
 
 /// The processes of all ranks, as the process that started them sees them.
@@ -119,11 +122,13 @@ class rank_processes {
                 one.has_ended = true;
                 --running_;
                 if (r == 0) first_rank = 0;
+                if (r == 0) last = clock::now() + patience;
                 if (one.status == 0 || memory_.has_ended.exchange(true)) continue;
                 culprit_ = r;
                 last = clock::now() + patience;
             }
-            if (culprit_ < ranks_.size() && clock::now() > last) kill_all();
+            const bool must_end = culprit_ < ranks_.size() || ranks_[0].has_ended;
+            if (must_end && clock::now() > last) kill_all();
             usleep(2000);
         }
         return result();
@@ -136,7 +141,8 @@ class rank_processes {
         bool has_ended = false;
     };
 
-    void kill_all() const {
+    void kill_all() {
+        memory_.has_ended = true;  // so that they are no culprits
         for (const started_rank& one : ranks_)
             if (one.process > 0 && !one.has_ended) kill(one.process, SIGKILL);
     }

@@ -155,6 +155,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
 
     std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
                               const render_options& options) override {
+        complete_parameters();
         renderer_.set_strip({});
         if (!options.separate_memory) {
             draw(renderer_, camera, background, options);

@@ -65,6 +65,7 @@ const std::map<std::string, option_case> cases{
     {"--background", {{"black"}, [](const settings& s) { return s.background == background_kind::black; }}},
     {"--white-background", {{}, [](const settings& s) { return s.background == background_kind::white; }}},
     {"--output", {{"results"}, [](const settings& s) { return s.output == "results"; }}},
+    {"--gpus", {{"all"}, [](const settings& s) { return s.gpus == 0; }}},
     {"--ranks", {{"3"}, [](const settings& s) { return s.ranks == 3; }}},
     {"--save-iterations",
      {{"30", "10"},

@@ -17,14 +17,14 @@ using namespace gs_test;
 namespace {
 
 /// A deterministic training. Its views have three tile rows, so that a fourth rank has none.
-words short_training(const std::string& scene, const fs::path& output, int ranks) {
+words short_training(const std::string& scene, const fs::path& output, int ranks, int width = 48) {
     return words{"train",
                  "-d",
                  scene,
                  "-o",
                  output.string(),
                  "-r",
-                 "48",
+                 std::to_string(width),
                  "--device",
                  "cpu",
                  "--quiet",
@@ -50,15 +50,15 @@ std::string final_model(const fs::path& output) {
     return read_file(model_of(output, read_json(output / "metrics.json").at("iterations")));
 }
 
-void check_equal_models(const std::string& scene, const words& options) {
+void check_equal_models(const std::string& scene, const words& options, int width = 48) {
     CAPTURE(scene);
     const temporary_folder folder;
     const auto output = [&](int ranks) { return folder / std::to_string(ranks); };
     for (int ranks = 1; ranks <= 4; ++ranks) {
         CAPTURE(ranks);
-        check_success(short_training(scene, output(ranks), ranks) + options, "2");
+        check_success(short_training(scene, output(ranks), ranks, width) + options, "2");
         CHECK(final_model(output(ranks)) == final_model(output(1)));
-        for (const char* name : {"gaussians", "psnr"})
+        for (const char* name : {"gaussians", "psnr", "effects"})
             CHECK(read_json(output(ranks) / "metrics.json").at(name) ==
                   read_json(output(1) / "metrics.json").at(name));
         const double loss = read_json(output(ranks) / "metrics.json").at("training_psnr");
@@ -110,6 +110,13 @@ words small_run(const fs::path& output, int ranks) {
 TEST_CASE("ranks: any number of them writes the same model, with exposures and SH coefficients") {
     check_equal_models("synthetic:spheres,exposure=0.4,gloss=0.7,views=8",
                        density_control + words{"--effects", "auto,+exposure,+direction"});
+}
+
+TEST_CASE("ranks: any number of them revises the SH degree alike, from equal measurements") {
+    // The revision is in an iteration without densification, after which ranks have old Gaussians.
+    check_equal_models(
+        "synthetic:spheres,views=16,gloss=0.7",
+        density_control + words{"--eval", "--sh-degree-interval", "33", "--test-iterations", "25"}, 96);
 }
 
 TEST_CASE("ranks: any number of them writes the same model, with a sky, depth maps and masks") {

@@ -33,7 +33,8 @@ struct add_parts {
 };
 
 /// The GPUs of all ranks, connected by NCCL. All functions are collective. They run in the order of the
-/// stream, and don't wait.
+/// stream, and don't wait. The connections last as long as the process, because NCCL ends them only
+/// after all ranks of the machine have asked for it.
 class cuda_peers {
   public:
     explicit cuda_peers(ranks::communicator& all) : rank_(all.rank()), count_(all.count()) {
