@@ -76,8 +76,7 @@ class signals_to_first_rank {
         auto& message = memory.messages[static_cast<std::size_t>(rank)];
         std::strncpy(message.data(), e.what(), message.size() - 1);
     }
-    // Libraries may have threads of their own that wait, for example NCCL. Destroying what they wait for
-    // could take forever, so static objects stay.
+    // Threads of a library such as NCCL may still use static objects. Destroying these could wait forever.
     std::fflush(nullptr);
     _exit(code);
 }

@@ -142,6 +142,18 @@ TEST_CASE("ranks: the first one's exit code is the result") {
     CHECK(end.reason == "");
 }
 
+TEST_CASE("ranks: a rank that does not end after the first one has succeeded is killed without an error") {
+    gs::ranks::outcome end;
+    CHECK(seconds_of([&] {
+              end = gs::ranks::run(2, [](communicator& all) {
+                  if (!all.is_first()) sleep(100);
+                  return 0;
+              });
+          }) < 20);
+    CHECK(end.code == 0);
+    CHECK(end.reason == "");
+}
+
 TEST_CASE("ranks: a rank that fails or is killed is named, and ends the others in bounded time") {
     const auto wait_for_others = [](communicator& all) {
         for (;;) all.barrier();
