@@ -109,8 +109,10 @@ def where(result):
     machine = about["processor"].strip() if on_cpu(runs) else about["gpu_and_driver"].replace(", ", ", driver ")
     commits = f"commit {about['commit']}" if about["before_commit"] is None else (
         f"commits {about['commit']} (now) and {about['before_commit']} (before)")
-    seeds = ", ".join(map(str, sorted({r["seed"] for r in runs})))
-    return f"{machine}, {commits}, seeds {seeds}"
+    seeds = {name: ", ".join(map(str, sorted({r["seed"] for r in same}))) for name, same in by("program", runs).items()}
+    if len(set(seeds.values())) == 1:
+        return f"{machine}, {commits}, seeds {next(iter(seeds.values()))}"
+    return f"{machine}, {commits}, seeds " + " and ".join(f"{of} ({name})" for name, of in seeds.items())
 
 
 def rows_of(columns, runs, programs):

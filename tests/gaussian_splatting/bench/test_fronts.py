@@ -146,6 +146,11 @@ class Run(unittest.TestCase):
 
 
 class Tables(unittest.TestCase):
+    def test_captions_name_the_seeds_of_each_program_if_they_differ(self):
+        result = given()
+        result["runs"] = [r for r in result["runs"] if r["program"] == "now" or r["seed"] == 1]
+        self.assertIn("commits new (now) and old (before), seeds 0, 1, 2 (now) and 1 (before); median", fronts.tables(result))
+
     def test_medians_of_seeds(self):
         text = fronts.tables(given())
         self.assertIn("Budgets of iterations; a GPU, driver 5.8, commits new (now) and old (before), seeds 0, 1, 2; median (least to most)\n\n"
