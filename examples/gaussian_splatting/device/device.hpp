@@ -59,7 +59,7 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
     { c.size() } -> std::same_as<std::size_t>;
 };
 
-/// `D::host_buffer<T>`: the same in host memory, as the source of `begin_upload`.
+/// `D::host_buffer<T>`: the same in host memory, for `begin_upload` and `begin_download`.
 
 /// A device. All pointers are to its memory, except the host side of copies from and to the host.
 ///
@@ -68,7 +68,8 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 /// - `narrow_warp`: the same for kernels that hold many values per lane; may have fewer lanes.
 /// - `buffer<T>`: see `buffer_of`.
 /// - `host_buffer<T>`: see `buffer_of`.
-/// - `transfer`: a copy by `begin_upload`. `is_done()` returns whether it has finished, or was never
+/// - `transfer`: a copy by `begin_upload` or `begin_download`. `is_done()` returns whether it has finished,
+/// or was never
 ///   begun. `wait()` waits for it.
 ///
 /// Properties
@@ -97,6 +98,8 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 /// - `begin_upload(transfer, to, from, n)`: copies them from a `host_buffer`. The copy begins after
 ///   all earlier launches and runs beside later ones.
 /// - `await(transfer)`: later launches begin after this copy.
+/// - `begin_download(transfer, to, from, n)`: copies them to a `host_buffer`, after all earlier
+///   launches.
 ///
 /// Algorithms
 /// - `prefix_sum(in, out, n)`: `out[i] = in[0] + ... + in[i - 1]` for i in [0, n].
@@ -147,6 +150,7 @@ float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, s
     float > ;
     d.begin_upload(transfer, p, from, n);
     d.await(transfer);
+    d.begin_download(transfer, p, from, n);
     { transfer.is_done() } -> std::same_as<bool>;
     transfer.wait();
     d.prefix_sum(numbers, sums, n);

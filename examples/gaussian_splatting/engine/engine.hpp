@@ -68,6 +68,12 @@ class engine {
     virtual image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
                                   std::vector<float>* render = nullptr) = 0;
 
+    /// Returns the camera of a training view, in full size, with the pose that training has learned.
+    virtual camera training_camera(std::size_t view) = 0;
+    /// Returns the camera of a held-out view with a pose that fits the model better. Uses the left half
+    /// of the photo, so the right half can serve for measurements. Needs a hundred renders.
+    virtual camera refined_camera(std::size_t test_view, const std::array<float, 3>& background) = 0;
+
     std::size_t count() const { return count_; }
     /// Returns whether the last call of `densify` made as many Gaussians as `max_device_bytes` allows.
     bool lacks_memory() const { return lacks_memory_; }

@@ -13,6 +13,8 @@ class feature_state {
 
     /// Sets the initial values of the feature, and Adam's moments to zero.
     virtual void set_values(const std::vector<float>&) {}
+    /// Changes the values during training, and keeps Adam's moments.
+    virtual void change_values(const std::vector<float>&) {}
     /// Returns the learned values. Waits for the device.
     virtual std::vector<float> values() const { return {}; }
     /// Sets the values for held-out views. An empty list leaves their renders unchanged.

@@ -20,4 +20,8 @@ namespace gs::evaluate {
 std::optional<double> psnr_after_fit(const std::vector<float>& render, const image& photo,
                                      const std::array<float, 3>& background);
 
+/// Returns the PSNR in dB of the right half of a render, like `psnr_after_fit` without the fit.
+std::optional<double> psnr_of_right_half(const std::vector<float>& render, const image& photo,
+                                         const std::array<float, 3>& background);
+
 }  // namespace gs::evaluate

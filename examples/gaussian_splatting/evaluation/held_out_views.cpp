@@ -44,6 +44,7 @@ class batch {
           options_(options),
           names_(render_names(scene.test)),
           renders_(static_cast<std::size_t>(omp_get_max_threads())),
+          refined_(renders_.size()),
           pairs_(renders_.size()) {}
 
     std::size_t size() const { return renders_.size(); }
@@ -53,6 +54,8 @@ class batch {
         for (std::size_t i = 0; i < count; ++i)
             to.push_back(
                 {scene_.test[first + i].name, engine_.measure(first + i, background_, &renders_[i])});
+        for (std::size_t i = 0; options_.refines_poses && i < count; ++i)
+            refined_[i] = engine_.render(engine_.refined_camera(first + i, background_), background_);
         for_each_in_parallel(count, [&](std::size_t i) { measure_on_host(first, i, to[first + i]); });
         // Each image uses all threads, because the features of one image need much memory.
         if (options_.network)
@@ -83,6 +86,9 @@ class batch {
         to.ssim_interior = interior_ssim(pair.render, pair.target, photo);
         to.psnr_8bit = png_psnr(pair.render, pair.target, photo);
         if (options_.fits_exposure) to.fitted_psnr = psnr_after_fit(renders_[i], photo, background_);
+        if (options_.refines_poses)
+            to.refined_psnr = options_.fits_exposure ? psnr_after_fit(refined_[i], photo, background_)
+                                                     : psnr_of_right_half(refined_[i], photo, background_);
     }
 
     train::engine& engine_;
@@ -90,7 +96,7 @@ class batch {
     const std::array<float, 3>& background_;
     const held_out_options& options_;
     std::vector<std::string> names_;
-    std::vector<std::vector<float>> renders_;  ///< not clamped
+    std::vector<std::vector<float>> renders_, refined_;  ///< not clamped
     std::vector<image_pair> pairs_;
 };
 

@@ -36,6 +36,7 @@ struct held_out_report {
 struct held_out_options {
     std::filesystem::path folder{};          ///< for renders and photos; writes none if empty
     bool fits_exposure = false;              ///< computes `fitted_psnr`
+    bool refines_poses = false;              ///< computes `refined_psnr`
     const lpips_network* network = nullptr;  ///< computes LPIPS if set
 };
 

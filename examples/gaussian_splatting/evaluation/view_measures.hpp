@@ -19,6 +19,9 @@ struct view_quality {
     std::optional<double> psnr_8bit{};      ///< see png_psnr.hpp
     std::optional<double> lpips{};          ///< see lpips/lpips.hpp
     std::optional<double> fitted_psnr{};    ///< see fit_exposure.hpp
+    /// PSNR of the right half of the photo after the pose was refined on the left half: see
+    /// `engine::refined_camera`.
+    std::optional<double> refined_psnr{};
 };
 
 /// A number that reports list for each view.
@@ -31,7 +34,7 @@ struct view_measure {
 };
 
 /// All measures, in the order of reports.
-inline constexpr std::array<view_measure, 6> view_measures{{
+inline constexpr std::array<view_measure, 7> view_measures{{
     {"psnr", "PSNR (dB)", "%.2f", true,
      [](const view_quality& v) { return std::optional(v.quality.psnr()); }},
     {"ssim", "SSIM", "%.4f", true, [](const view_quality& v) { return std::optional(v.quality.ssim); }},
@@ -40,6 +43,8 @@ inline constexpr std::array<view_measure, 6> view_measures{{
     {"lpips", "LPIPS", "%.4f", false, [](const view_quality& v) { return v.lpips; }},
     {"fitted_psnr", "PSNR, exposure fitted (dB)", "%.2f", false,
      [](const view_quality& v) { return v.fitted_psnr; }},
+    {"refined_psnr", "PSNR, pose refined (dB)", "%.2f", false,
+     [](const view_quality& v) { return v.refined_psnr; }},
 }};
 
 /// Returns the mean over the views that have the measure, or nothing if no view has it.

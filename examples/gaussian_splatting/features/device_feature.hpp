@@ -58,6 +58,9 @@ class device_feature : public train::feature_state {
     /// renderer: see `loss::gradient_scale`.
     virtual float gradient_scale(const step&) const { return 0; }
 
+    /// Returns the camera of a training view with the pose that the effect has learned. May wait for a
+    /// step that used the view. Runs before the first hook of each step, and for other renders.
+    virtual camera seen_by(std::size_t /*view*/, const camera& given) { return given; }
     /// Runs after the tile lists are made and before colors are blended.
     virtual void before_blend(const step&) {}
     /// Returns the learned background of a camera, or null.
@@ -70,6 +73,17 @@ class device_feature : public train::feature_state {
     virtual const float* backward(const step&, const float* gradient) { return gradient; }
     /// Updates learned values from the gradient with respect to the render of the Gaussians.
     virtual void learn(const step&, const float* /*render_gradient*/) {}
+    /// Updates the learned pose from the sums of each Gaussian over pixels. Runs before the Gaussians
+    /// change. See `raster::renderer::backward_to_splats`.
+    virtual void learn_pose(const step&, const float* /*sums*/) {}
+
+    /// Hooks for the pose of a held-out view: `begin_refinement` for each view, and then, in each step,
+    /// `refined`, which returns the camera, and `refine_pose`. `progress` is from 0 to 1.
+    /// @{
+    virtual void begin_refinement() {}
+    virtual camera refined(const camera& given) { return given; }
+    virtual void refine_pose(const step&, const float* /*sums*/, double /*progress*/) {}
+    /// @}
 
     /// Applies the effect to the render of a held-out view.
     virtual const float* show_held_out(std::size_t /*view*/, const float* render, std::size_t /*pixels*/) {

@@ -69,6 +69,10 @@ class device_features {
         for (const auto& [name, f] : parts_) largest = std::max(largest, f->gradient_scale(s));
         return largest;
     }
+    camera seen_by(std::size_t view, camera given) {
+        for (auto& [name, f] : parts_) given = f->seen_by(view, given);
+        return given;
+    }
     void before_blend(const step& s) {
         for (auto& [name, f] : parts_) f->before_blend(s);
     }
@@ -88,6 +92,19 @@ class device_features {
     }
     void learn(const step& s, const float* render_gradient) {
         for (auto& [name, f] : parts_) f->learn(s, render_gradient);
+    }
+    void learn_pose(const step& s, const float* sums) {
+        for (auto& [name, f] : parts_) f->learn_pose(s, sums);
+    }
+    void begin_refinement() {
+        for (auto& [name, f] : parts_) f->begin_refinement();
+    }
+    camera refined(camera given) {
+        for (auto& [name, f] : parts_) given = f->refined(given);
+        return given;
+    }
+    void refine_pose(const step& s, const float* sums, double progress) {
+        for (auto& [name, f] : parts_) f->refine_pose(s, sums, progress);
     }
     const float* show_held_out(std::size_t view, const float* render, std::size_t pixels) {
         for (auto& [name, f] : parts_) render = f->show_held_out(view, render, pixels);

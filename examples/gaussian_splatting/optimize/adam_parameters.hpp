@@ -21,7 +21,9 @@ class adam_parameters {
     using buffer = typename Device::template buffer<T>;
 
   public:
-    explicit adam_parameters(Device& device) : device_(device) {}
+    /// `beta2`: decay of the second moments. Smaller values suit rows that few steps train, whose
+    /// first gradients are much larger than later ones.
+    explicit adam_parameters(Device& device, float beta2 = 0.999f) : device_(device), beta2_(beta2) {}
 
     /// Sets all rows, one after another, and resets the state of Adam. Waits for the device.
     void set(const std::vector<float>& values) {
@@ -31,6 +33,11 @@ class adam_parameters {
         device_.zero(second_.data(), values.size());
         device_.wait();
         steps_.assign(values.size() / Width, 0);
+    }
+    /// Changes all values, and keeps the state of Adam. Waits for the device.
+    void change(const std::vector<float>& values) {
+        device_.upload(values_.data(), values.data(), values.size());
+        device_.wait();
     }
     /// Returns all rows, one after another. Waits for the device.
     std::vector<float> get() const {
@@ -71,17 +78,23 @@ class adam_parameters {
     /// several ranks, each one has added the sums of other warps.
     void learn(std::size_t i, const ordered_sums& sums, float rate, const raster::list_capacity& capacity) {
         device_.sum_over_ranks(sums.parts, Width * sums.warps);
+        learn_alone(i, sums, rate, capacity);
+    }
+    /// Like `learn`, for sums that this rank has added without the others.
+    void learn_alone(std::size_t i, const ordered_sums& sums, float rate,
+                     const raster::list_capacity& capacity) {
         const int t = ++steps_[i];
         const double by_first = 1 - std::pow(static_cast<double>(adam_from_sums::beta1), t);
-        const double by_second = 1 - std::pow(static_cast<double>(adam_from_sums::beta2), t);
+        const double by_second = 1 - std::pow(static_cast<double>(beta2_), t);
         device_.for_each_warp(
             Width, adam_from_sums{sums, row(i), first_.data() + i * Width, second_.data() + i * Width,
                                   static_cast<float>(rate / by_first),
-                                  static_cast<float>(1 / std::sqrt(by_second)), capacity});
+                                  static_cast<float>(1 / std::sqrt(by_second)), beta2_, capacity});
     }
 
   private:
     Device& device_;
+    float beta2_;
     buffer<float> values_, first_, second_;
     buffer<float> sums_;      ///< zero between steps
     std::vector<int> steps_;  ///< number of steps of each row

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "../device/device.hpp"
 #include "../model/parameter_memory.hpp"
+#include "adam.hpp"
 
 namespace gs::train {
 
@@ -27,6 +30,24 @@ struct trained_parameters {
         return values.fits(count, sh_degree) && first.fits(count, sh_degree) &&
                second.fits(count, sh_degree) && last_step.size() == count &&
                first.gaussians_with_sh() == with_sh && second.gaussians_with_sh() == with_sh;
+    }
+    /// Returns Adam's step number t, counted from 1, with learning rates by `parameter`.
+    adam<float> descent(std::uint32_t t, const std::array<float, parameter_count>& rates,
+                        const raster::list_capacity& capacity, const finite_check& check) {
+        const double by_first = 1 / (1 - std::pow(adam<float>::beta1, t));
+        const double by_second = 1 / std::sqrt(1 - std::pow(adam<float>::beta2, t));
+        adam<float> step{values.write(),
+                         first.write(),
+                         second.write(),
+                         last_step.data(),
+                         t,
+                         {},
+                         static_cast<float>(by_second),
+                         capacity,
+                         check};
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            step.rates[p] = static_cast<float>(rates[p] * by_first);
+        return step;
     }
     /// Appends all arrays, for `device::gather`.
     void share(std::vector<ranks::shared_array>& arrays) const {

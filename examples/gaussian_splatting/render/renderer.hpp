@@ -168,8 +168,18 @@ class renderer {
     template <class Sink>
     void backward(const Real* render_gradient, float largest, accumulator how, int learned_sh_degree,
                   const Sink& sink, visibility* seen) {
+        const Real* sums = backward_to_splats(render_gradient, largest, how);
+        backward_from_splats(sums, learned_sh_degree, sink, seen);
+    }
+    /// The first part of `backward`. Returns the sums of each Gaussian over pixels, of the own Gaussians
+    /// of this rank.
+    const Real* backward_to_splats(const Real* render_gradient, float largest, accumulator how) {
         const Real* sums = sums_by_pixel(render_gradient, largest, how, owners());
-        if (shares_gaussians()) sums = visible_.by_gaussian(sums, count_);
+        return shares_gaussians() ? visible_.by_gaussian(sums, count_) : sums;
+    }
+    /// The second part of `backward`. Several sinks can take the gradients of the same sums.
+    template <class Sink>
+    void backward_from_splats(const Real* sums, int learned_sh_degree, const Sink& sink, visibility* seen) {
         device_.begin(device::stage::project_backward);
         using narrow = typename Device::narrow_warp;
         with_effects(effects_of(camera_), [&]<effect_set Effects> {
@@ -181,8 +191,7 @@ class renderer {
         });
     }
 
-    /// The first half of `backward`. Returns the sums of each Gaussian that was drawn, the input of
-    /// `project_backward`.
+    /// Returns the sums over pixels of each Gaussian that was drawn, without those of other ranks.
     const Real* pixel_sums(const Real* render_gradient, float largest, accumulator how) {
         return sums_by_pixel(render_gradient, largest, how, nullptr);
     }
@@ -212,6 +221,8 @@ class renderer {
     row_range own_rows() const {
         return strip_ ? strip_->own_pixels(camera_.height) : row_range{0, camera_.height};
     }
+    /// The number of Gaussians of the last view.
+    std::size_t gaussians() const { return count_; }
     /// The Gaussians of the last view that this rank projects and passes to the sink of `backward`.
     ranks::share own_gaussians() const {
         if (!shares_gaussians()) return {0, count_};

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -19,12 +18,12 @@
 #include "../features/sh_degree/prune_sh.hpp"
 #include "../metrics/image_comparison.hpp"
 #include "../model/gaussian_shares.hpp"
-#include "../optimize/adam.hpp"
 #include "../render/renderer.hpp"
 #include "clamp_render.hpp"
 #include "device_views.hpp"
 #include "engine_parts.hpp"
 #include "list_sizer.hpp"
+#include "refine_pose.hpp"
 #include "row_work.hpp"
 #include "step_monitor.hpp"
 #include "view_strips.hpp"
@@ -107,6 +106,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
 
     void step(const step_plan& plan) override {
         const photo& shot = views_.train(level_)[plan.view];
+        const camera seen = features_.seen_by(plan.view, shot.camera);
         const auto loaded = views_.load(shot);
         target_image target = loaded.target(plan.background);
         auto strip = strips_.of(plan.view, shot.camera, loss_->reach(), device_.ranks());
@@ -114,7 +114,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
         renderer_.set_strip(strip);
         if (strip) target.rows = strip->own_pixels(shot.camera.height);
         loss_->set_target(target);
-        step_type s{plan, shot.camera, loaded.depths(), renderer_, 0, setup_.facts.gradient};
+        step_type s{plan, seen, loaded.depths(), renderer_, 0, setup_.facts.gradient};
         s.gradient_scale = std::max(loss_->gradient_scale(), features_.gradient_scale(s));
         device_.iteration(key_of(s, target), [&] { iterate(s); });
         lists_.was_noted(plan.view, count_);
@@ -183,6 +183,20 @@ class device_engine final : public engine, device::profiler, checkpointed {
         return comparison_.take();
     }
 
+    camera training_camera(std::size_t view) override {
+        return features_.seen_by(view, views_.train(0)[view].camera);
+    }
+
+    camera refined_camera(std::size_t test_view, const std::array<float, 3>& background) override {
+        const photo& shot = views_.held_out()[test_view];
+        renderer_.set_strip({});
+        const auto loss = parts_.make_loss(device_, setup_.loss);
+        loss->set_target(views_.load_in_order(views_.held_out(), test_view).target(background));
+        return refine_pose(device_, renderer_, features_, *loss, test_view, shot.camera,
+                           setup_.facts.gradient,
+                           [&](const camera& seen) { draw(renderer_, seen, background); });
+    }
+
   private:
     /// The SH degree of the model, and the SH coefficients of the parameters and of Adam's moments.
     class sh_state final : public sh_degree_state {
@@ -217,7 +231,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
         drawn_view draw(std::size_t view) override {
             const photo& shot = views_[view];
             on_.renderer_.set_strip(on_.strips_.of(view, shot.camera, 0, on_.device_.ranks()));
-            on_.draw(on_.renderer_, shot.camera, {});
+            on_.draw(on_.renderer_, on_.features_.seen_by(view, shot.camera), {});
             return {on_.views_.load_in_order(views_, view).target({}), on_.renderer_.render(),
                     on_.renderer_.splats(), on_.renderer_.tiles_of()};
         }
@@ -399,8 +413,12 @@ class device_engine final : public engine, device::profiler, checkpointed {
         const float* shown = features_.show(s, renderer_.render());
         const float* gradient = features_.backward(s, loss_->gradient(shown, renderer_.capacity()));
         features_.learn(s, gradient);
-        renderer_.backward(gradient, s.gradient_scale, s.accumulate, plan.updates_sh ? plan.sh_degree : 0,
-                           descent(plan), strategy_->wants(plan.iteration) ? seen_.data() : nullptr);
+        const float* sums = renderer_.backward_to_splats(gradient, s.gradient_scale, s.accumulate);
+        features_.learn_pose(s, sums);
+        const adam<float> descent =
+            trained_.descent(++steps_, plan.rates, renderer_.capacity(), monitor_.check_of(plan.iteration));
+        renderer_.backward_from_splats(sums, plan.updates_sh ? plan.sh_degree : 0, descent,
+                                       strategy_->wants(plan.iteration) ? seen_.data() : nullptr);
         strategy_->after_step(plan.iteration,
                               {in_training(), plan.rates, renderer_.capacity(), renderer_.own_gaussians()});
         monitor_.close(renderer_, loss_->sums(), lists_.length(plan.view), plan.iteration);
@@ -409,24 +427,6 @@ class device_engine final : public engine, device::profiler, checkpointed {
     raster::dropout dropout_of(const step_plan& plan) const {
         counter_random random(setup_.facts.seed, static_cast<std::uint64_t>(plan.iteration), 0);
         return {setup_.dropout, static_cast<std::uint32_t>(random.below(std::uint64_t{1} << 32))};
-    }
-
-    adam<float> descent(const step_plan& plan) {
-        ++steps_;
-        const double by_first = 1 / (1 - std::pow(adam<float>::beta1, steps_));
-        const double by_second = 1 / std::sqrt(1 - std::pow(adam<float>::beta2, steps_));
-        adam<float> step{trained_.values.write(),
-                         trained_.first.write(),
-                         trained_.second.write(),
-                         trained_.last_step.data(),
-                         steps_,
-                         {},
-                         static_cast<float>(by_second),
-                         renderer_.capacity(),
-                         monitor_.check_of(plan.iteration)};
-        for (std::size_t p = 0; p < parameter_count; ++p)
-            step.rates[p] = static_cast<float>(plan.rates[p] * by_first);
-        return step;
     }
 
     /// Returns the pairs of this rank's steps.

@@ -83,7 +83,7 @@ class basic_cpu {
     template <class T>
     using host_buffer = buffer<T>;
 
-    /// Uploads finish at once.
+    /// Copies finish at once.
     struct transfer {
         static bool is_done() { return true; }
         static void wait() {}
@@ -158,6 +158,10 @@ class basic_cpu {
         std::copy_n(from, n, to);
     }
     void await(const transfer&) {}
+    template <class T>
+    void begin_download(transfer&, T* to, const T* from, std::size_t n) {
+        std::copy_n(from, n, to);
+    }
 
     void prefix_sum(const buffer<std::uint32_t>& in, buffer<std::uint64_t>& out, std::size_t n) {
         std::uint64_t sum = 0;  // mutate: instances_counted_in_32_bits

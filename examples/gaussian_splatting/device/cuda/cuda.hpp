@@ -164,6 +164,11 @@ class cuda {
         check(cudaEventRecord(upload.event, upload_stream_));
     }
     void await(const transfer& upload) { check(cudaStreamWaitEvent(stream_, upload.event)); }
+    template <class T>
+    void begin_download(transfer& download, T* to, const T* from, std::size_t n) {
+        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToHost, stream_));
+        check(cudaEventRecord(download.event, stream_));
+    }
 
     void prefix_sum(const buffer<std::uint32_t>& in, buffer<std::uint64_t>& out, std::size_t n) {
         prefix_sum_of(in.data(), out, n);

@@ -447,6 +447,8 @@ scene_description describe(const load_options& options, const log_function& log)
     scene_description result;
     result.object_centered = result.rendered = true;
     result.points = seen_points(w, train, static_cast<std::size_t>(w.how.points), options.seed);
+    disturb_poses(train, 0, w.how);
+    disturb_poses(test, train.size(), w.how);
     log("synthetic scene '" + name + "': " + std::to_string(train.size()) + " training and " +
         std::to_string(test.size()) + " test views of " + size_text(first.width, first.height) + ", " +
         std::to_string(result.points.size()) + " points");

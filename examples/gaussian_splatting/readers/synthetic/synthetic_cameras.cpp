@@ -6,9 +6,12 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <numbers>
 #include <string>
 
+#include "../../core/random.hpp"
 #include "../../scene/look_at.hpp"
 
 namespace gs {
@@ -65,6 +68,19 @@ std::vector<view> synthetic_views(int size, const synthetic_parameters& how) {
         v.camera = spiral_camera(i, size, how);
     }
     return views;
+}
+
+void disturb_poses(std::vector<view>& views, std::size_t first, const synthetic_parameters& how) {
+    if (how.poses == 0) return;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        train::counter_random random(0, 0, first + i);
+        const auto direction = [&] { return glm::normalize(vec(random.normal3())); };
+        camera& c = views[i].camera;
+        const vec move = how.poses / 100 * camera_distance * how.distance * direction();
+        const vec center = c.center() + move;
+        c.rotation = glm::mat3_cast(glm::angleAxis(glm::radians(how.poses), direction())) * c.rotation;
+        c.translation = -(c.rotation * center);
+    }
 }
 
 double farthest_camera(const synthetic_parameters& how) {

@@ -32,6 +32,7 @@ constexpr parameter parameters[] = {{"gloss", &synthetic_parameters::gloss, 0, 1
                                     {"depths", &synthetic_parameters::depths, 0, 10},
                                     {"points", &synthetic_parameters::points, 1, 100000, true},
                                     {"views", &synthetic_parameters::views, 1, 48, true},
+                                    {"poses", &synthetic_parameters::poses, 0, 5},
                                     {"noise", &synthetic_parameters::noise, 0, 0.5}};
 
 const parameter& parameter_called(const std::string& name) {

@@ -22,6 +22,7 @@ struct synthetic_parameters {
     double views = 48;     ///< largest number of training images, 1 to 48
     double fisheye = 0;    ///< degrees across a fisheye image, 0 to 190; 0 for pinhole cameras
     double panorama = 0;   ///< 1 for panoramas, which are twice as wide as high; otherwise 0
+    double poses = 0;      ///< error of given poses: degrees, and percent of the cameras' distance, 0 to 5
     double noise = 0;      ///< standard deviation of the noise of colors in [0, 1], 0 to 0.5
 };
 

@@ -68,7 +68,10 @@ struct store_gradients {
 /// `Sink::for_row` returns a function that is called with the values and the gradients of a few
 /// components at a time. It may change the parameters immediately, because all reads have happened.
 /// If `Sink::takes_zeros`, it is also called for rows in which no Gaussian takes part. If
-/// `Sink::idle`, the kernel does nothing.
+/// `Sink::idle`, the kernel does nothing. If the object that `Sink::for_row` returns has a member
+/// `by_camera`, it gets what determines the gradient of the camera's pose: the offset of the mean from
+/// the camera's center, the gradients of the mean without and with the one through its color, and the
+/// quaternion with its gradient.
 template <class W, class Real, class Sink, effect_set Effects>
 struct project_backward {
     using real = value_t<W, Real>;
@@ -142,10 +145,14 @@ struct project_backward {
         if constexpr (Effects.depth)
             by_position += f.seen.inverse_depth_gradient(s[sum_inverse_depth], camera);
         put(parameter::log_scale, 0, 3, log_scale, nx * axes.x + ny * axes.y);
-        put(parameter::quaternion, 0, 4, quaternion, turn(f, dax * f.scale, day * f.scale));
+        const vec4<real> by_quaternion = turn(f, dax * f.scale, day * f.scale);
+        put(parameter::quaternion, 0, 4, quaternion, by_quaternion);
         // mutate: one_minus_opacity_rounded
         put(parameter::opacity, 0, 1, opacity, glm::vec<1, real>(s[sum_s] * sigmoid(-opacity.x)));
-        put(parameter::mean, 0, 3, mean, by_position + color(w, row, put, i, mean, s));
+        const vec3<real> by_mean = by_position + color(w, row, put, i, mean, s);
+        put(parameter::mean, 0, 3, mean, by_mean);
+        if constexpr (requires { &decltype(put)::by_camera; })
+            put.by_camera(mean - camera.center, by_position, by_mean, quaternion, by_quaternion);
         return center;
     }
 

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "pose_change.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "../../core/median.hpp"
+
+namespace gs::features {
+namespace {
+
+/// The functions of an angle in Rodrigues' formula and in its derivative. Series replace them near
+/// zero, where they are quotients of zeros.
+struct angle_functions {
+    double sine;          ///< sin(a) / a
+    double cosine;        ///< (1 - cos(a)) / a^2
+    double rest_of_sine;  ///< (a - sin(a)) / a^3
+
+    explicit angle_functions(double angle) {
+        const double square = angle * angle;
+        if (angle < 1e-3) {
+            sine = 1 - square / 6;
+            cosine = 0.5 - square / 24;
+            rest_of_sine = 1.0 / 6 - square / 120;
+        } else {
+            sine = std::sin(angle) / angle;
+            cosine = 2 * std::pow(std::sin(angle / 2) / angle, 2);
+            rest_of_sine = (1 - sine) / square;
+        }
+    }
+};
+
+glm::dmat3 cross_product_by(const glm::dvec3& v) {
+    return {0, v.z, -v.y, -v.z, 0, v.x, v.y, -v.x, 0};  // columns
+}
+
+glm::dvec3 shift_of(const pose_change& change) { return {change[3], change[4], change[5]}; }
+
+/// Returns the linear map from values 3 to 5 to the turn that keeps a point on the axis in its place.
+glm::dmat3 turn_by_shift(const given_pose& given) {
+    const double angle = shift_unit / given.depth;
+    return {0, angle, 0, -angle, 0, 0, 0, 0, 0};  // columns
+}
+
+/// Returns the whole turn of a change.
+glm::dvec3 turn_of(const given_pose& given, const pose_change& change) {
+    return glm::dvec3(change[0], change[1], change[2]) + turn_by_shift(given) * shift_of(change);
+}
+
+glm::dmat3 rotation_by(const glm::dvec3& turn) {
+    const angle_functions f(glm::length(turn));
+    const glm::dmat3 k = cross_product_by(turn);
+    return glm::dmat3(1) + f.sine * k + f.cosine * (k * k);
+}
+
+glm::dmat3 left_jacobian(const glm::dvec3& turn) {
+    const angle_functions f(glm::length(turn));
+    const glm::dmat3 k = cross_product_by(turn);
+    return glm::dmat3(1) + f.cosine * k + f.rest_of_sine * (k * k);
+}
+
+/// A least-squares fit of the 13 numbers of a common motion: rotation, translation and scaling of the
+/// scene, and a pose change in camera space.
+class common_motion {
+  public:
+    static constexpr std::size_t unknowns = 13;
+    using row = std::array<double, unknowns>;
+    using rows = std::array<row, pose_width>;  ///< the change of a view by each unknown
+
+    static rows rows_of(const given_pose& given) {
+        rows all{};
+        const auto set = [&](std::size_t unknown, const glm::dvec3& whole_turn, const glm::dvec3& shift) {
+            const glm::dvec3 turn = whole_turn - turn_by_shift(given) * shift;
+            for (int k = 0; k < 3; ++k) {
+                all[static_cast<std::size_t>(k)][unknown] = turn[k];
+                all[static_cast<std::size_t>(k) + 3][unknown] = shift[k];
+            }
+        };
+        const glm::dvec3 center = given.camera.center();
+        const auto in_camera = [&](const glm::dvec3& v) { return given.camera.rotation * v; };
+        for (int k = 0; k < 3; ++k) {
+            glm::dvec3 axis(0);
+            axis[k] = 1;
+            const auto at = static_cast<std::size_t>(k);
+            // A camera that turns with the scene has the opposite change of its world-to-camera rotation.
+            set(at, -in_camera(axis), in_camera(glm::cross(axis, center)) / shift_unit);
+            set(at + 3, glm::dvec3(0), in_camera(axis));
+            set(at + 7, axis, glm::dvec3(0));
+            set(at + 10, glm::dvec3(0), axis);
+        }
+        set(6, glm::dvec3(0), in_camera(center));
+        return all;
+    }
+
+    void add(const row& by_unknown, double value) {
+        for (std::size_t i = 0; i < unknowns; ++i) {
+            right_[i] += by_unknown[i] * value;
+            for (std::size_t j = 0; j < unknowns; ++j) normal_[i][j] += by_unknown[i] * by_unknown[j];
+        }
+    }
+
+    /// Solves the normal equations by Cholesky's method. The unknowns of a few cameras depend on each other,
+    /// so a small multiple of the identity is added.
+    row solve() {
+        double trace = 0;
+        for (std::size_t i = 0; i < unknowns; ++i) trace += normal_[i][i];
+        for (std::size_t i = 0; i < unknowns; ++i) normal_[i][i] += 1e-6 * trace;
+        row x = right_;
+        for (std::size_t i = 0; i < unknowns; ++i) {
+            for (std::size_t j = 0; j <= i; ++j) {
+                double sum = normal_[i][j];
+                for (std::size_t k = 0; k < j; ++k) sum -= normal_[i][k] * normal_[j][k];
+                normal_[i][j] = i == j ? std::sqrt(sum) : sum / normal_[j][j];
+            }
+            for (std::size_t k = 0; k < i; ++k) x[i] -= normal_[i][k] * x[k];
+            x[i] /= normal_[i][i];
+        }
+        for (std::size_t i = unknowns; i-- > 0;) {
+            for (std::size_t k = i + 1; k < unknowns; ++k) x[i] -= normal_[k][i] * x[k];
+            x[i] /= normal_[i][i];
+        }
+        return x;
+    }
+
+  private:
+    std::array<row, unknowns> normal_{};
+    row right_{};
+};
+
+}  // namespace
+
+std::vector<given_pose> given_poses(const scene& scene) {
+    std::vector<given_pose> poses;
+    for (const view& v : scene.train) {
+        std::vector<double> depths;
+        for (const colored_point& p : scene.points)
+            if (const auto seen = v.camera.see(p.position);
+                seen && seen->x >= 0 && seen->y >= 0 && seen->x < v.camera.width && seen->y < v.camera.height)
+                depths.push_back(seen->depth);
+        const double depth = v.camera.is_panorama ? std::numeric_limits<double>::infinity()
+                             : depths.empty()     ? scene.extent()
+                                                  : median(depths);
+        poses.push_back({v.camera, depth});
+    }
+    return poses;
+}
+
+camera moved(const given_pose& given, const pose_change& change) {
+    camera result = given.camera;
+    const glm::dvec3 center =
+        given.camera.center() + glm::transpose(given.camera.rotation) * (shift_unit * shift_of(change));
+    result.rotation = rotation_by(turn_of(given, change)) * given.camera.rotation;
+    result.translation = -(result.rotation * center);
+    return result;
+}
+
+pose_derivatives derivatives_of(const given_pose& given, const pose_change& change) {
+    const glm::dvec3 turn = turn_of(given, change);
+    return {glm::transpose(left_jacobian(turn)) * rotation_by(turn) * given.camera.rotation,
+            shift_unit * given.camera.rotation, glm::transpose(turn_by_shift(given))};
+}
+
+void remove_common_motion(const std::vector<given_pose>& given, std::vector<float>& changes) {
+    common_motion common;
+    const auto value_of = [&](std::size_t view, std::size_t k) {
+        return static_cast<double>(changes[view * pose_width + k]);
+    };
+    for (std::size_t v = 0; v < given.size(); ++v) {
+        const common_motion::rows rows = common_motion::rows_of(given[v]);
+        for (std::size_t k = 0; k < pose_width; ++k) common.add(rows[k], value_of(v, k));
+    }
+    const common_motion::row fit = common.solve();
+    for (std::size_t v = 0; v < given.size(); ++v) {
+        const common_motion::rows rows = common_motion::rows_of(given[v]);
+        for (std::size_t k = 0; k < pose_width; ++k)
+            changes[v * pose_width + k] = static_cast<float>(
+                value_of(v, k) - std::inner_product(fit.begin(), fit.end(), rows[k].begin(), 0.0));
+    }
+}
+
+pose_change change_of(std::span<const float> all, std::size_t view) {
+    pose_change change;
+    std::ranges::copy(all.subspan(view * pose_width, pose_width), change.begin());
+    return change;
+}
+
+}  // namespace gs::features

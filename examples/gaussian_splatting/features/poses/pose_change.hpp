@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <glm/mat3x3.hpp>
+#include <span>
+#include <vector>
+
+#include "../../scene/scene.hpp"
+
+namespace gs::features {
+
+/// The number of values of a pose change.
+inline constexpr unsigned pose_width = 6;
+
+/// A change of a camera pose, relative to the pose in the scene's files, in camera space of the given
+/// pose. Values 0 to 2 turn the camera about its center: a rotation vector in radians. Values 3 to 5 shift
+/// the center, in units of `shift_unit`, and turn the camera so that what it looks at stays in place:
+/// see `given_pose::depth`. Photos hardly tell a small shift from a turn, but this kind of shift
+/// changes them in another way than a turn, so that gradient descent converges.
+using pose_change = std::array<float, pose_width>;
+
+/// The unit of shifts in a normalized scene. Larger units make steps so large that shifts, which change
+/// photos little, drift.
+inline constexpr double shift_unit = 0.5;
+
+/// A camera as the scene's files describe it.
+struct given_pose {
+    gs::camera camera;
+    double depth;  ///< typical depth of what it shows; infinite for panoramas
+};
+
+/// Returns the pose of each training view. The depth is the median of the points in front of the
+/// camera, or the extent of the scene if there are none.
+std::vector<given_pose> given_poses(const scene& scene);
+
+/// Returns the camera with a changed pose. Any finite change gives a valid pose.
+camera moved(const given_pose& given, const pose_change& change);
+
+/// Convert gradients in world space to gradients with respect to a pose change.
+struct pose_derivatives {
+    glm::dmat3 by_turn;   ///< from the gradient with respect to a rotation about the center
+    glm::dmat3 by_shift;  ///< from the gradient with respect to the center
+    glm::dmat3 turning;   ///< from the gradient with respect to values 0 to 2; adds to the one of a shift
+};
+
+/// Returns the derivatives at a pose change. The rotation uses the left Jacobian of SO(3) (Sola et
+/// al. 2018, equation 145).
+pose_derivatives derivatives_of(const given_pose& given, const pose_change& change);
+
+/// Removes from the changes of all views what they have in common: a motion of the whole scene, which no
+/// photo shows, and a change that is the same in camera space, which the scene can nearly make up for.
+/// Without this, training drifts along both. Errors of given poses are assumed to have neither.
+/// `given`: one pose per view. Fits both by least squares.
+void remove_common_motion(const std::vector<given_pose>& given, std::vector<float>& changes);
+
+/// Returns the change of one of the views whose changes are in a row.
+pose_change change_of(std::span<const float> all, std::size_t view);
+
+}  // namespace gs::features

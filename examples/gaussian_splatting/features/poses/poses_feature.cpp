@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "poses_feature.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "../../core/atomic_file_write.hpp"
+#include "../../training/training.hpp"
+
+namespace gs::features {
+namespace {
+
+/// Returns the angle between two rotations, in degrees.
+double degrees_between(const glm::dmat3& a, const glm::dmat3& b) {
+    const glm::dmat3 turn = a * glm::transpose(b);
+    const double cosine = (turn[0][0] + turn[1][1] + turn[2][2] - 1) / 2;
+    // The sine is exact for small angles, and the cosine is not.
+    const glm::dvec3 axis(turn[1][2] - turn[2][1], turn[2][0] - turn[0][2], turn[0][1] - turn[1][0]);
+    return std::atan2(glm::length(axis) / 2, cosine) * 180 / std::numbers::pi;
+}
+
+nlohmann::ordered_json to_json(const camera& given, const camera& learned, const normalization& world) {
+    const glm::dvec3 center = world.to_world(learned.center());
+    nlohmann::ordered_json pose;
+    for (int row = 0; row < 3; ++row)  // the columns of camera-to-world rotations are rows here
+        pose["camera_to_world"].push_back(
+            {learned.rotation[row][0], learned.rotation[row][1], learned.rotation[row][2], center[row]});
+    pose["turned_by_degrees"] = degrees_between(learned.rotation, given.rotation);
+    pose["moved_by"] = world.scale * glm::length(learned.center() - given.center());
+    return pose;
+}
+
+}  // namespace
+
+finding poses_feature::analyze(const scene_statistics&) const {
+    return {
+        {},
+        "photos alone do not tell how exact poses are; add +poses if renders of held-out photos are blurred "
+        "or shifted",
+        "off"};
+}
+
+std::vector<float> poses_feature::neutral_values(const scene& scene) const {
+    std::vector<float> depths;
+    for (const given_pose& pose : given_poses(scene)) depths.push_back(static_cast<float>(pose.depth));
+    return depths;
+}
+
+void poses_feature::schedule(const selected_feature& selected, train::training& training) const {
+    if (!selected.on) return;
+    const std::vector<given_pose> given = given_poses(training.scene());
+    const int views = static_cast<int>(given.size());
+    training.add({train::phase::upkeep, "remove the common motion of poses",
+                  [=, &training](int iteration) {
+                      return iteration % views == 0 || iteration == training.schedule().iterations.last();
+                  },
+                  [given, &training](int) {
+                      auto& state = training.engine().feature("poses");
+                      std::vector<float> changes = state.values();
+                      remove_common_motion(given, changes);
+                      state.change_values(changes);
+                  }});
+}
+
+void poses_feature::write_results(const selected_feature& selected, train::engine& engine, const scene& scene,
+                                  const std::filesystem::path& folder) const {
+    const auto file = folder / "poses.json";
+    if (!selected.on) {
+        std::filesystem::remove(file);
+        return;
+    }
+    auto all = nlohmann::ordered_json::object();
+    for (std::size_t v = 0; v < scene.train.size(); ++v)
+        all[scene.train[v].name] =
+            to_json(scene.train[v].camera, engine.training_camera(v), scene.normalization);
+    atomic_file_write(file, [&](std::ostream& out) { out << all.dump(2) << '\n'; });
+}
+
+}  // namespace gs::features

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "../../core/median.hpp"
+#include "../device_feature.hpp"
+#include "learned_poses.hpp"
+
+namespace gs::features {
+
+template <class Renderer>
+class poses_on_device final : public device_feature<Renderer> {
+    using step = features::step<Renderer>;
+
+  public:
+    explicit poses_on_device(typename Renderer::device_type& device)
+        : of_training_(device), of_held_out_(device, true) {}
+
+    void begin(const train::training_setup& setup) override {
+        iterations_ = setup.facts.iterations;
+        set_views(static_cast<std::size_t>(setup.facts.views));
+    }
+    void set_views(std::size_t training_views) override {
+        depths_.clear();
+        views_ = training_views;
+        of_training_.set(std::vector<float>(pose_width * views_));
+    }
+
+    void set_values(const std::vector<float>& depths) override { depths_ = depths; }
+    void change_values(const std::vector<float>& values) override { of_training_.change(values); }
+    std::vector<float> values() const override { return of_training_.get(); }
+
+    void exchange(state_archive& archive) override {
+        if (learns()) of_training_.exchange(archive);
+    }
+
+    std::size_t memory_key(const step&) const override { return learns() ? 1 : 0; }
+    camera seen_by(std::size_t view, const camera& given) override {
+        if (!learns()) return given;
+        change_ = of_training_.of(view);
+        given_ = {given, static_cast<double>(depths_[view])};
+        return moved(given_, change_);
+    }
+    void learn_pose(const step& s, const float* sums) override {
+        if (learns())
+            of_training_.learn(s.plan.view, given_, change_, s.renderer, sums, rate_at(s.plan.iteration));
+    }
+
+    void begin_refinement() override {
+        of_held_out_.set(std::vector<float>(pose_width));
+        std::vector<double> depths(depths_.begin(), depths_.end());
+        given_.depth = depths.empty() ? std::numeric_limits<double>::infinity() : median(depths);
+    }
+    camera refined(const camera& given) override {
+        change_ = of_held_out_.of(0);
+        given_.camera = given;
+        return moved(given_, change_);
+    }
+    void refine_pose(const step& s, const float* sums, double progress) override {
+        of_held_out_.learn(0, given_, change_, s.renderer, sums,
+                           static_cast<float>(most_rate * std::pow(0.01, progress)));
+    }
+
+  private:
+    bool learns() const { return !depths_.empty(); }
+
+    /// The largest turn in one step, in radians. About fifty steps can correct an error of two degrees.
+    static constexpr double most_rate = 2e-3;
+
+    /// Returns Adam's learning rate, which decays to a fifth. It is lower if more steps use each view.
+    float rate_at(int iteration) const {
+        const double first =
+            std::min(most_rate, 0.15 * static_cast<double>(views_) / static_cast<double>(iterations_.last()));
+        return static_cast<float>(first * std::pow(0.2, iterations_.progress(iteration)));
+    }
+
+    learned_poses<typename Renderer::device_type> of_training_, of_held_out_;
+    std::vector<float> depths_;  ///< by training view: see `given_pose`; empty if the feature is off
+    given_pose given_{};         ///< of the camera that was returned last
+    pose_change change_{};       ///< of the same camera
+    iteration_plan iterations_;
+    std::size_t views_ = 0;
+};
+
+}  // namespace gs::features

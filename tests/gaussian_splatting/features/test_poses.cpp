@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <vector>
+
+#include "../training/engines.hpp"
+#include "features/poses/poses_feature.hpp"
+#include "features/resolve.hpp"
+#include "scene/look_at.hpp"
+#include "training/initialize.hpp"
+#include "training/training.hpp"
+
+namespace {
+
+using namespace gs::features;
+
+
+bool is_rotation(const glm::dmat3& r) {
+    const glm::dmat3 square = r * glm::transpose(r);
+    double error = std::abs(glm::determinant(r) - 1);
+    for (int c = 0; c < 3; ++c) error = std::max(error, glm::length(square[c] - glm::dmat3(1)[c]));
+    return error < 1e-9;
+}
+
+given_pose some_pose(int i = 0) {
+    const glm::dvec3 eye{3 * std::cos(i), 3 * std::sin(i), 1 + 0.3 * std::cos(5.0 * i)};
+    return {gs::look_at(eye, {0, 0, 0}, {0, 0, 1}, 64, 70), 3.2};
+}
+
+std::size_t at(std::size_t view, unsigned k) { return view * pose_width + k; }
+
+/// Trains with poses, or without, and returns the engine.
+std::unique_ptr<gs::train::engine> trained(make_engine make, const gs::scene& scene, bool learns,
+                                           gs::accumulator sums = gs::accumulator::native) {
+    auto e = make();
+    gs::train::train_options o;
+    o.schedule.iterations = 500;
+    o.schedule.sh_degree = 0;
+    o.max_cap = 3000;
+    o.gradient = sums;
+    if (learns) o.features = feature_set({{"poses", true, "", poses_feature().neutral_values(scene)}});
+    e->set_views(scene.train, scene.test, o.schedule.num_downscales);
+    e->set_model(gs::from_points(scene.points, 0, 2000, 1));
+    gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
+    return e;
+}
+
+}  // namespace
+
+TEST_CASE("poses: any finite change gives a valid pose, at singular angles, too") {
+    for (const double angle :
+         {0.0, 1e-30, 1e-9, 1e-4, 9.99e-4, 1.001e-3, 0.5, std::numbers::pi, 2 * std::numbers::pi, 1e6})
+        for (const float shift : {0.0f, 1e-20f, 3.0f, 1e15f}) {
+            CAPTURE(angle);
+            CAPTURE(shift);
+            pose_change change{0, static_cast<float>(angle), 0, 0, 0, shift};
+            const gs::camera c = moved(some_pose(), change);
+            CHECK(is_rotation(c.rotation));
+            CHECK(std::isfinite(glm::length(c.translation)));
+        }
+    const given_pose given = some_pose();
+    const gs::camera same = moved(given, {});
+    CHECK(same.rotation == given.camera.rotation);
+    CHECK(glm::length(same.translation - given.camera.translation) < 1e-15);
+}
+
+TEST_CASE("poses: a turn keeps the center, and a shift keeps a point at the typical depth in its place") {
+    const given_pose given = some_pose();
+    const gs::camera turned = moved(given, {0.2f, 0.1f, -0.3f, 0, 0, 0});
+    CHECK(glm::length(turned.center() - given.camera.center()) < 1e-12);
+    const glm::dvec3 pivot =
+        given.camera.center() + given.depth * glm::transpose(given.camera.rotation) * glm::dvec3(0, 0, 1);
+    const gs::camera shifted = moved(given, {0, 0, 0, 0.02f, -0.03f, 0});
+    CHECK(glm::length(shifted.center() - given.camera.center()) ==
+          doctest::Approx(shift_unit * std::hypot(0.02, 0.03)).epsilon(1e-6));
+    const auto before = given.camera.see(pivot), after = shifted.see(pivot);
+    CHECK(after->x == doctest::Approx(before->x).epsilon(1e-4));
+    CHECK(after->y == doctest::Approx(before->y).epsilon(1e-4));
+}
+
+TEST_CASE("poses: a motion of the whole scene and a change in camera space are removed, and the rest stays") {
+    std::vector<given_pose> given;
+    for (int i = 0; i < 12; ++i) given.push_back(some_pose(i));
+    std::vector<float> changes(given.size() * pose_width);
+    // The scene turns by a small angle and moves.
+    const glm::dvec3 turn{1e-3, -2e-3, 3e-3}, move{0.004, -0.003, 0.002};
+    for (std::size_t v = 0; v < given.size(); ++v) {
+        const gs::camera& c = given[v].camera;
+        const glm::dvec3 shift = c.rotation * (glm::cross(turn, c.center()) + move) / shift_unit;
+        const double angle = shift_unit / given[v].depth;
+        const glm::dvec3 whole = -(c.rotation * turn);
+        const glm::dvec3 own = whole - glm::dvec3(-angle * shift.y, angle * shift.x, 0);
+        for (unsigned k = 0; k < 3; ++k) {
+            changes[at(v, k)] = static_cast<float>(own[static_cast<int>(k)]) + 0.01f;  // and all cameras turn
+            changes[at(v, 3 + k)] = static_cast<float>(shift[static_cast<int>(k)]);
+        }
+    }
+    std::vector<float> disturbed = changes;
+    remove_common_motion(given, changes);
+    for (const float x : changes) CHECK(std::abs(x) < 2e-5f);
+
+    disturbed[at(4, 1)] += 0.02f;
+    remove_common_motion(given, disturbed);
+    CHECK(disturbed[at(4, 1)] > 0.01f);
+    for (std::size_t v = 0; v < given.size(); ++v)
+        if (v != 4) CHECK(std::abs(disturbed[at(v, 1)]) < 0.01f);
+
+    std::vector<float> of_one(pose_width, 0.5f);  // fewer values than unknowns
+    remove_common_motion({some_pose()}, of_one);
+    for (const float x : of_one) CHECK(std::abs(x) < 1e-3f);
+}
+
+TEST_CASE("poses: training and refinement correct poses that are wrong") {
+    const gs::scene scene = small_scene("synthetic:spheres,poses=1", 64);
+    for (const auto make : engines()) {
+        const auto psnr_of = [&](bool learns, bool refines) {
+            const auto e = trained(make, scene, learns);
+            double sum = 0;
+            for (std::size_t v = 0; v < scene.test.size(); ++v) {
+                const gs::camera c = refines ? e->refined_camera(v, {}) : scene.test[v].camera;
+                const auto render = e->render(c, {});
+                const auto photo = over_background(scene.test[v].pixels, std::array<float, 3>{}.data());
+                double square = 0;
+                for (std::size_t i = 0; i < render.size(); ++i)
+                    square += std::pow(static_cast<double>(render[i] - photo[i]), 2);
+                sum += -10 * std::log10(square / static_cast<double>(render.size()));
+            }
+            return sum / static_cast<double>(scene.test.size());
+        };
+        const double given = psnr_of(false, false), refined = psnr_of(false, true),
+                     learned = psnr_of(true, true);
+        CAPTURE(given);
+        CAPTURE(refined);
+        CAPTURE(learned);
+        CHECK(refined > given + 0.5);
+        CHECK(learned > refined + 2);
+    }
+}
+
+TEST_CASE("poses: fixed-point sums give the same poses and cameras each time") {
+    const gs::scene scene = small_scene("synthetic:spheres,poses=1", 32);
+    for (const auto make : engines()) {
+        const auto first = trained(make, scene, true, gs::accumulator::fixed);
+        const auto second = trained(make, scene, true, gs::accumulator::fixed);
+        const auto values = first->feature("poses").values();
+        CHECK(values == second->feature("poses").values());
+        CHECK(std::ranges::any_of(values, [](float x) { return std::abs(x) > 1e-3f; }));
+        CHECK(first->get_model().mean == second->get_model().mean);
+        CHECK(first->training_camera(3).rotation != scene.train[3].camera.rotation);
+    }
+}
+
+TEST_CASE("poses: without the feature, cameras keep their poses") {
+    const gs::scene scene = small_scene("synthetic:spheres", 32);
+    const auto e = gs::train::make_cpu_engine();
+    e->set_views(scene.train, {}, 0);
+    CHECK(e->training_camera(2).rotation == scene.train[2].camera.rotation);
+    CHECK(e->training_camera(2).translation == scene.train[2].camera.translation);
+}
+
+TEST_CASE("poses: the results are poses in world coordinates, and a run without the effect removes them") {
+    gs::scene scene = small_scene("synthetic:spheres,poses=1", 32);
+    scene.normalization = {{10, 20, 30}, 2};
+    const auto e = trained(gs::train::make_cpu_engine, scene, true);
+    const auto folder = std::filesystem::temp_directory_path() / "warpagg_test_poses";
+    std::filesystem::create_directories(folder);
+    const selected_feature on{"poses", true, "", {}}, off{"poses", false, "", {}};
+    poses_feature().write_results(on, *e, scene, folder);
+    const auto json = nlohmann::json::parse(std::ifstream(folder / "poses.json"));
+    CHECK(json.size() == scene.train.size());
+    const auto& pose = json.at(scene.train[5].name);
+    const gs::camera learned = e->training_camera(5);
+    const glm::dvec3 center = scene.normalization.to_world(learned.center());
+    for (std::size_t row = 0; row < 3; ++row) {
+        const int r = static_cast<int>(row);
+        CHECK(pose.at("camera_to_world")[row][3].get<double>() == doctest::Approx(center[r]));
+        CHECK(pose.at("camera_to_world")[row][2].get<double>() == doctest::Approx(learned.rotation[r][2]));
+    }
+    const double turned = pose.at("turned_by_degrees");
+    CHECK(turned > 0.01);
+    CHECK(turned < 3);
+    const double moved_by = glm::length(learned.center() - scene.train[5].camera.center());
+    CHECK(pose.at("moved_by").get<double>() == doctest::Approx(2 * moved_by));
+    poses_feature().write_results(off, *e, scene, folder);
+    CHECK_FALSE(std::filesystem::exists(folder / "poses.json"));
+    std::filesystem::remove_all(folder);
+}

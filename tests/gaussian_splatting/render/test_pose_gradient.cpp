@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "device/cpu/cpu.hpp"
+#include "features/poses/pose_gradient.hpp"
+#include "render/renderer.hpp"
+
+namespace {
+
+using namespace gs::features;
+
+/// A model in AoSoA layout, in any precision.
+template <class Real>
+struct model {
+    static constexpr std::size_t count = 45;
+    static constexpr int sh_degree = 2;
+    std::array<std::vector<Real>, gs::parameter_count> values;
+
+    model() {
+        std::mt19937 random(7);
+        std::normal_distribution<double> normal;
+        for (std::size_t p = 0; p < gs::parameter_count; ++p) {
+            if (!gs::has_parameter(p, sh_degree)) continue;
+            const auto width = static_cast<std::size_t>(gs::parameter_width[p]);
+            std::vector<Real> rows;
+            for (std::size_t i = 0; i < count * width; ++i) {
+                const double x = normal(random);
+                // Rounded to float, so that both precisions have the same model.
+                rows.push_back(static_cast<Real>(static_cast<float>(p == 0   ? 0.7 * x
+                                                                    : p == 1 ? -1.8 + 0.4 * x
+                                                                    : p > 4  ? 0.2 * x
+                                                                             : x)));
+            }
+            values[p] = gs::to_blocks(rows.data(), count, width, width);
+        }
+    }
+    gs::parameter_arrays<const Real> read() const {
+        gs::parameter_arrays<const Real> all;
+        all.mean = values[0].data();
+        all.log_scale = values[1].data();
+        all.quaternion = values[2].data();
+        all.opacity = values[3].data();
+        for (std::size_t k = 0; k < 4; ++k) all.sh[k] = values[4 + k].data();
+        return all;
+    }
+};
+
+template <class Real>
+struct drawing {
+    gs::device::cpu device;
+    model<Real> gaussians;
+    gs::raster::renderer<gs::device::cpu, Real> renderer{device};
+
+    explicit drawing(bool antialiased) {
+        renderer.set_effects({.antialiasing = antialiased});
+        renderer.reserve_instances(1u << 16);
+    }
+    const Real* draw(const gs::camera& c) {
+        renderer.forward(gaussians.read(), model<Real>::count, c, model<Real>::sh_degree, {0.1f, 0.2f, 0.3f});
+        return renderer.render();
+    }
+};
+
+std::vector<given_pose> poses() {
+    gs::camera pinhole{44, 33, 40, 42, 21, 17};
+    pinhole.rotation = glm::mat3_cast(glm::normalize(glm::dquat(1, 0.3, -0.2, 0.4)));
+    pinhole.translation = {0.2, -0.1, 3};
+    gs::camera fisheye = pinhole;
+    fisheye.fisheye = gs::fisheye({0.04, -0.012, 0.003, -0.0004});
+    gs::camera panorama = gs::camera::panorama(64, 32);
+    panorama.rotation = pinhole.rotation;
+    panorama.translation = {0.1, 0.3, -0.2};
+    return {{pinhole, 3}, {fisheye, 2}, {panorama, std::numeric_limits<double>::infinity()}};
+}
+
+}  // namespace
+
+TEST_CASE("poses: the gradient by a pose change is that of central differences in double precision") {
+    int jumps = 0;
+    for (const given_pose& given : poses())
+        for (const bool antialiased : {false, true})
+            for (const pose_change& change :
+                 {pose_change{}, pose_change{0.2f, -0.3f, 0.1f, 0.3f, -0.2f, 0.4f}}) {
+                CAPTURE(static_cast<int>(given.camera.lens()));
+                CAPTURE(antialiased);
+                CAPTURE(change[0]);
+                std::mt19937 random(3);
+                const std::size_t values =
+                    3u * static_cast<unsigned>(given.camera.width * given.camera.height);
+                std::vector<float> weights(values);
+                for (float& w : weights) w = std::normal_distribution<float>()(random);
+
+                drawing<double> exact(antialiased);
+                const auto loss = [&](const pose_change& at) {
+                    const double* render = exact.draw(moved(given, at));
+                    double sum = 0;
+                    for (std::size_t i = 0; i < values; ++i)
+                        sum += static_cast<double>(weights[i]) * render[i];
+                    return sum;
+                };
+                drawing<float> trained(antialiased);
+                trained.draw(moved(given, change));
+                const float* sums =
+                    trained.renderer.backward_to_splats(weights.data(), 1, gs::accumulator::native);
+                constexpr std::size_t lanes = gs::device::cpu::narrow_warp::size;
+                constexpr std::size_t warps = (model<float>::count + lanes - 1) / lanes;
+                std::vector<float> parts(pose_width * warps);
+                trained.renderer.backward_from_splats(
+                    sums, 0, pose_gradient(derivatives_of(given, change), {parts.data(), warps}), nullptr);
+
+                // A step over the edge of a splat has a jump, so steps are tiny, and two of them must agree.
+                const auto difference = [&](unsigned k, float half_step) {
+                    pose_change more = change, less = change;
+                    more[k] += half_step;
+                    less[k] -= half_step;
+                    return (loss(more) - loss(less)) /
+                           (static_cast<double>(more[k]) - static_cast<double>(less[k]));
+                };
+                std::array<double, pose_width> found{}, expected{};
+                for (unsigned k = 0; k < pose_width; ++k) {
+                    for (std::size_t w = 0; w < warps; ++w)
+                        found[k] += static_cast<double>(parts[k * warps + w]);
+                    expected[k] = difference(k, 2e-7f);
+                }
+                const double most =
+                    std::abs(*std::ranges::max_element(found, {}, [](double x) { return std::abs(x); }));
+                CHECK(most > 1);
+                for (unsigned k = 0; k < pose_width; ++k) {
+                    CAPTURE(k);
+                    if (difference(k, 1e-7f) != doctest::Approx(expected[k]).epsilon(1e-4).scale(most)) {
+                        ++jumps;
+                        continue;
+                    }
+                    CHECK(found[k] == doctest::Approx(expected[k]).epsilon(2e-3).scale(most));
+                }
+            }
+    CHECK(jumps <= 4);
+}
+
+TEST_CASE("poses: a Gaussian whose gradient is not finite has no part in the gradient of a pose") {
+    const given_pose given = poses()[0];
+    const auto gradient_without = [&](bool breaks) {
+        drawing<float> trained(false);
+        trained.draw(given.camera);
+        const std::size_t values = 3u * static_cast<unsigned>(given.camera.width * given.camera.height);
+        const std::vector<float> weights(values, 1);
+        std::vector<float> sums(model<float>::count * gs::raster::record_stride);
+        std::copy_n(trained.renderer.backward_to_splats(weights.data(), 1, gs::accumulator::fixed),
+                    sums.size(), sums.begin());
+        std::size_t drawn = 0;
+        while (trained.renderer.tiles_of()[drawn] == 0 || sums[drawn * gs::raster::record_stride] == 0)
+            ++drawn;
+        for (unsigned k = 0; k < gs::raster::sum_count; ++k)
+            sums[drawn * gs::raster::record_stride + k] = breaks ? std::nanf("") : 0;
+        std::vector<float> parts(pose_width * model<float>::count);
+        trained.renderer.backward_from_splats(
+            sums.data(), 0, pose_gradient(derivatives_of(given, {}), {parts.data(), model<float>::count}),
+            nullptr);
+        return parts;
+    };
+    const auto without = gradient_without(false), broken = gradient_without(true);
+    CHECK(std::ranges::any_of(without, [](float x) { return x != 0; }));
+    for (std::size_t i = 0; i < without.size(); ++i) CHECK(broken[i] == without[i]);
+}
