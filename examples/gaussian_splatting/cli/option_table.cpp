@@ -255,7 +255,7 @@ rows run_options(settings& s) {
          {.names = "--gpus",
           .commands = {train},
           .value = count_or_all(s.gpus, ranks::most_ranks),
-          .help = "Number of GPUs that train together; experimental",
+          .help = "Number of GPUs that train together",
           .is_recorded = false},
          {.names = "--ranks",
           .commands = {train},

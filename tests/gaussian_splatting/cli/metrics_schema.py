@@ -50,7 +50,8 @@ class Schema(unittest.TestCase):
         write_zero_weights(weights)
         self.assertIsNone(self.run_program("train", "-i", "20", *SCENE)["psnr"])
         further = ["--eval", "--fit-exposure", "--lpips", weights]
-        trained = self.run_program("train", "--overwrite", "-i", "60", "--test-iterations", "20", "--deterministic", *further, *SCENE)
+        poses = ["--effects", "auto,+poses"]
+        trained = self.run_program("train", "--overwrite", "-i", "60", "--test-iterations", "20", "--deterministic", *poses, *further, *SCENE)
         model = self.folder / "point_cloud/iteration_60/point_cloud.ply"
         evaluated = self.run_program("evaluate", model, *further, *SCENE)
         self.assertNotIn("lpips", self.run_program("evaluate", model, *SCENE))
@@ -58,11 +59,12 @@ class Schema(unittest.TestCase):
             self.assertEqual((metrics["lpips"], metrics["lpips_input_range"]), (0, [-1, 1]))
             self.assertEqual(len(metrics["views"]), 8)
             self.assertIn("fitted_psnr", metrics)
+            self.assertEqual("refined_psnr" in metrics, metrics is trained)
             self.check_that_fields_are_needed_and_known(metrics)
 
     def check_that_fields_are_needed_and_known(self, metrics):
         self.assertFalse(self.validator.is_valid({**metrics, "unknown": 1}))
-        for field in metrics.keys() - {"lpips", "fitted_psnr"}:
+        for field in metrics.keys() - {"lpips", "fitted_psnr", "refined_psnr"}:
             with self.subTest(field=field):
                 self.assertFalse(self.validator.is_valid({k: v for k, v in metrics.items() if k != field}))
                 self.assertFalse(self.validator.is_valid({**metrics, field: {"unknown": 1}}))

@@ -149,6 +149,7 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
                                              {"exposure", true},
                                              {"antialiasing", true},
                                              {"sky", false},
+                                             {"poses", false},
                                              {"masks", false},
                                              {"depth", false},
                                              {"background", false}});
@@ -167,11 +168,20 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
                                                                              {"exposure", false},
                                                                              {"antialiasing", true},
                                                                              {"sky", false},
+                                                                             {"poses", false},
                                                                              {"masks", false},
                                                                              {"depth", false},
                                                                              {"background", false}});
     CHECK(!fs::exists(folder / "some/exposures.json"));
+    CHECK(!fs::exists(folder / "some/poses.json"));
     CHECK(!read_json(folder / "some/metrics.json").contains("fitted_psnr"));
+
+    CHECK(effects("poses", "synthetic:spheres,poses=1", {"--effects", "poses"}).at("poses"));
+    CHECK(read_json(folder / "poses/poses.json").size() == 40);
+    const json refined = read_json(folder / "poses/metrics.json");
+    CHECK(refined.at("refined_psnr").get<double>() > refined.at("psnr").get<double>());
+    CHECK(refined.at("views")[0].at("refined_psnr").is_number());
+
     CHECK(effects("degree", varied, {"--effects", "none", "--sh-degree", "2"}).at("direction"));
     CHECK(read_json(folder / "degree/metrics.json").at("effects")[0].at("sh_degree") == 2);
 

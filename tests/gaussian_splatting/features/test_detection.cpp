@@ -347,12 +347,12 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
     CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
     CHECK(refusal("spheres,glos=0.5") ==
           "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
-          "sky, walls, fisheye, panorama, depths, points, views, noise");
+          "sky, walls, fisheye, panorama, depths, points, views, poses, noise");
     CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
     CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
     CHECK(refusal("spheres,") ==
           "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
-          "sky, walls, fisheye, panorama, depths, points, views, noise");
+          "sky, walls, fisheye, panorama, depths, points, views, poses, noise");
     CHECK(refusal("spheres,gloss=nan") ==
           "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
     CHECK(refusal("spheres,views=4,depths=0") == "");

@@ -63,6 +63,7 @@ TEST_CASE("explain: each effect names its condition, and shows photos of the sce
         const explanation found = f->explain(statistics, f->analyze(statistics));
         CHECK(!found.condition.empty());
         if (f->name() == "background") continue;  // all photos are opaque
+        if (f->name() == "poses") continue;       // photos do not show their errors
         CHECK(!found.charts.empty());
         REQUIRE(!found.photos.empty());
         for (const gs::pages::marked_photo& photo : found.photos) {

@@ -152,8 +152,7 @@ TEST_CASE("a selection of effects that is none is refused") {
     }
     CHECK(refusal("glare") ==
           "--effects: there is no effect 'glare'; the effects are direction, exposure, antialiasing, sky, "
-          "masks, "
-          "depth");
+          "poses, masks, depth");
     CHECK(parse_selection("auto").allows("masks"));
     CHECK(parse_selection("masks").allows("masks"));
     CHECK_FALSE(parse_selection("none").allows("masks"));

@@ -46,6 +46,10 @@ finding poses_feature::analyze(const scene_statistics&) const {
         "off"};
 }
 
+explanation poses_feature::explain(const scene_statistics&, const finding&) const {
+    return {.condition = "none: only training shows whether poses are exact"};
+}
+
 std::vector<float> poses_feature::neutral_values(const scene& scene) const {
     std::vector<float> depths;
     for (const given_pose& pose : given_poses(scene)) depths.push_back(static_cast<float>(pose.depth));
