@@ -13,6 +13,7 @@
 #include "engines.hpp"
 #include "features/depth/depth_feature.hpp"
 #include "features/exposure/exposure_feature.hpp"
+#include "features/poses/poses_feature.hpp"
 #include "features/sh_degree/sh_degree_feature.hpp"
 #include "training/initialize.hpp"
 #include "training/training.hpp"
@@ -38,6 +39,7 @@ gs::train::train_options options_for(const gs::scene& scene, const std::string& 
     o.features = gs::features::feature_set(
         {{"direction", true, "", {1, 1}},  // revises the SH degree
          {"exposure", true, "", gs::features::exposure_feature().neutral_values(scene)},
+         {"poses", true, "", gs::features::poses_feature().neutral_values(scene)},
          {"depth", true, "", gs::features::depth_feature().neutral_values(scene)}});
     return o;
 }
