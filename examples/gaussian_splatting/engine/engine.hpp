@@ -15,6 +15,7 @@
 #include "../photos/photo_plan.hpp"
 #include "../scene/scene.hpp"
 #include "feature_state.hpp"
+#include "learned_cameras.hpp"
 #include "photo_prefetch.hpp"
 #include "render_options.hpp"
 #include "step_report.hpp"
@@ -68,12 +69,6 @@ class engine {
     virtual image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
                                   std::vector<float>* render = nullptr) = 0;
 
-    /// Returns the camera of a training view, in full size, with the pose that training has learned.
-    virtual camera training_camera(std::size_t view) = 0;
-    /// Returns the camera of a held-out view with a pose that fits the model better. Uses the left half
-    /// of the photo, so the right half can serve for measurements. Needs a hundred renders.
-    virtual camera refined_camera(std::size_t test_view, const std::array<float, 3>& background) = 0;
-
     std::size_t count() const { return count_; }
     /// Returns whether the last call of `densify` made as many Gaussians as `max_device_bytes` allows.
     bool lacks_memory() const { return lacks_memory_; }
@@ -84,6 +79,7 @@ class engine {
     /// it: `take_report` was called after the last step. Precondition for loading it: `begin` was
     /// called, with the same training views.
     checkpointed& state() { return *state_; }
+    learned_cameras& cameras() { return *cameras_; }
     /// Returns the interface to streamed photos, or null if all photos are in device memory.
     photo_prefetch* streamed_photos() { return photos_; }
 
@@ -93,6 +89,7 @@ class engine {
     const train::timetable* timetable_ = nullptr;
     device::profiler* profiler_ = nullptr;
     checkpointed* state_ = nullptr;
+    learned_cameras* cameras_ = nullptr;
     photo_prefetch* photos_ = nullptr;
 };
 

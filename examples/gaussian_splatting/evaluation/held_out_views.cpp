@@ -55,7 +55,8 @@ class batch {
             to.push_back(
                 {scene_.test[first + i].name, engine_.measure(first + i, background_, &renders_[i])});
         for (std::size_t i = 0; options_.refines_poses && i < count; ++i)
-            refined_[i] = engine_.render(engine_.refined_camera(first + i, background_), background_);
+            refined_[i] =
+                engine_.render(engine_.cameras().refined_camera(first + i, background_), background_);
         for_each_in_parallel(count, [&](std::size_t i) { measure_on_host(first, i, to[first + i]); });
         // Each image uses all threads, because the features of one image need much memory.
         if (options_.network)

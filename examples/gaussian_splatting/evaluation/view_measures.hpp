@@ -20,7 +20,7 @@ struct view_quality {
     std::optional<double> lpips{};          ///< see lpips/lpips.hpp
     std::optional<double> fitted_psnr{};    ///< see fit_exposure.hpp
     /// PSNR of the right half of the photo after the pose was refined on the left half: see
-    /// `engine::refined_camera`.
+    /// `train::learned_cameras`.
     std::optional<double> refined_psnr{};
 };
 

@@ -33,7 +33,7 @@ namespace gs::train {
 /// The engine for a device. It determines the order of the kernels and owns the memory that they
 /// share.
 template <device::device Device, class Accumulators = raster::product_accumulators>
-class device_engine final : public engine, device::profiler, checkpointed {
+class device_engine final : public engine, device::profiler, learned_cameras, checkpointed {
     using renderer_type =
         raster::renderer<Device, float, raster::cut_for<typename Device::warp>, Accumulators>;
     using step_type = features::step<renderer_type>;
@@ -55,6 +55,7 @@ class device_engine final : public engine, device::profiler, checkpointed {
           gather_(device_) {
         profiler_ = this;
         state_ = this;
+        cameras_ = this;
         start({});
     }
 
@@ -183,20 +184,6 @@ class device_engine final : public engine, device::profiler, checkpointed {
         return comparison_.take();
     }
 
-    camera training_camera(std::size_t view) override {
-        return features_.seen_by(view, views_.train(0)[view].camera);
-    }
-
-    camera refined_camera(std::size_t test_view, const std::array<float, 3>& background) override {
-        const photo& shot = views_.held_out()[test_view];
-        renderer_.set_strip({});
-        const auto loss = parts_.make_loss(device_, setup_.loss);
-        loss->set_target(views_.load_in_order(views_.held_out(), test_view).target(background));
-        return refine_pose(device_, renderer_, features_, *loss, test_view, shot.camera,
-                           setup_.facts.gradient,
-                           [&](const camera& seen) { draw(renderer_, seen, background); });
-    }
-
   private:
     /// The SH degree of the model, and the SH coefficients of the parameters and of Adam's moments.
     class sh_state final : public sh_degree_state {
@@ -246,6 +233,20 @@ class device_engine final : public engine, device::profiler, checkpointed {
         device_engine& on_;
         const std::vector<photo>& views_;
     };
+
+    camera training_camera(std::size_t view) override {
+        return features_.seen_by(view, views_.train(0)[view].camera);
+    }
+
+    camera refined_camera(std::size_t test_view, const std::array<float, 3>& background) override {
+        const photo& shot = views_.held_out()[test_view];
+        renderer_.set_strip({});
+        const auto loss = parts_.make_loss(device_, setup_.loss);
+        loss->set_target(views_.load_in_order(views_.held_out(), test_view).target(background));
+        return refine_pose(device_, renderer_, features_, *loss, test_view, shot.camera,
+                           setup_.facts.gradient,
+                           [&](const camera& seen) { draw(renderer_, seen, background); });
+    }
 
     /// @name device::profiler
     /// @{

@@ -20,7 +20,7 @@ struct first_columns {
     WARPAGG_HD void operator()(std::size_t i) const { to[i] = i % width < columns ? from[i] : 0.0f; }
 };
 
-/// Returns the camera of a held-out view with a refined pose: see `engine::refined_camera`. `draw`
+/// Returns the camera of a held-out view with a refined pose: see `learned_cameras`. `draw`
 /// renders a camera with the renderer. `loss` has the photo as its target. Treats the effects of
 /// features on the render, such as exposures, as constant.
 template <class Renderer, class Draw>

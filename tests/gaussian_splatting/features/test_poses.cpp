@@ -25,7 +25,6 @@ namespace {
 
 using namespace gs::features;
 
-
 bool is_rotation(const glm::dmat3& r) {
     const glm::dmat3 square = r * glm::transpose(r);
     double error = std::abs(glm::determinant(r) - 1);
@@ -124,12 +123,11 @@ TEST_CASE("poses: a motion of the whole scene and a change in camera space are r
 TEST_CASE("poses: training and refinement correct poses that are wrong") {
     const gs::scene scene = small_scene("synthetic:spheres,poses=1", 64);
     for (const auto make : engines()) {
-        const auto psnr_of = [&](bool learns, bool refines) {
-            const auto e = trained(make, scene, learns);
+        const auto psnr_of = [&](gs::train::engine& e, bool refines) {
             double sum = 0;
             for (std::size_t v = 0; v < scene.test.size(); ++v) {
-                const gs::camera c = refines ? e->refined_camera(v, {}) : scene.test[v].camera;
-                const auto render = e->render(c, {});
+                const auto render =
+                    e.render(refines ? e.cameras().refined_camera(v, {}) : scene.test[v].camera, {});
                 const auto photo = over_background(scene.test[v].pixels, std::array<float, 3>{}.data());
                 double square = 0;
                 for (std::size_t i = 0; i < render.size(); ++i)
@@ -138,8 +136,9 @@ TEST_CASE("poses: training and refinement correct poses that are wrong") {
             }
             return sum / static_cast<double>(scene.test.size());
         };
-        const double given = psnr_of(false, false), refined = psnr_of(false, true),
-                     learned = psnr_of(true, true);
+        const auto without = trained(make, scene, false), with = trained(make, scene, true);
+        const double given = psnr_of(*without, false), refined = psnr_of(*without, true),
+                     learned = psnr_of(*with, true);
         CAPTURE(given);
         CAPTURE(refined);
         CAPTURE(learned);
@@ -157,7 +156,7 @@ TEST_CASE("poses: fixed-point sums give the same poses and cameras each time") {
         CHECK(values == second->feature("poses").values());
         CHECK(std::ranges::any_of(values, [](float x) { return std::abs(x) > 1e-3f; }));
         CHECK(first->get_model().mean == second->get_model().mean);
-        CHECK(first->training_camera(3).rotation != scene.train[3].camera.rotation);
+        CHECK(first->cameras().training_camera(3).rotation != scene.train[3].camera.rotation);
     }
 }
 
@@ -165,8 +164,8 @@ TEST_CASE("poses: without the feature, cameras keep their poses") {
     const gs::scene scene = small_scene("synthetic:spheres", 32);
     const auto e = gs::train::make_cpu_engine();
     e->set_views(scene.train, {}, 0);
-    CHECK(e->training_camera(2).rotation == scene.train[2].camera.rotation);
-    CHECK(e->training_camera(2).translation == scene.train[2].camera.translation);
+    CHECK(e->cameras().training_camera(2).rotation == scene.train[2].camera.rotation);
+    CHECK(e->cameras().training_camera(2).translation == scene.train[2].camera.translation);
 }
 
 TEST_CASE("poses: the results are poses in world coordinates, and a run without the effect removes them") {
@@ -180,7 +179,7 @@ TEST_CASE("poses: the results are poses in world coordinates, and a run without 
     const auto json = nlohmann::json::parse(std::ifstream(folder / "poses.json"));
     CHECK(json.size() == scene.train.size());
     const auto& pose = json.at(scene.train[5].name);
-    const gs::camera learned = e->training_camera(5);
+    const gs::camera learned = e->cameras().training_camera(5);
     const glm::dvec3 center = scene.normalization.to_world(learned.center());
     for (std::size_t row = 0; row < 3; ++row) {
         const int r = static_cast<int>(row);

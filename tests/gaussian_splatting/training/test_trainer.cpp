@@ -92,8 +92,6 @@ class recorder final : public gs::train::engine, gs::device::profiler {
     gs::train::image_quality measure(std::size_t, const std::array<float, 3>&, std::vector<float>*) override {
         return {};
     }
-    gs::camera training_camera(std::size_t) override { return {}; }
-    gs::camera refined_camera(std::size_t, const std::array<float, 3>&) override { return {}; }
 
   private:
     struct sh_state final : gs::train::sh_degree_state {

@@ -82,7 +82,7 @@ void poses_feature::write_results(const selected_feature& selected, train::engin
     auto all = nlohmann::ordered_json::object();
     for (std::size_t v = 0; v < scene.train.size(); ++v)
         all[scene.train[v].name] =
-            to_json(scene.train[v].camera, engine.training_camera(v), scene.normalization);
+            to_json(scene.train[v].camera, engine.cameras().training_camera(v), scene.normalization);
     atomic_file_write(file, [&](std::ostream& out) { out << all.dump(2) << '\n'; });
 }
 
