@@ -136,17 +136,20 @@ class common_motion {
 }  // namespace
 
 std::vector<given_pose> given_poses(const scene& scene) {
+    constexpr std::size_t most_points = 2000;
+    const std::size_t step = scene.points.size() / most_points + 1;
     std::vector<given_pose> poses;
     for (const view& v : scene.train) {
+        const camera& c = v.camera;
         std::vector<double> depths;
-        for (const colored_point& p : scene.points)
-            if (const auto seen = v.camera.see(p.position);
-                seen && seen->x >= 0 && seen->y >= 0 && seen->x < v.camera.width && seen->y < v.camera.height)
+        for (std::size_t i = 0; i < scene.points.size(); i += step)
+            if (const auto seen = c.see(scene.points[i].position);
+                seen && seen->x >= 0 && seen->y >= 0 && seen->x < c.width && seen->y < c.height)
                 depths.push_back(seen->depth);
-        const double depth = v.camera.is_panorama ? std::numeric_limits<double>::infinity()
-                             : depths.empty()     ? scene.extent()
-                                                  : median(depths);
-        poses.push_back({v.camera, depth});
+        const double depth = c.is_panorama    ? std::numeric_limits<double>::infinity()
+                             : depths.empty() ? scene.extent()
+                                              : median(depths);
+        poses.push_back({c, depth});
     }
     return poses;
 }

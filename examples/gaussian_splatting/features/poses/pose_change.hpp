@@ -31,8 +31,8 @@ struct given_pose {
     double depth;  ///< typical depth of what it shows; infinite for panoramas
 };
 
-/// Returns the pose of each training view. The depth is the median of the points in front of the
-/// camera, or the extent of the scene if there are none.
+/// Returns the pose of each training view. The depth is the median of a sample of the points in the
+/// image, or the extent of the scene if there are none.
 std::vector<given_pose> given_poses(const scene& scene);
 
 /// Returns the camera with a changed pose. Any finite change gives a valid pose.
