@@ -14,10 +14,11 @@ class learned_cameras {
   public:
     virtual ~learned_cameras() = default;
 
-    /// Returns the camera of a training view in full size. Waits for the device.
-    virtual camera training_camera(std::size_t view) = 0;
+    /// Returns the camera of a training view with its learned pose. `given`: its camera in the scene, of any
+    /// size. Waits for the device.
+    virtual camera training_camera(std::size_t view, const camera& given) = 0;
     /// Returns the camera of a held-out view with a pose that fits the model better. Uses the left half
-    /// of the photo, so the right half can serve for measurements. Needs a hundred renders.
+    /// of the photo, so the right half can serve for measurements. Costs a hundred training steps.
     virtual camera refined_camera(std::size_t test_view, const std::array<float, 3>& background) = 0;
 };
 

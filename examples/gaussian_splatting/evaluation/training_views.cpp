@@ -19,7 +19,8 @@ training_view_images training_view(train::engine& engine, const scene& scene,
                                    const features::show_function& show,
                                    const std::array<float, 3>& background, std::size_t view) {
     const gs::view& shown = scene.train[view];
-    training_view_images images{engine.render(engine.cameras().training_camera(view), background), {}, 0};
+    training_view_images images{
+        engine.render(engine.cameras().training_camera(view, shown.camera), background), {}, 0};
     if (show) show(view, images.render);
     const view_photo photo(shown);
     images.target = over_background(photo.pixels(), background.data());

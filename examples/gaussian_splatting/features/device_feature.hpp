@@ -74,7 +74,7 @@ class device_feature : public train::feature_state {
     /// Updates learned values from the gradient with respect to the render of the Gaussians.
     virtual void learn(const step&, const float* /*render_gradient*/) {}
     /// Updates the learned pose from the sums of each Gaussian over pixels. Runs before the Gaussians
-    /// change. See `raster::renderer::backward_to_splats`.
+    /// change, under the rules of the hooks above. See `raster::renderer::backward_to_splats`.
     virtual void learn_pose(const step&, const float* /*sums*/) {}
 
     /// Hooks for the pose of a held-out view: `begin_refinement` for each view, and then, in each step,

@@ -52,7 +52,7 @@ float nearly_largest(std::vector<float> values) {
 
 camera frame_artist::camera_for(const view_request& request) const {
     if (!request.view) return camera_of(request);
-    const camera& own = views_.at(*request.view).camera;
+    const camera own = engine_.cameras().training_camera(*request.view, views_.at(*request.view).camera);
     const double scale =
         std::min({1.0, request.width / double(own.width), request.height / double(own.height)});
     const auto scaled = [=](int side) { return std::max(1, static_cast<int>(std::lround(scale * side))); };

@@ -175,12 +175,13 @@ class renderer {
     /// of this rank.
     const Real* backward_to_splats(const Real* render_gradient, float largest, accumulator how) {
         const Real* sums = sums_by_pixel(render_gradient, largest, how, owners());
-        return shares_gaussians() ? visible_.by_gaussian(sums, count_) : sums;
+        if (shares_gaussians()) sums = visible_.by_gaussian(sums, count_);
+        device_.begin(device::stage::project_backward);
+        return sums;
     }
     /// The second part of `backward`. Several sinks can take the gradients of the same sums.
     template <class Sink>
     void backward_from_splats(const Real* sums, int learned_sh_degree, const Sink& sink, visibility* seen) {
-        device_.begin(device::stage::project_backward);
         using narrow = typename Device::narrow_warp;
         with_effects(effects_of(camera_), [&]<effect_set Effects> {
             device_.template for_each_warp<narrow>(
@@ -205,7 +206,7 @@ class renderer {
                     effects_.depth);
         device_.begin(device::stage::blend_backward);
         launch_backward(kernel, lists(), render_gradient);
-        return sums_.end(kernel, owners);
+        return sums_.end(kernel, strip_.has_value(), owners);
     }
     /// See `gradient_sums`.
     std::uint32_t* fault() const { return sums_.fault(); }

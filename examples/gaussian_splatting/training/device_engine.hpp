@@ -234,8 +234,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         const std::vector<photo>& views_;
     };
 
-    camera training_camera(std::size_t view) override {
-        return features_.seen_by(view, views_.train(0)[view].camera);
+    camera training_camera(std::size_t view, const camera& given) override {
+        return features_.seen_by(view, given);
     }
 
     camera refined_camera(std::size_t test_view, const std::array<float, 3>& background) override {

@@ -21,8 +21,8 @@ struct first_columns {
 };
 
 /// Returns the camera of a held-out view with a refined pose: see `learned_cameras`. `draw`
-/// renders a camera with the renderer. `loss` has the photo as its target. Treats the effects of
-/// features on the render, such as exposures, as constant.
+/// renders a camera with the renderer. `loss` has the photo as its target. Effects that
+/// features have on the render, such as exposures, pass the gradient through unchanged.
 template <class Renderer, class Draw>
 camera refine_pose(typename Renderer::device_type& device, Renderer& renderer,
                    features::device_features<Renderer>& features, loss<float>& loss, std::size_t test_view,

@@ -156,7 +156,8 @@ TEST_CASE("poses: fixed-point sums give the same poses and cameras each time") {
         CHECK(values == second->feature("poses").values());
         CHECK(std::ranges::any_of(values, [](float x) { return std::abs(x) > 1e-3f; }));
         CHECK(first->get_model().mean == second->get_model().mean);
-        CHECK(first->cameras().training_camera(3).rotation != scene.train[3].camera.rotation);
+        CHECK(first->cameras().training_camera(3, scene.train[3].camera).rotation !=
+              scene.train[3].camera.rotation);
     }
 }
 
@@ -164,8 +165,9 @@ TEST_CASE("poses: without the feature, cameras keep their poses") {
     const gs::scene scene = small_scene("synthetic:spheres", 32);
     const auto e = gs::train::make_cpu_engine();
     e->set_views(scene.train, {}, 0);
-    CHECK(e->cameras().training_camera(2).rotation == scene.train[2].camera.rotation);
-    CHECK(e->cameras().training_camera(2).translation == scene.train[2].camera.translation);
+    CHECK(e->cameras().training_camera(2, scene.train[2].camera).rotation == scene.train[2].camera.rotation);
+    CHECK(e->cameras().training_camera(2, scene.train[2].camera).translation ==
+          scene.train[2].camera.translation);
 }
 
 TEST_CASE("poses: the results are poses in world coordinates, and a run without the effect removes them") {
@@ -179,7 +181,7 @@ TEST_CASE("poses: the results are poses in world coordinates, and a run without 
     const auto json = nlohmann::json::parse(std::ifstream(folder / "poses.json"));
     CHECK(json.size() == scene.train.size());
     const auto& pose = json.at(scene.train[5].name);
-    const gs::camera learned = e->cameras().training_camera(5);
+    const gs::camera learned = e->cameras().training_camera(5, scene.train[5].camera);
     const glm::dvec3 center = scene.normalization.to_world(learned.center());
     for (std::size_t row = 0; row < 3; ++row) {
         const int r = static_cast<int>(row);

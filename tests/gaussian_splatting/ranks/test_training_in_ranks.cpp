@@ -112,6 +112,22 @@ TEST_CASE("ranks: any number of them writes the same model, with exposures and S
                        density_control + words{"--effects", "auto,+exposure,+direction,+poses"});
 }
 
+TEST_CASE("ranks: any number of them learns the same poses, and the first refines those of held-out photos") {
+    const temporary_folder folder;
+    const auto train_in = [&](int ranks) {
+        const fs::path output = folder / std::to_string(ranks);
+        check_success(short_training("synthetic:spheres,poses=1,views=8", output, ranks, 32) +
+                          words{"-i", "40", "--eval", "--effects", "poses"},
+                      "2");
+        return output;
+    };
+    const fs::path one = train_in(1), two = train_in(2);
+    CHECK(read_file(two / "poses.json") == read_file(one / "poses.json"));
+    const double refined = read_json(two / "metrics.json").at("refined_psnr");
+    CHECK(refined ==
+          doctest::Approx(read_json(one / "metrics.json").at("refined_psnr").get<double>()).epsilon(1e-3));
+}
+
 TEST_CASE("ranks: any number of them revises the SH degree alike, from equal measurements") {
     // The revision is in an iteration without densification, after which ranks have old Gaussians.
     check_equal_models(

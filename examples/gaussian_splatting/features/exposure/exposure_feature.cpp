@@ -139,7 +139,9 @@ void exposure_feature::write_results(const selected_feature& selected, train::en
     const auto of_training = exposures_from(engine.feature(name()).values());
     const nlohmann::ordered_json all{{"train", to_json(scene.train, of_training)},
                                      {"test", to_json(scene.test, held_out_exposures(scene, of_training))}};
-    atomic_file_write(file, [&](std::ostream& out) { out << all.dump(2) << '\n'; });
+    atomic_file_write(file, [&](std::ostream& out) {
+        out << all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    });
 }
 
 }  // namespace gs::features

@@ -136,7 +136,8 @@ class common_motion {
 }  // namespace
 
 std::vector<given_pose> given_poses(const scene& scene) {
-    constexpr std::size_t most_points = 2000;
+    constexpr std::size_t most_points = 20000, least_points = 10;
+    constexpr double least_depth = internal_extent / 20;  // nearer, a shift would turn the camera a lot
     const std::size_t step = scene.points.size() / most_points + 1;
     std::vector<given_pose> poses;
     for (const view& v : scene.train) {
@@ -146,10 +147,10 @@ std::vector<given_pose> given_poses(const scene& scene) {
             if (const auto seen = c.see(scene.points[i].position);
                 seen && seen->x >= 0 && seen->y >= 0 && seen->x < c.width && seen->y < c.height)
                 depths.push_back(seen->depth);
-        const double depth = c.is_panorama    ? std::numeric_limits<double>::infinity()
-                             : depths.empty() ? scene.extent()
-                                              : median(depths);
-        poses.push_back({c, depth});
+        const double depth = c.is_panorama                  ? std::numeric_limits<double>::infinity()
+                             : depths.size() < least_points ? scene.extent()
+                                                            : median(depths);
+        poses.push_back({c, std::max(depth, least_depth)});
     }
     return poses;
 }

@@ -21,8 +21,8 @@ inline constexpr unsigned pose_width = 6;
 /// changes them in another way than a turn, so that gradient descent converges.
 using pose_change = std::array<float, pose_width>;
 
-/// The unit of shifts in a normalized scene. Larger units make steps so large that shifts, which change
-/// photos little, drift.
+/// The unit of shifts in a normalized scene. With a larger unit, one step moves the camera farther. Shifts
+/// change photos only a little, so they would drift.
 inline constexpr double shift_unit = 0.5;
 
 /// A camera as the scene's files describe it.
@@ -32,7 +32,7 @@ struct given_pose {
 };
 
 /// Returns the pose of each training view. The depth is the median of a sample of the points in the
-/// image, or the extent of the scene if there are none.
+/// image, or the extent of the scene if there are too few. It is at least a twentieth of the extent.
 std::vector<given_pose> given_poses(const scene& scene);
 
 /// Returns the camera with a changed pose. Any finite change gives a valid pose.

@@ -16,8 +16,8 @@ namespace gs::features {
 
 /// A sink of `raster::project_backward` that sums the gradient with respect to a pose change. To turn
 /// or shift the camera has the effect of the opposite motion of all Gaussians, except that colors
-/// depend on the position of the camera and not on its rotation. Leaves out Gaussians whose gradients
-/// are not finite.
+/// depend on the position of the camera and not on its rotation. A learned sky has no part in it. Leaves out
+/// Gaussians whose gradients are not finite.
 struct pose_gradient {
     raster::mat3<float> by_turn, by_shift, turning;  ///< see `pose_derivatives`
     train::ordered_sums sums;                        ///< `pose_width` sums over all Gaussians

@@ -56,13 +56,21 @@ std::vector<float> poses_feature::neutral_values(const scene& scene) const {
     return depths;
 }
 
+std::string poses_feature::obstacle(const scene& scene, const std::vector<float>&) const {
+    constexpr std::size_t least_views = 4;  // fewer have hardly any changes besides a common motion
+    if (scene.train.size() >= least_views) return {};
+    return "to correct poses takes at least " + std::to_string(least_views) + " training photos";
+}
+
 void poses_feature::schedule(const selected_feature& selected, train::training& training) const {
     if (!selected.on) return;
     const std::vector<given_pose> given = given_poses(training.scene());
     const int views = static_cast<int>(given.size());
     training.add({train::phase::upkeep, "remove the common motion of poses",
+                  // Not in the last steps, in which the Gaussians could not follow.
                   [=, &training](int iteration) {
-                      return iteration % views == 0 || iteration == training.schedule().iterations.last();
+                      return iteration % views == 0 &&
+                             iteration + views <= training.schedule().iterations.last();
                   },
                   [given, &training](int) {
                       auto& state = training.engine().feature("poses");
@@ -80,10 +88,14 @@ void poses_feature::write_results(const selected_feature& selected, train::engin
         return;
     }
     auto all = nlohmann::ordered_json::object();
-    for (std::size_t v = 0; v < scene.train.size(); ++v)
+    for (std::size_t v = 0; v < scene.train.size(); ++v) {
+        const camera& given = scene.train[v].camera;
         all[scene.train[v].name] =
-            to_json(scene.train[v].camera, engine.cameras().training_camera(v), scene.normalization);
-    atomic_file_write(file, [&](std::ostream& out) { out << all.dump(2) << '\n'; });
+            to_json(given, engine.cameras().training_camera(v, given), scene.normalization);
+    }
+    atomic_file_write(file, [&](std::ostream& out) {
+        out << all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    });
 }
 
 }  // namespace gs::features

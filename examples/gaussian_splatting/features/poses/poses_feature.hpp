@@ -21,6 +21,7 @@ class poses_feature final : public feature {
     finding analyze(const scene_statistics& statistics) const override;
     explanation explain(const scene_statistics& statistics, const finding& found) const override;
     std::vector<float> neutral_values(const scene& scene) const override;
+    std::string obstacle(const scene& scene, const std::vector<float>& depths) const override;
     void schedule(const selected_feature& selected, train::training& training) const override;
     /// Writes poses.json: the learned pose of each training photo and its difference from the given
     /// one, in world coordinates.

@@ -77,15 +77,15 @@ class gradient_sums {
         using in_memory = std::remove_pointer_t<decltype(kernel.sums)>;
         device_.for_each_index(sums_.size() / record_stride, set_red_aside<in_memory>{kernel.sums});
     }
-    /// Called after the kernel. Adds the sums of all ranks, and returns them as `Real`. With `owners`, a
-    /// rank gets the sums of its own share of the Gaussians only.
+    /// Called after the kernel. Returns the sums as `Real`. If `adds_ranks`, first adds those of all ranks.
+    /// With `owners`, a rank gets the sums of its own share of the Gaussians only.
     template <class Kernel>
-    const buffer<Real>& end(const Kernel& kernel, const ranks::shares* owners = nullptr) {
+    const buffer<Real>& end(const Kernel& kernel, bool adds_ranks, const ranks::shares* owners) {
         if constexpr (std::is_same_v<std::remove_pointer_t<decltype(kernel.sums)>, Real>) {
-            add_ranks(sums_.data(), owners);
+            if (adds_ranks) add_ranks(sums_.data(), owners);
         } else {
             if constexpr (requires { kernel.how.accumulating().fault; })
-                add_ranks(reinterpret_cast<std::int64_t*>(cells_.data()), owners);
+                if (adds_ranks) add_ranks(reinterpret_cast<std::int64_t*>(cells_.data()), owners);
             float unit = 1;
             if constexpr (requires { kernel.how.accumulating().scale; })
                 unit = 1 / kernel.how.accumulating().scale;
