@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "../../core/median.hpp"
+#include "../../core/solve.hpp"
 
 namespace gs::features {
 namespace {
@@ -105,27 +106,14 @@ class common_motion {
         }
     }
 
-    /// Solves the normal equations by Cholesky's method. The unknowns of a few cameras depend on each other,
-    /// so a small multiple of the identity is added.
-    row solve() {
+    /// Returns the fit. The unknowns of a few cameras depend on each other, so a small multiple of the
+    /// identity is added.
+    row fit() const {
         double trace = 0;
         for (std::size_t i = 0; i < unknowns; ++i) trace += normal_[i][i];
-        for (std::size_t i = 0; i < unknowns; ++i) normal_[i][i] += 1e-6 * trace;
-        row x = right_;
-        for (std::size_t i = 0; i < unknowns; ++i) {
-            for (std::size_t j = 0; j <= i; ++j) {
-                double sum = normal_[i][j];
-                for (std::size_t k = 0; k < j; ++k) sum -= normal_[i][k] * normal_[j][k];
-                normal_[i][j] = i == j ? std::sqrt(sum) : sum / normal_[j][j];
-            }
-            for (std::size_t k = 0; k < i; ++k) x[i] -= normal_[i][k] * x[k];
-            x[i] /= normal_[i][i];
-        }
-        for (std::size_t i = unknowns; i-- > 0;) {
-            for (std::size_t k = i + 1; k < unknowns; ++k) x[i] -= normal_[k][i] * x[k];
-            x[i] /= normal_[i][i];
-        }
-        return x;
+        auto normal = normal_;
+        for (std::size_t i = 0; i < unknowns; ++i) normal[i][i] += 1e-6 * trace;
+        return solve(normal, right_);
     }
 
   private:
@@ -179,7 +167,7 @@ void remove_common_motion(const std::vector<given_pose>& given, std::vector<floa
         const common_motion::rows rows = common_motion::rows_of(given[v]);
         for (std::size_t k = 0; k < pose_width; ++k) common.add(rows[k], value_of(v, k));
     }
-    const common_motion::row fit = common.solve();
+    const common_motion::row fit = common.fit();
     for (std::size_t v = 0; v < given.size(); ++v) {
         const common_motion::rows rows = common_motion::rows_of(given[v]);
         for (std::size_t k = 0; k < pose_width; ++k)

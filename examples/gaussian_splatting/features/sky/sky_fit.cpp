@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "../../core/parallel.hpp"
+#include "../../core/solve.hpp"
 #include "../../model/gaussians.hpp"
 #include "../../model/spherical_harmonics.hpp"
 
@@ -53,26 +54,12 @@ struct equations {
             for (std::size_t b = 0; b <= a; ++b) left[a][b] += weight * other.left[a][b];
         }
     }
-    /// Solves the equations by Cholesky factorization, with a small ridge penalty on the
-    /// coefficients.
-    std::array<glm::dvec3, terms> solve() const {
+    /// Solves the equations, with a small ridge penalty on the coefficients.
+    std::array<glm::dvec3, terms> solution() const {
         constexpr double ridge = 0.1;  // in cells
-        auto factor = left;
-        auto x = right;
-        for (std::size_t a = 0; a < terms; ++a) {
-            factor[a][a] += ridge;
-            for (std::size_t b = 0; b <= a; ++b) {
-                for (std::size_t k = 0; k < b; ++k) factor[a][b] -= factor[a][k] * factor[b][k];
-                factor[a][b] = a == b ? std::sqrt(factor[a][a]) : factor[a][b] / factor[b][b];
-            }
-            for (std::size_t k = 0; k < a; ++k) x[a] -= factor[a][k] * x[k];
-            x[a] /= factor[a][a];
-        }
-        for (std::size_t a = terms; a-- > 0;) {
-            for (std::size_t k = a + 1; k < terms; ++k) x[a] -= factor[k][a] * x[k];
-            x[a] /= factor[a][a];
-        }
-        return x;
+        auto penalized = left;
+        for (std::size_t k = 0; k < terms; ++k) penalized[k][k] += ridge;
+        return solve(penalized, right);
     }
 };
 
@@ -118,7 +105,7 @@ sky_fit fit_sky(const scene& of, const std::vector<photo_cells>& cells, const st
         for_each_in_parallel(photos.size(), [&](std::size_t v) {
             equations others = sum;
             others.add(own[v], -1);
-            const auto predicted = others.solve();
+            const auto predicted = others.solution();
             for (std::size_t i = 0; i < rest[v].size(); ++i) rest[v][i] = distance(photos[v][i], predicted);
         });
     }
@@ -134,7 +121,7 @@ sky_fit fit_sky(const scene& of, const std::vector<photo_cells>& cells, const st
     found.empty = static_cast<double>(empty) / static_cast<double>(all);
     found.share = static_cast<double>(predicted) / static_cast<double>(all);
     if (predicted > 0) found.brightness = (colors.r + colors.g + colors.b) / (3.0 * double(predicted));
-    for (const glm::dvec3& x : sum.solve())
+    for (const glm::dvec3& x : sum.solution())
         for (int c = 0; c < 3; ++c) found.coefficients.push_back(static_cast<float>(x[c]));
     return found;
 }
