@@ -41,10 +41,11 @@ std::size_t at(std::size_t view, unsigned k) { return view * pose_width + k; }
 
 /// Trains with poses, or without, and returns the engine.
 std::unique_ptr<gs::train::engine> trained(make_engine make, const gs::scene& scene, bool learns,
-                                           gs::accumulator sums = gs::accumulator::native) {
+                                           gs::accumulator sums = gs::accumulator::native,
+                                           int iterations = 60) {
     auto e = make();
     gs::train::train_options o;
-    o.schedule.iterations = 500;
+    o.schedule.iterations = iterations;
     o.schedule.sh_degree = 0;
     o.max_cap = 3000;
     o.gradient = sums;
@@ -121,11 +122,12 @@ TEST_CASE("poses: a motion of the whole scene and a change in camera space are r
 }
 
 TEST_CASE("poses: training and refinement correct poses that are wrong") {
-    const gs::scene scene = small_scene("synthetic:spheres,poses=1", 64);
+    const gs::scene scene = small_scene("synthetic:spheres,poses=2,views=24", 48);
     for (const auto make : engines()) {
+        constexpr std::size_t views = 2;
         const auto psnr_of = [&](gs::train::engine& e, bool refines) {
             double sum = 0;
-            for (std::size_t v = 0; v < scene.test.size(); ++v) {
+            for (std::size_t v = 0; v < views; ++v) {
                 const auto render =
                     e.render(refines ? e.cameras().refined_camera(v, {}) : scene.test[v].camera, {});
                 const auto photo = over_background(scene.test[v].pixels, std::array<float, 3>{}.data());
@@ -134,16 +136,17 @@ TEST_CASE("poses: training and refinement correct poses that are wrong") {
                     square += std::pow(static_cast<double>(render[i] - photo[i]), 2);
                 sum += -10 * std::log10(square / static_cast<double>(render.size()));
             }
-            return sum / static_cast<double>(scene.test.size());
+            return sum / static_cast<double>(views);
         };
-        const auto without = trained(make, scene, false), with = trained(make, scene, true);
+        const auto without = trained(make, scene, false, gs::accumulator::native, 400),
+                   with = trained(make, scene, true, gs::accumulator::native, 400);
         const double given = psnr_of(*without, false), refined = psnr_of(*without, true),
                      learned = psnr_of(*with, true);
         CAPTURE(given);
         CAPTURE(refined);
         CAPTURE(learned);
-        CHECK(refined > given + 0.5);
-        CHECK(learned > refined + 2);
+        CHECK(refined > given + 3);
+        CHECK(learned > refined + 0.6);
     }
 }
 
