@@ -121,7 +121,7 @@ TEST_CASE("poses: a motion of the whole scene and a change in camera space are r
     for (const float x : of_one) CHECK(std::abs(x) < 1e-3f);
 }
 
-TEST_CASE("poses: training and refinement correct poses that are wrong") {
+TEST_CASE("long: poses: training and refinement correct poses that are wrong") {
     const gs::scene scene = small_scene("synthetic:spheres,poses=2,views=24", 48);
     for (const auto make : engines()) {
         constexpr std::size_t views = 2;
