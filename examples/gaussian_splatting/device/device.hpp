@@ -68,9 +68,8 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 /// - `narrow_warp`: the same for kernels that hold many values per lane; may have fewer lanes.
 /// - `buffer<T>`: see `buffer_of`.
 /// - `host_buffer<T>`: see `buffer_of`.
-/// - `transfer`: a copy by `begin_upload` or `begin_download`. `is_done()` returns whether it has finished,
-/// or was never
-///   begun. `wait()` waits for it.
+/// - `transfer`: a copy by `begin_upload` or `begin_download`. `is_done()` returns whether it has
+///   finished, or was never begun. `wait()` waits for it.
 ///
 /// Properties
 /// - `name()`: kind and model for reports, such as "cuda, NVIDIA H200".

@@ -26,7 +26,7 @@ struct adam_from_sums {
     ordered_sums sums;
     float *values, *first, *second;  ///< parameters, first and second moments
     float rate, correction;          ///< alpha / (1 - beta1^t), 1 / sqrt(1 - beta2^t) in step t
-    float beta2;
+    float beta2;                     ///< decay of the second moments
     raster::list_capacity capacity;
 
     static constexpr float beta1 = 0.9f, epsilon = 1e-15f;

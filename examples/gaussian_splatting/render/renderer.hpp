@@ -171,8 +171,7 @@ class renderer {
         const Real* sums = backward_to_splats(render_gradient, largest, how);
         backward_from_splats(sums, learned_sh_degree, sink, seen);
     }
-    /// The first part of `backward`. Returns the sums of each Gaussian over pixels, of the own Gaussians
-    /// of this rank.
+    /// The first part of `backward`. Returns the sums over pixels of each of the `own_gaussians`.
     const Real* backward_to_splats(const Real* render_gradient, float largest, accumulator how) {
         const Real* sums = sums_by_pixel(render_gradient, largest, how, owners());
         if (shares_gaussians()) sums = visible_.by_gaussian(sums, count_);
@@ -192,7 +191,8 @@ class renderer {
         });
     }
 
-    /// Returns the sums over pixels of each Gaussian that was drawn, without those of other ranks.
+    /// Returns the sums over pixels of each Gaussian that was drawn. With a strip, these are the sums over
+    /// the strips of all ranks. Precondition: the strip does not `shares_gaussians`.
     const Real* pixel_sums(const Real* render_gradient, float largest, accumulator how) {
         return sums_by_pixel(render_gradient, largest, how, nullptr);
     }

@@ -16,9 +16,9 @@ inline constexpr unsigned pose_width = 6;
 
 /// A change of a camera pose, relative to the pose in the scene's files, in camera space of the given
 /// pose. Values 0 to 2 turn the camera about its center: a rotation vector in radians. Values 3 to 5 shift
-/// the center, in units of `shift_unit`, and turn the camera so that what it looks at stays in place:
-/// see `given_pose::depth`. Photos hardly tell a small shift from a turn, but this kind of shift
-/// changes them in another way than a turn, so that gradient descent converges.
+/// the center, in units of `shift_unit`. A shift also turns the camera, so that the point on its axis at
+/// `given_pose::depth` stays at its place in the photo. A shift alone and a turn would have similar
+/// effects on a photo, and gradient descent would converge slowly.
 using pose_change = std::array<float, pose_width>;
 
 /// The unit of shifts in a normalized scene. With a larger unit, one step moves the camera farther. Shifts
@@ -28,7 +28,7 @@ inline constexpr double shift_unit = 0.5;
 /// A camera as the scene's files describe it.
 struct given_pose {
     gs::camera camera;
-    double depth;  ///< typical depth of what it shows; infinite for panoramas
+    double depth;  ///< typical depth of the scene in the photo; infinite for panoramas
 };
 
 /// Returns the pose of each training view. The depth is the median of a sample of the points in the
@@ -49,10 +49,10 @@ struct pose_derivatives {
 /// al. 2018, equation 145).
 pose_derivatives derivatives_of(const given_pose& given, const pose_change& change);
 
-/// Removes from the changes of all views what they have in common: a motion of the whole scene, which no
-/// photo shows, and a change that is the same in camera space, which the scene can nearly make up for.
-/// Without this, training drifts along both. Errors of given poses are assumed to have neither.
-/// `given`: one pose per view. Fits both by least squares.
+/// Removes two parts that the changes of all views have in common. One is a motion of the whole scene,
+/// which no photo shows. The other is a change that is the same for all cameras in camera space, for
+/// which the scene can nearly compensate. Without this, training drifts along both. Assumes that errors
+/// of given poses have neither part. `given`: one pose per view. Fits both parts by least squares.
 void remove_common_motion(const std::vector<given_pose>& given, std::vector<float>& changes);
 
 /// Returns the change of one of the views whose changes are in a row.
