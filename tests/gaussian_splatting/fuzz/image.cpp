@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "harness.hpp"
+#include "image/jpeg_planes.hpp"
 
 namespace gs_fuzz {
 namespace {
@@ -60,6 +63,17 @@ std::size_t decoding(std::string_view bytes, int width, int height) {
     return decoding(width, height) + tables;
 }
 
+/// Two ways to read a JPEG give the same pixels.
+void read_both_ways(const std::filesystem::path& file) {
+    const gs::image expected = gs::read_image(file);
+    if (gs::jpeg_plane_bytes(file) == 0) return;
+    gs::jpeg_planes planes;
+    gs::read_jpeg_planes(file, planes);
+    std::vector<std::uint8_t> rgba(expected.rgba.size());
+    gs::to_rgba(planes, rgba.data());
+    if (rgba != expected.rgba) throw std::logic_error("read_jpeg_planes gives other pixels than read_image");
+}
+
 }  // namespace
 
 bool image(std::string_view input) {
@@ -71,9 +85,10 @@ bool image(std::string_view input) {
     };
     if (!load_within_budget(bytes, read_size, [&] { return parsing(bytes.size()); })) return false;
     if (width > most_pixels / height) return false;
-    return load_within_budget(
-        bytes, [](const std::filesystem::path& file) { gs::read_image(file); },
-        [&] { return parsing(bytes.size()) + decoding(bytes, width, height); });
+    return load_within_budget(bytes, read_both_ways, [&] {
+        const std::size_t second_copy = 6 * padded(width) * padded(height);
+        return parsing(bytes.size()) + decoding(bytes, width, height) + second_copy;
+    });
 }
 
 }  // namespace gs_fuzz

@@ -18,10 +18,11 @@ struct jpeg_kind {
     bool progressive = false;
     bool adobe_marker = false;  ///< only for four channels
     bool ycck = false;          ///< converts CMYK to YCCK
+    int pixels_across = 1;      ///< pixels per value of color, along rows
+    int pixels_down = 1;        ///< and along columns
 };
 
-/// Writes a JPEG of the highest quality and without subsampling, so that only rounding changes the
-/// pixels.
+/// Writes a JPEG of the highest quality. Without subsampling, only rounding changes the pixels.
 inline void write_jpeg(const std::filesystem::path& file, int width, int height, const jpeg_kind& kind,
                        std::vector<std::uint8_t> samples) {
     std::FILE* out = std::fopen(file.c_str(), "wb");
@@ -39,7 +40,8 @@ inline void write_jpeg(const std::filesystem::path& file, int width, int height,
     if (jpeg.input_components == 4) jpeg.write_Adobe_marker = kind.adobe_marker ? TRUE : FALSE;
     jpeg_set_quality(&jpeg, 100, TRUE);
     if (kind.progressive) jpeg_simple_progression(&jpeg);
-    jpeg.comp_info[0].h_samp_factor = jpeg.comp_info[0].v_samp_factor = 1;
+    jpeg.comp_info[0].h_samp_factor = kind.pixels_across;
+    jpeg.comp_info[0].v_samp_factor = kind.pixels_down;
     jpeg_start_compress(&jpeg, TRUE);
     const std::size_t row_bytes = static_cast<std::size_t>(width * jpeg.input_components);
     while (jpeg.next_scanline < jpeg.image_height) {

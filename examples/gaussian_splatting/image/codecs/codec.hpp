@@ -33,6 +33,8 @@ struct image_codec {
 
 inline constexpr std::size_t probed_bytes = 32;
 
+extern const image_codec heif_codec, jpeg_codec, png_codec, webp_codec;
+
 /// Returns all codecs, in the order in which `codec_of` calls their `probe`.
 std::span<const image_codec* const> all_image_codecs();
 

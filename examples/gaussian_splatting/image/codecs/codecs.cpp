@@ -10,8 +10,6 @@
 
 namespace gs {
 
-extern const image_codec heif_codec, jpeg_codec, png_codec, webp_codec;
-
 std::span<const image_codec* const> all_image_codecs() {
     static constexpr const image_codec* all[] = {&png_codec, &jpeg_codec, &webp_codec, &heif_codec};
     return all;
