@@ -18,6 +18,11 @@ inline std::size_t packed_bytes(const camera& size, bool has_depths) {
     return ((has_depths ? 6 : 4) * pixels + 15) / 16 * 16;
 }
 
+/// Returns the number of bytes of the photo of a streamed view that stays in host memory, in full size.
+inline std::size_t kept_bytes(const view& v) {
+    return v.plane_bytes > 0 ? v.plane_bytes : packed_bytes(v.camera, v.depths.is_there());
+}
+
 /// Returns the index of the first byte of the depth map in a packed photo.
 inline std::size_t depths_offset(const camera& size) {
     return 4 * static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);

@@ -44,12 +44,13 @@ std::uint64_t most_resident_bytes(const photo_limits& limits) {
 photo_plan plan_photos(std::span<const view> train, std::span<const view> held_out,
                        const photo_limits& limits, std::size_t threads) {
     photo_plan plan{.slots = device_slots};
-    std::uint64_t all = 0;
+    std::uint64_t all = 0, all_kept = 0;
     const view* largest = nullptr;
     for (const auto views : {train, held_out})
         for (const view& v : views) {
             const std::uint64_t bytes = packed_bytes(v.camera, v.depths.is_there());
             all += bytes;
+            all_kept += kept_bytes(v);
             if (bytes > plan.photo_bytes) largest = &v;
             plan.photo_bytes = std::max(plan.photo_bytes, bytes);
             plan.worker_bytes = std::max<std::uint64_t>(plan.worker_bytes, v.decode_bytes);
@@ -62,11 +63,15 @@ photo_plan plan_photos(std::span<const view> train, std::span<const view> held_o
     while (plan.workers < threads && fits(with_workers(plan, plan.workers + 1), half(limits)))
         plan = with_workers(plan, plan.workers + 1);
     const std::uint64_t left = limits.total - plan.on_host() - plan.on_device();
-    plan.device_bytes = std::min({left, limits.device - plan.on_device(), all});
+    const std::uint64_t host = limits.host - plan.on_host();
+    const std::uint64_t device = std::min(limits.device - plan.on_device(), all);
+    // Where memory is short, it goes to the host if more photos fit into it there.
+    const std::uint64_t first_on_host = left < all && all_kept < all ? std::min({left, host, all_kept}) : 0;
+    plan.device_bytes = std::min(left - first_on_host, device);
+    if (plan.device_bytes == all) return plan;
     // Photos are not divided, so the last bytes on the device may stay unused.
-    plan.host_bytes = std::min(
-        {left - plan.device_bytes, limits.host - plan.on_host(), all - plan.device_bytes + plan.photo_bytes});
-    if (plan.device_bytes == all) plan.host_bytes = 0;
+    const std::uint64_t most = std::max(first_on_host, all - plan.device_bytes + plan.photo_bytes);
+    plan.host_bytes = std::min({left - plan.device_bytes, host, most});
     return plan;
 }
 

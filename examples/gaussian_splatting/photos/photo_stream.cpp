@@ -144,6 +144,8 @@ std::shared_ptr<const photo_stream::kept_photo> photo_stream::fill(buffer& b,
                                                                    std::shared_ptr<const kept_photo> kept,
                                                                    photo& scratch) {
     const photo_request& request = b.photo.of;
+    if (request.level == 0 && views_[request.view].read_planes && (request.keep || kept != nullptr))
+        return fill_from_planes(b, std::move(kept));
     photo small;
     if (kept == nullptr) try {
             decode(request, scratch, small);
@@ -152,12 +154,28 @@ std::shared_ptr<const photo_stream::kept_photo> photo_stream::fill(buffer& b,
             return nullptr;
         }
     photo& decoded = request.level > 0 ? small : scratch;
-    const photo& found = kept != nullptr ? static_cast<const photo&>(*kept) : decoded;
+    const photo& found = kept != nullptr ? kept->decoded : decoded;
     pack(found.pixels, found.depths, b.photo.bytes);
     b.photo.has_mask = found.pixels.has_mask;
     b.photo.has_depths = found.depths.is_there();
     if (!request.keep || kept != nullptr) return nullptr;
-    return std::make_shared<const kept_photo>(kept_photo{std::move(decoded), request.level});
+    return std::make_shared<const kept_photo>(kept_photo{std::move(decoded), {}, request.level});
+}
+
+/// Like `fill`, for a photo that stays in host memory as the samples of its file.
+std::shared_ptr<const photo_stream::kept_photo> photo_stream::fill_from_planes(
+    buffer& b, std::shared_ptr<const kept_photo> kept) const {
+    std::shared_ptr<kept_photo> read;
+    if (kept == nullptr) try {
+            kept = read = std::make_shared<kept_photo>();
+            views_[b.photo.of.view].read_planes(read->planes);
+        } catch (...) {
+            b.failure = std::current_exception();
+            return nullptr;
+        }
+    to_rgba(kept->planes, b.photo.bytes);
+    b.photo.has_mask = b.photo.has_depths = false;
+    return read;
 }
 
 /// Decodes a photo into `full`, and into `small` if the request asks for a smaller size.

@@ -69,13 +69,18 @@ class photo_stream {
         photo_stream::state state = photo_stream::state::empty;
         std::exception_ptr failure;
     };
-    struct kept_photo : photo {
+    /// A photo in host memory: its samples if the view has `read_planes` and the size is the full one.
+    struct kept_photo {
+        photo decoded;
+        jpeg_planes planes;
         std::size_t level = 0;
     };
     using lock = std::unique_lock<std::mutex>;
 
     void work();
     std::shared_ptr<const kept_photo> fill(buffer& b, std::shared_ptr<const kept_photo> kept, photo& scratch);
+    std::shared_ptr<const kept_photo> fill_from_planes(buffer& b,
+                                                       std::shared_ptr<const kept_photo> kept) const;
     void decode(const photo_request& request, photo& full, photo& small) const;
     buffer* find(const photo_request& request);
     buffer* find_empty();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "../core/error.hpp"
+#include "../image/jpeg_planes.hpp"
 #include "../image/mask.hpp"
 
 namespace gs {
@@ -64,6 +65,14 @@ std::size_t load_bytes(const photo_source& source) {
     return bytes * full + (wanted < full ? 4 * wanted : 0);
 }
 
+/// Returns whether `photo_source::load` only reads the photo.
+bool is_as_stored(const photo_source& source) {
+    const image_record& record = source.record;
+    return record.distortion.is_none() && source.fitted.turn == orientation() && record.mask.empty() &&
+           record.depth.empty() && record.masked_border == 0 &&
+           pixels_of(source.scaled) == pixels_of(source.fitted.taken_with);
+}
+
 }  // namespace
 
 photo photo_source::load() const {
@@ -109,6 +118,12 @@ view streamed_view(std::shared_ptr<const photo_source> source) {
     result.pixels.rgba = std::vector<std::uint8_t>();
     result.depths.values = std::vector<std::uint16_t>();
     result.decode_bytes = load_bytes(*source);
+    if (is_as_stored(*source)) result.plane_bytes = jpeg_plane_bytes(source->record.file);
+    if (result.plane_bytes > 0)
+        result.read_planes = [source, stamps](jpeg_planes& into) {
+            for (const file_stamp& stamp : stamps) stamp.check();
+            read_jpeg_planes(source->record.file, into);
+        };
     result.decode = [source = std::move(source), stamps = std::move(stamps)](photo& into) {
         for (const file_stamp& stamp : stamps) stamp.check();
         source->load(into);

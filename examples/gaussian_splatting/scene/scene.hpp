@@ -11,6 +11,7 @@
 
 #include "../image/depth_map.hpp"
 #include "../image/image.hpp"
+#include "../image/jpeg_planes.hpp"
 #include "camera.hpp"
 #include "lens.hpp"
 #include "normalization.hpp"
@@ -37,6 +38,10 @@ struct view {
     /// view was made.
     std::function<void(photo&)> decode{};
     std::size_t decode_bytes = 0;  ///< largest size of the images that `decode` holds at once
+    /// Reads samples that `to_rgba` converts to the pixels that `decode` returns. Empty if the photo is
+    /// not exactly as a JPEG stores it. Throws like `decode`.
+    std::function<void(jpeg_planes&)> read_planes{};
+    std::size_t plane_bytes = 0;  ///< size of these samples, or 0
 
     bool is_streamed() const { return decode != nullptr; }
 };

@@ -51,7 +51,7 @@ class photo_cache final : public photo_prefetch {
         for (slot& s : slots_) s.memory.resize(plan.photo_bytes);
         lasting_.resize(plan.device_bytes);
         device_.wait();
-        for (const view& v : views) sizes_.push_back({v.camera, v.depths.is_there()});
+        for (const view& v : views) sizes_.push_back({v.camera, v.depths.is_there(), photos::kept_bytes(v)});
         stream_ = std::make_unique<photos::photo_stream>(std::move(views), plan.workers, buffers);
         set_level(0);
     }
@@ -72,10 +72,11 @@ class photo_cache final : public photo_prefetch {
         std::uint64_t used = 0, kept = 0;
         for (std::size_t v = 0; v < sizes_.size(); ++v) {
             const std::uint64_t bytes = packed_bytes_of({v, level});
+            const std::uint64_t on_host = level == 0 ? sizes_[v].kept_bytes : bytes;
             if (used + bytes <= lasting_.size()) {
                 places_[v].first = std::exchange(used, used + bytes);
-            } else if (kept + bytes <= host_bytes_) {
-                kept += bytes;
+            } else if (kept + on_host <= host_bytes_) {
+                kept += on_host;
                 places_[v].stays_on_host = true;
             }
         }
@@ -139,6 +140,7 @@ class photo_cache final : public photo_prefetch {
     struct photo_size {
         camera full;
         bool has_depths;
+        std::uint64_t kept_bytes;  ///< on the host, in full size
     };
     /// The lasting place of a view, at the size level of the cache.
     struct place {

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "../../support/temporary_folder.hpp"
+#include "../image/write_jpeg.hpp"
 #include "known_scene.hpp"
 #include "readers/load_views.hpp"
 #include "scene/view_photo.hpp"
@@ -73,6 +75,48 @@ TEST_CASE("streamed views: photos are the same as those of resident views") {
             CHECK(photo.depths().values == resident[i].depths.values);
         }
     }
+}
+
+TEST_CASE("streamed views: a JPEG that is used as it is has samples that take less memory") {
+    const temporary_folder folder;
+    gs::image_record record;
+    record.name = "photo.jpg";
+    record.camera = gs_test::known_scene().train[0].camera;
+    record.file = folder.path() / record.name;
+    gs_test::write_jpeg(record.file, 48, 48, {JCS_RGB, false, false, false, 2, 2},
+                        gs_test::smooth_samples(48, 48, 3));
+    gs::load_options options;
+    options.most_photo_bytes = 0;
+    const auto streamed_view = [&](const gs::image_record& of) {
+        return gs::load_views({of}, options, [](const std::string&) {}).front();
+    };
+    const gs::view view = streamed_view(record);
+    CHECK(view.plane_bytes == 48 * 48 * 3 / 2);
+    REQUIRE(view.read_planes);
+    gs::jpeg_planes planes;
+    view.read_planes(planes);
+    const gs::view_photo decoded(view);
+    std::vector<std::uint8_t> rgba(decoded.pixels().rgba.size());
+    gs::to_rgba(planes, rgba.data());
+    CHECK(rgba == decoded.pixels().rgba);
+
+    gs::image_record changed = record;
+    changed.masked_border = 3;
+    CHECK_FALSE(streamed_view(changed).read_planes);
+    changed = record;
+    changed.distortion = {0.1, 0.01, 0, 0, 0};
+    CHECK_FALSE(streamed_view(changed).read_planes);
+    changed = record;
+    changed.mask = folder.path() / "mask.png";
+    std::vector<float> half(3 * 48 * 48, 1.0F);
+    std::fill(half.begin(), half.begin() + 48, 0.0F);
+    gs::write_png(changed.mask, 48, 48, half);
+    CHECK_FALSE(streamed_view(changed).read_planes);
+    options.resolution = 2;
+    CHECK_FALSE(streamed_view(record).read_planes);
+
+    fs::last_write_time(record.file, fs::last_write_time(record.file) + std::chrono::seconds(2));
+    CHECK(says(error_of([&] { view.read_planes(planes); }), {"photo.jpg", "has changed", "--resume"}));
 }
 
 TEST_CASE("streamed views: files that change or vanish are reported with their names") {

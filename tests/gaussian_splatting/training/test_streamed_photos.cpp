@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <string>
@@ -45,6 +47,46 @@ gs::scene streamed(const gs::scene& of, const std::function<void(const std::stri
         }
     return result;
 }
+
+/// A scene whose photos are JPEG files, once with photos in memory and once with photos that are read on
+/// request.
+struct scene_of_jpegs {
+    gs_test::temporary_folder folder;
+    gs::scene resident, streamed;
+    std::atomic<int> decoded = 0;      ///< calls of `view::decode`
+    std::atomic<int> planes_read = 0;  ///< calls of `view::read_planes`
+
+    explicit scene_of_jpegs(gs::scene of) : resident(std::move(of)) {
+        for (gs::view& v : resident.train) {
+            const auto file = folder.path() / (v.name + ".jpg");
+            std::filesystem::create_directories(file.parent_path());
+            std::vector<std::uint8_t> rgb;
+            for (std::size_t i = 0; i < v.pixels.rgba.size(); ++i)
+                if (i % 4 < 3) rgb.push_back(v.pixels.rgba[i]);
+            const auto bytes = gs::encode_jpeg(v.camera.width, v.camera.height, rgb, 90);
+            std::ofstream(file, std::ios::binary)
+                .write(reinterpret_cast<const char*>(bytes.data()),
+                       static_cast<std::streamsize>(bytes.size()));
+            v.pixels = gs::read_image(file);
+        }
+        resident.test.clear();
+        streamed = resident;
+        for (gs::view& v : streamed.train) {
+            const auto file = folder.path() / (v.name + ".jpg");
+            v.pixels.rgba.clear();
+            v.decode_bytes = 4 * static_cast<std::size_t>(v.camera.width * v.camera.height);
+            v.decode = [this, file](gs::photo& into) {
+                ++decoded;
+                gs::read_image(file, into.pixels);
+            };
+            v.plane_bytes = gs::jpeg_plane_bytes(file);
+            v.read_planes = [this, file](gs::jpeg_planes& into) {
+                ++planes_read;
+                gs::read_jpeg_planes(file, into);
+            };
+        }
+    }
+};
 
 std::uint64_t bytes_of(const std::vector<gs::view>& views) {
     std::uint64_t bytes = 0;
@@ -154,6 +196,29 @@ TEST_CASE("streamed photos: photos within the limits are decoded once per size, 
     // Photos that stay in host memory are not decoded again either.
     CHECK(decoded_with({.total = 2 * least + 2 * all, .device = least / 2}) == views);
     CHECK(decoded_with({.total = least}) >= 3 * views);
+}
+
+TEST_CASE("streamed photos: JPEGs stay on the host as samples, of which more fit into the limit") {
+    scene_of_jpegs scene(small_scene("synthetic:spheres", 48));
+    const std::uint64_t least = least_total(scene.streamed), all = bytes_of(scene.streamed.train);
+    std::uint64_t kept = 0;
+    for (const gs::view& v : scene.streamed.train) kept += gs::photos::kept_bytes(v);
+    REQUIRE(kept < all / 2);
+    const photo_limits limits{.total = 4 * least + kept};
+    const auto plan = gs::photos::plan_photos(scene.streamed.train, {}, limits, 1);
+    CHECK(plan.on_host() + plan.on_device() <= limits.total);
+    CHECK(plan.host_bytes + plan.device_bytes < all);
+    gs::train::train_options o;
+    o.schedule.iterations = 3 * static_cast<int>(scene.streamed.train.size());
+    o.schedule.num_downscales = 0;
+    o.gradient = gs::accumulator::fixed;
+    for (const auto make : engines()) {
+        const streamed_outcome expected = trained(make, scene.resident, o, {});
+        scene.decoded = scene.planes_read = 0;
+        check_equal(trained(make, scene.streamed, o, limits).model, expected.model);
+        CHECK(scene.decoded + scene.planes_read == static_cast<int>(scene.streamed.train.size()));
+        CHECK(scene.planes_read > static_cast<int>(scene.streamed.train.size()) / 2);
+    }
 }
 
 TEST_CASE("streamed photos: a run that continues from a checkpoint gives the same model bit for bit") {
