@@ -65,7 +65,7 @@ photo_plan plan_photos(std::span<const view> train, std::span<const view> held_o
     const std::uint64_t left = limits.total - plan.on_host() - plan.on_device();
     const std::uint64_t host = limits.host - plan.on_host();
     const std::uint64_t device = std::min(limits.device - plan.on_device(), all);
-    // Where memory is short, it goes to the host if more photos fit into it there.
+    // If memory is short, the host gets its share first, if more photos fit there.
     const std::uint64_t first_on_host = left < all && all_kept < all ? std::min({left, host, all_kept}) : 0;
     plan.device_bytes = std::min(left - first_on_host, device);
     if (plan.device_bytes == all) return plan;

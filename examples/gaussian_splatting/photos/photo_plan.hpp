@@ -42,9 +42,9 @@ std::uint64_t most_resident_bytes(const photo_limits& limits);
 
 /// Divides the memory for streamed views. Decoding gets at most half of it, for up to `threads`
 /// workers. The photos that stay in device memory get the remaining memory of the device, and those
-/// in host memory what is left. If that is not enough for all photos, and they take fewer bytes on
-/// the host, the host comes first. Throws `error` with the smallest sufficient limit if the limits are
-/// too small.
+/// in host memory get the rest. If there is not enough memory for all photos, and photos take fewer
+/// bytes on the host, the host gets its share first. Throws `error` with the smallest sufficient
+/// limit if the limits are too small.
 photo_plan plan_photos(std::span<const view> train, std::span<const view> held_out,
                        const photo_limits& limits, std::size_t threads);
 
