@@ -80,10 +80,14 @@ TEST_CASE("long: detection recommends the effects that a scene was made with, an
         INFO(c.scene);
         const gs::scene scene = made(c.scene);
         const gs::scene_statistics statistics(scene);
-        REQUIRE(all_features().size() == 8);
+        REQUIRE(all_features().size() == 9);
         for (const auto& f : all_features()) {
             INFO(f->name());
             const finding found = f->analyze(statistics);
+            if (f->name() == "poses") {  // only training can tell
+                CHECK_FALSE(found.recommended);
+                continue;
+            }
             REQUIRE(found.recommended);
             CHECK(*found.recommended == c.effects.contains(std::string(f->name())));
         }
