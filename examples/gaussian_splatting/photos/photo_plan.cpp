@@ -69,8 +69,9 @@ photo_plan plan_photos(std::span<const view> train, std::span<const view> held_o
     const std::uint64_t first_on_host = left < all && all_kept < all ? std::min({left, host, all_kept}) : 0;
     plan.device_bytes = std::min(left - first_on_host, device);
     if (plan.device_bytes == all) return plan;
-    // Photos are not divided, so the last bytes on the device may stay unused.
-    const std::uint64_t most = std::max(first_on_host, all - plan.device_bytes + plan.photo_bytes);
+    // Photos are not divided, so the last bytes on the device may stay unused. All sizes of a photo have
+    // at most 4/3 of its pixels.
+    const std::uint64_t most = std::max(first_on_host, (all - plan.device_bytes + plan.photo_bytes) / 3 * 4);
     plan.host_bytes = std::min({left - plan.device_bytes, host, most});
     return plan;
 }

@@ -11,10 +11,19 @@
 #include "packed_photo.hpp"
 
 namespace gs::photos {
+namespace {
+
+/// Halves the full size of a photo `level` times.
+photo halved(const view& of, const photo& full, std::size_t level) {
+    const camera size = downsampled(of.camera, 1 << level);
+    return {downsample(full.pixels, size.width, size.height), resized(full.depths, size.width, size.height)};
+}
+
+}  // namespace
 
 photo_stream::photo_stream(std::vector<view> views, std::size_t workers,
                            const std::vector<std::uint8_t*>& buffers)
-    : views_(std::move(views)) {
+    : views_(std::move(views)), levels_to_keep_(views_.size()) {
     for (std::uint8_t* bytes : buffers) {
         buffers_.emplace_back();
         buffers_.back().photo.bytes = bytes;
@@ -54,7 +63,7 @@ bool photo_stream::is_ready(const photo_request& request) {
 const staged_photo& photo_stream::take(const photo_request& request) {
     lock locked(mutex_);
     buffer& found = wait_for(locked, request);
-    const auto first = std::ranges::find_if(expected_, [&](const auto& r) { return r.is_same(request); });
+    const auto first = std::ranges::find_if(expected_, [&](const auto& r) { return r == request; });
     if (first != expected_.end()) expected_.erase(first);
     if (found.failure) {
         found.state = state::empty;
@@ -77,10 +86,14 @@ void photo_stream::release(const staged_photo& photo) {
     changed_.notify_all();
 }
 
-void photo_stream::keep_level(std::size_t level) {
+void photo_stream::keep(std::vector<level_range> kept) {
     const lock locked(mutex_);
-    kept_level_ = level;
-    kept_.clear();
+    levels_to_keep_ = std::move(kept);
+    drop_unwanted(kept_);
+}
+
+void photo_stream::drop_unwanted(kept_photos& photos) const {
+    std::erase_if(photos, [&](const auto& p) { return !levels_to_keep_[p.first.view].has(p.first.level); });
 }
 
 /// Waits until a photo is decoded. If it was not expected, it is decoded next, in place of the
@@ -88,7 +101,7 @@ void photo_stream::keep_level(std::size_t level) {
 photo_stream::buffer& photo_stream::wait_for(lock& locked, const photo_request& request) {
     buffer* found = find(request);
     if (found == nullptr) {
-        std::erase_if(expected_, [&](const photo_request& r) { return r.is_same(request); });
+        std::erase_if(expected_, [&](const photo_request& r) { return r == request; });
         expected_.push_front(request);
         changed_.notify_all();
     } else if (!is_expected(request)) {
@@ -125,72 +138,70 @@ void photo_stream::work() {
         empty->state = state::decoding;
         empty->photo.of = *next;
         empty->failure = nullptr;
-        const auto found = kept_.find(empty->photo.of.view);
-        std::shared_ptr<const kept_photo> kept = found == kept_.end() ? nullptr : found->second;
-        if (kept != nullptr && kept->level != empty->photo.of.level) kept = nullptr;
+        const auto found = kept_.find(*next);
+        const std::shared_ptr<const kept_photo> kept = found == kept_.end() ? nullptr : found->second;
+        const level_range to_keep = levels_to_keep_[next->view];
         locked.unlock();
-        kept = fill(*empty, std::move(kept), scratch);
+        kept_photos made = fill(*empty, kept, to_keep, scratch);
         locked.lock();
-        if (kept != nullptr && kept->level == kept_level_) kept_[empty->photo.of.view] = std::move(kept);
+        drop_unwanted(made);
+        kept_.merge(made);
         empty->state = is_expected(empty->photo.of) ? state::ready : state::empty;
         changed_.notify_all();
     }
 }
 
-/// Copies a kept photo to the buffer, or decodes it. Returns the decoded photo if the request asks to
-/// keep it. Reuses the memory of `scratch`, because fresh memory costs as much time
-/// as decoding. Runs without the lock.
-std::shared_ptr<const photo_stream::kept_photo> photo_stream::fill(buffer& b,
-                                                                   std::shared_ptr<const kept_photo> kept,
-                                                                   photo& scratch) {
-    const photo_request& request = b.photo.of;
-    if (request.level == 0 && views_[request.view].read_planes && (request.keep || kept != nullptr))
-        return fill_from_planes(b, std::move(kept));
-    photo small;
-    if (kept == nullptr) try {
-            decode(request, scratch, small);
-        } catch (...) {
-            b.failure = std::current_exception();
-            return nullptr;
+/// Copies a kept photo to the buffer, or decodes it and returns the sizes to keep. Runs without the
+/// lock.
+photo_stream::kept_photos photo_stream::fill(buffer& b, std::shared_ptr<const kept_photo> kept,
+                                             level_range to_keep, photo& scratch) const {
+    kept_photos made;
+    try {
+        if (kept == nullptr) {
+            made = read(b.photo.of, to_keep, scratch);
+            if (const auto found = made.find(b.photo.of); found != made.end()) kept = found->second;
         }
-    photo& decoded = request.level > 0 ? small : scratch;
-    const photo& found = kept != nullptr ? kept->decoded : decoded;
-    pack(found.pixels, found.depths, b.photo.bytes);
-    b.photo.has_mask = found.pixels.has_mask;
-    b.photo.has_depths = found.depths.is_there();
-    if (!request.keep || kept != nullptr) return nullptr;
-    return std::make_shared<const kept_photo>(kept_photo{std::move(decoded), {}, request.level});
+        if (kept != nullptr && !kept->planes.samples.empty()) {
+            to_rgba(kept->planes, b.photo.bytes);
+            b.photo.has_mask = b.photo.has_depths = false;
+            return made;
+        }
+        const photo& found = kept != nullptr ? kept->decoded : scratch;
+        pack(found.pixels, found.depths, b.photo.bytes);
+        b.photo.has_mask = found.pixels.has_mask;
+        b.photo.has_depths = found.depths.is_there();
+    } catch (...) {
+        b.failure = std::current_exception();
+    }
+    return made;
 }
 
-/// Like `fill`, for a photo that stays in host memory as the samples of its file.
-std::shared_ptr<const photo_stream::kept_photo> photo_stream::fill_from_planes(
-    buffer& b, std::shared_ptr<const kept_photo> kept) const {
-    std::shared_ptr<kept_photo> read;
-    if (kept == nullptr) try {
-            kept = read = std::make_shared<kept_photo>();
-            views_[b.photo.of.view].read_planes(read->planes);
-        } catch (...) {
-            b.failure = std::current_exception();
-            return nullptr;
-        }
-    to_rgba(kept->planes, b.photo.bytes);
-    b.photo.has_mask = b.photo.has_depths = false;
-    return read;
-}
-
-/// Decodes a photo into `full`, and into `small` if the request asks for a smaller size.
-void photo_stream::decode(const photo_request& request, photo& full, photo& small) const {
+/// Reads the requested size of a view and those to keep. Returns them, but leaves the full size in
+/// `scratch` if it is requested and not kept. Reuses the memory of `scratch`, because fresh memory costs
+/// as much time as decoding. Runs without the lock.
+photo_stream::kept_photos photo_stream::read(const photo_request& request, level_range to_keep,
+                                             photo& scratch) const {
     const view& of = views_[request.view];
-    gs::decode(of, full);
-    if (request.level == 0) return;
-    const camera size = downsampled(of.camera, 1 << request.level);
-    small.pixels = downsample(full.pixels, size.width, size.height);
-    small.depths = resized(full.depths, size.width, size.height);
+    kept_photos made;
+    const auto make = [&](std::size_t level) -> kept_photo& {
+        const auto kept = std::make_shared<kept_photo>();
+        made.emplace(photo_request{request.view, level}, kept);
+        return *kept;
+    };
+    const bool reads_planes = of.read_planes && to_keep.has(0);
+    if (!reads_planes || request.level > 0 || to_keep.end > 1) gs::decode(of, scratch);
+    for (std::size_t level = std::max(to_keep.end, request.level + 1); --level > 0;)
+        if (to_keep.has(level) || level == request.level) make(level).decoded = halved(of, scratch, level);
+    if (reads_planes)
+        of.read_planes(make(0).planes);
+    else if (to_keep.has(0))
+        make(0).decoded = std::move(scratch);
+    return made;
 }
 
 photo_stream::buffer* photo_stream::find(const photo_request& request) {
     const auto found = std::ranges::find_if(buffers_, [&](const buffer& b) {
-        return (b.state == state::decoding || b.state == state::ready) && b.photo.of.is_same(request);
+        return (b.state == state::decoding || b.state == state::ready) && b.photo.of == request;
     });
     return found == buffers_.end() ? nullptr : &*found;
 }
@@ -207,7 +218,7 @@ const photo_request* photo_stream::next_request() {
 }
 
 bool photo_stream::is_expected(const photo_request& request) const {
-    return std::ranges::any_of(expected_, [&](const auto& r) { return r.is_same(request); });
+    return std::ranges::any_of(expected_, [&](const auto& r) { return r == request; });
 }
 
 }  // namespace gs::photos

@@ -21,9 +21,24 @@ namespace gs::photos {
 struct photo_request {
     std::size_t view = 0;
     std::size_t level = 0;
-    bool keep = false;  ///< whether the decoded photo stays in host memory
 
-    bool is_same(const photo_request& other) const { return view == other.view && level == other.level; }
+    bool operator==(const photo_request&) const = default;
+    auto operator<=>(const photo_request&) const = default;
+};
+
+/// The size levels from `first` up to, but without, `end`.
+struct level_range {
+    std::size_t first = 0;
+    std::size_t end = 0;
+
+    bool has(std::size_t level) const { return first <= level && level < end; }
+    /// Adds a level below all others. Returns false if there is a gap.
+    bool extend_to(std::size_t level) {
+        if (first == end) *this = {level + 1, level + 1};
+        if (first != level + 1) return false;
+        first = level;
+        return true;
+    }
 };
 
 /// A packed photo in host memory: see `pack`.
@@ -59,8 +74,8 @@ class photo_stream {
     /// Returns the exception that `take` would throw, or null. Waits like `take`.
     std::exception_ptr failure_of(const photo_request& request);
     void release(const staged_photo& photo);
-    /// Drops the photos that stay in host memory. Keeps photos of this size level from now on.
-    void keep_level(std::size_t level);
+    /// Sets which photos stay in host memory once their view is decoded, by view. Drops all others there.
+    void keep(std::vector<level_range> kept);
 
   private:
     enum class state { empty, decoding, ready, taken };
@@ -73,15 +88,15 @@ class photo_stream {
     struct kept_photo {
         photo decoded;
         jpeg_planes planes;
-        std::size_t level = 0;
     };
+    using kept_photos = std::map<photo_request, std::shared_ptr<const kept_photo>>;
     using lock = std::unique_lock<std::mutex>;
 
     void work();
-    std::shared_ptr<const kept_photo> fill(buffer& b, std::shared_ptr<const kept_photo> kept, photo& scratch);
-    std::shared_ptr<const kept_photo> fill_from_planes(buffer& b,
-                                                       std::shared_ptr<const kept_photo> kept) const;
-    void decode(const photo_request& request, photo& full, photo& small) const;
+    kept_photos fill(buffer& b, std::shared_ptr<const kept_photo> kept, level_range to_keep,
+                     photo& scratch) const;
+    kept_photos read(const photo_request& request, level_range to_keep, photo& scratch) const;
+    void drop_unwanted(kept_photos& photos) const;
     buffer* find(const photo_request& request);
     buffer* find_empty();
     const photo_request* next_request();
@@ -93,8 +108,8 @@ class photo_stream {
     std::condition_variable changed_;
     std::deque<buffer> buffers_;
     std::deque<photo_request> expected_;
-    std::map<std::size_t, std::shared_ptr<const kept_photo>> kept_;  ///< by view
-    std::size_t kept_level_ = 0;
+    kept_photos kept_;
+    std::vector<level_range> levels_to_keep_;  ///< by view
     bool ends_ = false;
     std::vector<std::jthread> workers_;
 };

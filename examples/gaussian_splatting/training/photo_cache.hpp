@@ -65,22 +65,21 @@ class photo_cache final : public photo_prefetch {
     photo_cache(const photo_cache&) = delete;
     photo_cache& operator=(const photo_cache&) = delete;
 
-    /// Gives lasting places to the first views, as many as fit at this size level.
+    /// Gives lasting places to the first views, as many as fit at this size level. Host memory that
+    /// remains is for larger sizes of the views that stay there.
     void set_level(std::size_t level) {
         level_ = level;
-        places_.assign(sizes_.size(), {});
-        std::uint64_t used = 0, kept = 0;
-        for (std::size_t v = 0; v < sizes_.size(); ++v) {
-            const std::uint64_t bytes = packed_bytes_of({v, level});
-            const std::uint64_t on_host = level == 0 ? sizes_[v].kept_bytes : bytes;
-            if (used + bytes <= lasting_.size()) {
-                places_[v].first = std::exchange(used, used + bytes);
-            } else if (kept + on_host <= host_bytes_) {
-                kept += on_host;
-                places_[v].stays_on_host = true;
+        places_ = places_at(level);
+        std::uint64_t left = host_bytes_;
+        std::vector<photos::level_range> kept(places_.size());
+        for (std::size_t larger = level + 1; larger-- > 0;) {
+            const std::vector<place> places = places_at(larger);
+            for (std::size_t v = 0; v < places.size(); ++v) {
+                const std::uint64_t bytes = kept_bytes_of({v, larger});
+                if (places[v].stays_on_host && bytes <= left && kept[v].extend_to(larger)) left -= bytes;
             }
         }
-        stream_->keep_level(level);
+        stream_->keep(std::move(kept));
     }
 
     /// Returns the size of the device memory for photos.
@@ -95,10 +94,8 @@ class photo_cache final : public photo_prefetch {
         expected_ = std::move(next);
         for (slot& s : slots_) s.is_needed = s.is_needed && is_expected(s.of);
         std::vector<request> missing;
-        for (request& r : expected_) {
-            r.keep = stays_on_host(r);
+        for (const request& r : expected_)
             if (!find(r)) missing.push_back(r);
-        }
         stream_->expect(std::move(missing));
     }
 
@@ -108,10 +105,10 @@ class photo_cache final : public photo_prefetch {
         const request r{view, level};
         if (!find(r)) {
             if (!stream_->is_ready(r)) release_uploaded(true);
-            upload({view, level, stays_on_host(r)});
+            upload(r);
         }
         for (const photos::staged_photo& s : uploads_)
-            if (s.of.is_same(r)) device_.await(transfers_[s.number]);
+            if (s.of == r) device_.await(transfers_[s.number]);
         for (slot& s : slots_)
             if (s.holds(r)) {
                 s.is_needed = false;
@@ -155,7 +152,7 @@ class photo_cache final : public photo_prefetch {
         bool is_needed = false;  ///< whether it is expected and was not used
         std::uint64_t last_use = 0;
 
-        bool holds(const request& r) const { return photo && of.is_same(r); }
+        bool holds(const request& r) const { return photo && of == r; }
     };
 
     std::uint64_t packed_bytes_of(const request& r) const {
@@ -163,10 +160,29 @@ class photo_cache final : public photo_prefetch {
         return photos::packed_bytes(r.level == 0 ? size.full : downsampled(size.full, 1 << r.level),
                                     size.has_depths);
     }
+    /// Returns the size of a photo in host memory.
+    std::uint64_t kept_bytes_of(const request& r) const {
+        return r.level == 0 ? sizes_[r.view].kept_bytes : packed_bytes_of(r);
+    }
+    /// Returns the places of the views at a size level.
+    std::vector<place> places_at(std::size_t level) const {
+        std::vector<place> places(sizes_.size());
+        std::uint64_t used = 0, kept = 0;
+        for (std::size_t v = 0; v < sizes_.size(); ++v) {
+            const std::uint64_t bytes = packed_bytes_of({v, level});
+            const std::uint64_t on_host = kept_bytes_of({v, level});
+            if (used + bytes <= lasting_.size()) {
+                places[v].first = std::exchange(used, used + bytes);
+            } else if (kept + on_host <= host_bytes_) {
+                kept += on_host;
+                places[v].stays_on_host = true;
+            }
+        }
+        return places;
+    }
     place* place_of(const request& r) {
         return r.level == level_ && places_[r.view].first != none ? &places_[r.view] : nullptr;
     }
-    bool stays_on_host(const request& r) const { return r.level == level_ && places_[r.view].stays_on_host; }
     std::optional<cached_photo> find(const request& r) {
         if (const place* p = place_of(r); p != nullptr && p->photo) return p->photo;
         for (const slot& s : slots_)
@@ -174,7 +190,7 @@ class photo_cache final : public photo_prefetch {
         return std::nullopt;
     }
     bool is_expected(const request& r) const {
-        return std::ranges::any_of(expected_, [&](const request& e) { return e.is_same(r); });
+        return std::ranges::any_of(expected_, [&](const request& e) { return e == r; });
     }
     bool has_free_slot() const { return !std::ranges::all_of(slots_, &slot::is_needed); }
 

@@ -18,6 +18,7 @@
 #include "features/exposure/exposure_feature.hpp"
 #include "photos/packed_photo.hpp"
 #include "photos/photo_plan.hpp"
+#include "photos/photo_stream.hpp"
 #include "training/initialize.hpp"
 #include "training/training.hpp"
 #include "training/view_order.hpp"
@@ -219,6 +220,52 @@ TEST_CASE("streamed photos: JPEGs stay on the host as samples, of which more fit
         CHECK(scene.decoded + scene.planes_read == static_cast<int>(scene.streamed.train.size()));
         CHECK(scene.planes_read > static_cast<int>(scene.streamed.train.size()) / 2);
     }
+}
+
+TEST_CASE("photo_stream: one decoding makes all sizes of a photo that stay in host memory") {
+    const gs::scene resident = small_scene("synthetic:spheres", 24);
+    std::atomic<int> decoded = 0;
+    const gs::scene scene = streamed(resident, [&](const std::string&) { ++decoded; });
+    const std::size_t views = scene.train.size();
+    std::vector<std::uint8_t> bytes(gs::photos::packed_bytes(scene.train[0].camera, false));
+    gs::photos::photo_stream stream(scene.train, 1, {bytes.data()});
+    const auto decodings = [&](std::size_t level) {
+        const int before = decoded;
+        for (std::size_t v = 0; v < views; ++v) {
+            stream.expect({{v, level}});
+            stream.release(stream.take({v, level}));
+        }
+        return static_cast<std::size_t>(decoded - before);
+    };
+    std::vector<gs::photos::level_range> kept(views, {0, 3});
+    kept[0] = {};
+    kept[1] = {1, 2};
+    stream.keep(kept);
+    CHECK(decodings(2) == views);
+    CHECK(decodings(1) == 1);
+    CHECK(decodings(0) == 2);
+    CHECK(bytes == resident.train.back().pixels.rgba);
+    stream.keep(std::vector<gs::photos::level_range>(views, {0, 1}));
+    CHECK(decodings(1) == views);
+    CHECK(decodings(0) == 0);
+    stream.keep(std::vector<gs::photos::level_range>(views));
+    CHECK(decodings(0) == views);
+}
+
+TEST_CASE("streamed photos: photos that fit into memory are decoded once, although their size changes") {
+    const gs::scene resident = small_scene("synthetic:spheres", 24);
+    std::atomic<int> decoded = 0;
+    const gs::scene scene = streamed(resident, [&](const std::string&) { ++decoded; });
+    gs::train::train_options o;
+    o.schedule.iterations = 6 * static_cast<int>(scene.train.size());
+    o.schedule.num_downscales = 2;
+    o.gradient = gs::accumulator::fixed;
+    const std::uint64_t least = least_total(scene), all = bytes_of(scene.train) + bytes_of(scene.test);
+    const photo_limits limits{.total = 4 * least + 3 * all, .device = least / 2};
+    const gs::gaussians expected = trained(gs::train::make_cpu_engine, resident, o, {}).model;
+    check_equal(trained(gs::train::make_cpu_engine, scene, o, limits).model, expected);
+    // One photo stays in device memory, and is decoded once per size.
+    CHECK(decoded.load() == static_cast<int>(scene.train.size() + scene.test.size()) + 2);
 }
 
 TEST_CASE("streamed photos: a run that continues from a checkpoint gives the same model bit for bit") {
