@@ -40,6 +40,13 @@ std::uint64_t device_limit(const settings& s, const device::profiler& device, in
     return (device.used_device_bytes() + own_device_bytes(device, ranks)) / 10 * 9;
 }
 
+train::moment_precision precision_for(const settings& s, const device::memory_forecast& with_floats,
+                                      std::uint64_t limit) {
+    using enum train::moment_precision;
+    if (s.precision) return *s.precision;
+    return limit > 0 && !s.deterministic && with_floats.total() > limit ? compact : full;
+}
+
 load_options with_limit(load_options source, const photos::photo_limits& limits) {
     source.most_photo_bytes = photos::most_resident_bytes(limits);
     return source;

@@ -26,6 +26,11 @@ load_options with_limit(load_options source, const photos::photo_limits& limits)
 /// Returns the memory for photos: empty if they are resident.
 photos::photo_plan photo_memory(const scene& of, const photos::photo_limits& limits);
 
+/// Returns --precision. If it is unset: compact if the forecast for float moments exceeds the limit, which
+/// may be 0 for none.
+train::moment_precision precision_for(const settings& s, const device::memory_forecast& with_floats,
+                                      std::uint64_t limit);
+
 /// Returns a line for the user about the expected memory with `most` Gaussians.
 std::string expected_memory(const device::memory_forecast& forecast, std::size_t most, std::uint64_t on_host);
 

@@ -11,6 +11,7 @@
 #include "../ranks/communicator.hpp"
 #include "../writers/writer.hpp"
 #include "convert_options.hpp"
+#include "memory_options.hpp"
 #include "page_options.hpp"
 #include "view_options.hpp"
 
@@ -220,22 +221,6 @@ rows output_options(settings& s) {
                                .is_recorded = false}});
 }
 
-rows memory_options(settings& s) {
-    return grouped(
-        "Memory",
-        {{.names = "--photo-memory",
-          .commands = {train},
-          .value = byte_size(s.photo_memory),
-          .help = "Largest size of decoded photos in memory, of host and device together; above it, "
-                  "photos stay in their files and threads decode them ahead of training",
-          .default_text = "a share of the memory that is available"},
-         {.names = "--max-memory",
-          .commands = {train},
-          .value = byte_size(s.max_memory),
-          .help = "Size of the device memory near which the number of Gaussians stops growing",
-          .default_text = "a share of the memory that is available, or none with --deterministic"}});
-}
-
 rows run_options(settings& s) {
     return grouped(
         "Device and reproducibility",
@@ -250,8 +235,7 @@ rows run_options(settings& s) {
          {.names = "--deterministic",
           .commands = {train},
           .value = flag(s.deterministic),
-          .help = "Makes runs with the same seed write the same model bit for bit, with any number of "
-                  "threads, ranks and GPUs; training takes longer"},
+          .help = "Makes runs with the same seed write the same bits; training takes longer"},
          {.names = "--gpus",
           .commands = {train},
           .value = count_or_all(s.gpus, ranks::most_ranks),
@@ -462,8 +446,8 @@ std::vector<option> option_table(settings& s) {
     for (auto& group :
          {model_options(s), scene_options(s), pose_options(s), output_options(s), page_options(s),
           video_options(s), view_options(s), checkpoint_options(s), length_options(s), effect_options(s),
-          learning_rate_options(s), densification_options(s), strategy_options(s), memory_options(s),
-          evaluation_options(s), convert_options(s), run_options(s)})
+          learning_rate_options(s), densification_options(s), strategy_options(s),
+          grouped("Memory", memory_options(s)), evaluation_options(s), convert_options(s), run_options(s)})
         table.insert(table.end(), group.begin(), group.end());
     return table;
 }

@@ -16,6 +16,7 @@
 #include "../edit/edit.hpp"
 #include "../features/resolve.hpp"
 #include "../losses/loss.hpp"
+#include "../optimize/moment_precision.hpp"
 #include "../options/command.hpp"
 #include "../options/enum_names.hpp"
 #include "../readers/load_scene.hpp"
@@ -81,7 +82,8 @@ struct settings {
     std::optional<int> num_downscales;   ///< if unset, the size of the photos decides
     std::optional<std::size_t> max_cap;  ///< if unset, the size of the photos decides
     std::optional<std::uint64_t> photo_memory,
-        max_memory;  ///< limits in bytes; if unset, see `memory_limits`
+        max_memory;                                    ///< limits in bytes; if unset, see `memory_limits`
+    std::optional<train::moment_precision> precision;  ///< if unset, see `precision_for`
     bool fit_exposure = false;
     std::string lpips;  ///< file of weights; if empty, LPIPS is not computed
     std::set<int> save_iterations;

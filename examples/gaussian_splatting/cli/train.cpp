@@ -96,6 +96,9 @@ class training_run {
     /// Ends the program after Ctrl-C, or after a page of the live view has asked to stop.
     [[noreturn]] void end_early();
     void say_expected_memory();
+    int first_sh_degree() const {
+        return features::first_sh_degree(options_.features.values_if_on("direction"));
+    }
     void warn(const std::string& line);
     void save(int iteration);
     /// Sets aside the earlier run that --overwrite replaces. Call it before the first result is
@@ -152,6 +155,8 @@ training_run::training_run(const settings& s, const load_options& source,
     options_.features.prepare(scene_, model);
     engine_->set_views(scene_.train, scene_.test, options_.schedule.num_downscales, photo_memory_);
     engine_->set_model(model);
+    options_.precision = precision_for(s_, engine_->profile().forecast(options_.max_cap, first_sh_degree()),
+                                       options_.max_device_bytes);
     measures_.load_seconds = loading_.seconds();
     measures_.device = engine_->profile().device_name();
     if (ranks_.count() > 1) measures_.device += ", " + std::to_string(ranks_.count()) + " ranks";
@@ -174,6 +179,9 @@ void training_run::resume() {
     exchange_history(archive, measures_.history);
     measures_.tests = parse_json(tests, "the value of tests in " + checkpoint_->file.string());
     options_.resume_from = &archive;
+    options_.precision = train::precision_in(archive);
+    if (s_.precision && *s_.precision != options_.precision)
+        context_.say("--precision remains " + name_of(options_.precision) + ", as in the checkpoint");
     context_.say("continuing after iteration " + std::to_string(checkpoint_->iteration) + ", from " +
                  checkpoint_->file.string());
     const std::string changes =
@@ -210,12 +218,11 @@ train::train_events training_run::events() {
 }
 
 void training_run::say_expected_memory() {
-    const int sh_degree = features::first_sh_degree(options_.features.values_if_on("direction"));
     if (photo_memory_.workers > 0)
         context_.say("photos stay in their files: " + std::to_string(photo_memory_.workers) +
                      (photo_memory_.workers == 1 ? " thread decodes" : " threads decode") + " them ahead");
-    context_.say(expected_memory(engine_->profile().forecast(options_.max_cap, sh_degree), options_.max_cap,
-                                 photos_on_host(scene_, photo_memory_)));
+    context_.say(expected_memory(engine_->profile().forecast(options_.max_cap, first_sh_degree()),
+                                 options_.max_cap, photos_on_host(scene_, photo_memory_)));
 }
 
 void training_run::warn(const std::string& line) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -33,26 +32,25 @@ struct clear_ranked {
     WARPAGG_HD void operator()(std::size_t rank) const { flags[gaussian_of[rank]] = 0; }
 };
 
-/// Gathers values and moments of one parameter for the new generation, in whole blocks. One index
-/// per new value. Values are zero if the origin does not have the parameter.
-struct gather_parameters {
+/// Gathers an array of one parameter for the new generation, in whole blocks. One index per new element.
+/// Elements are zero if the origin does not have the parameter.
+template <class T>
+struct gather_array {
     std::size_t count;   ///< number of new Gaussians with the parameter, which come first
     std::size_t before;  ///< number of old Gaussians with it, which come first
     const std::uint32_t* origin;
     const birth* births;
     std::size_t width;
-    const float* from[3];
-    float* to[3];
+    bool are_moments;
+    const T* from;
+    T* to;
 
     WARPAGG_HD void operator()(std::size_t i) const {
         const std::size_t gaussian = i / (block_length * width) * block_length + i % block_length;
-        const bool exists = gaussian < count && origin[gaussian] < before,
-                   keeps = exists && (births[gaussian] == birth::kept || births[gaussian] == birth::original);
-        const std::size_t source =
-            exists ? aosoa_index(origin[gaussian], i / block_length % width, width) : std::size_t{0};
-        to[0][i] = exists ? from[0][source] : 0;
-        to[1][i] = keeps ? from[1][source] : 0;
-        to[2][i] = keeps ? from[2][source] : 0;
+        const bool exists = gaussian < count && origin[gaussian] < before;
+        const bool keeps = exists && (!are_moments || births[gaussian] == birth::kept ||
+                                      births[gaussian] == birth::original);
+        to[i] = keeps ? from[aosoa_index(origin[gaussian], i / block_length % width, width)] : T{0};
     }
 };
 
@@ -81,7 +79,7 @@ class parameter_gather {
         for (std::size_t p = 0; p < parameter_count; ++p)
             if (has_parameter(p, sh_degree))
                 widest = std::max<std::size_t>(widest, width_of(static_cast<parameter>(p)));
-        return 3 * widest * sizeof(float) + sizeof(birth) + 2 * sizeof(std::uint32_t);
+        return widest * sizeof(float) + sizeof(birth) + 2 * sizeof(std::uint32_t);
     }
 
     /// Sets the capacity of `origins` and `births` to `most` new Gaussians. Both lose their
@@ -99,9 +97,16 @@ class parameter_gather {
     /// block length or all, have SH coefficients of degrees 1 to `sh_degree`, which are zero if the
     /// origin has none. Does not wait for the device.
     void run(trained_parameters<Device>& all, std::size_t count, std::size_t with_sh, int sh_degree) {
-        for (std::size_t p = 0; p < parameter_count; ++p)
-            if (has_parameter(p, sh_degree)) gather(all, p, is_view_dependent(p) ? with_sh : count);
-        for (auto* arrays : {&all.values, &all.first, &all.second}) arrays->set_gaussians_with_sh(with_sh);
+        const std::size_t with_sh_before = all.values.gaussians_with_sh();
+        all.for_each([&](auto& memory) {
+            const bool are_values = static_cast<const void*>(&memory) == &all.values;
+            for (std::size_t p = 0; p < parameter_count; ++p)
+                if (has_parameter(p, sh_degree))
+                    gather(memory[p], memory.width(p), is_view_dependent(p) ? with_sh : count,
+                           is_view_dependent(p) ? with_sh_before : std::numeric_limits<std::size_t>::max(),
+                           !are_values);
+            memory.set_gaussians_with_sh(with_sh);
+        });
         spare_steps_.resize(count);
         device_.for_each_index(count,
                                gather_last_steps{origin_.data(), all.last_step.data(), spare_steps_.data()});
@@ -111,34 +116,31 @@ class parameter_gather {
 
     /// Frees temporary memory. Call it if another `run` is unlikely.
     void release() {
-        for (auto& s : spare_) s = buffer<float>();
+        spare_ = {};
+        spare_words_ = {};
     }
 
   private:
-    void gather(trained_parameters<Device>& all, std::size_t p, std::size_t count) {
-        const std::size_t width = width_of(static_cast<parameter>(p)), n = in_whole_blocks(count) * width;
-        constexpr std::size_t every = std::numeric_limits<std::size_t>::max();
-        const std::array arrays{&all.values[p], &all.first[p], &all.second[p]};
-        for (auto& s : spare_) s.resize(n);
-        device_.for_each_index(
-            n, gather_parameters{count,
-                                 is_view_dependent(p) ? all.values.gaussians_with_sh() : every,
-                                 origin_.data(),
-                                 births_.data(),
-                                 width,
-                                 {arrays[0]->data(), arrays[1]->data(), arrays[2]->data()},
-                                 {spare_[0].data(), spare_[1].data(), spare_[2].data()}});
-        for (std::size_t k = 0; k < arrays.size(); ++k) {
-            if (n < arrays[k]->size()) *arrays[k] = buffer<float>();  // frees memory
-            arrays[k]->resize(n);
-            device_.copy(arrays[k]->data(), spare_[k].data(), n);
-        }
+    template <class T>
+    void gather(buffer<T>& array, std::size_t width, std::size_t count, std::size_t before,
+                bool are_moments) {
+        const std::size_t n = in_whole_blocks(count) * width;
+        auto& spare = this->spare(T{});
+        spare.resize(n);
+        device_.for_each_index(n, gather_array<T>{count, before, origin_.data(), births_.data(), width,
+                                                  are_moments, array.data(), spare.data()});
+        if (n < array.size()) array = {};  // frees memory
+        array.resize(n);
+        device_.copy(array.data(), spare.data(), n);
     }
+    buffer<float>& spare(float) { return spare_; }
+    buffer<std::uint32_t>& spare(std::uint32_t) { return spare_words_; }
 
     Device& device_;
     buffer<std::uint32_t> origin_;
     buffer<birth> births_;
-    std::array<buffer<float>, 3> spare_;  ///< values and moments of one parameter
+    buffer<float> spare_;  ///< for an array of floats
+    buffer<std::uint32_t> spare_words_;
     buffer<std::uint32_t> spare_steps_;
 };
 

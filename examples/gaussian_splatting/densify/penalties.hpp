@@ -20,13 +20,13 @@ namespace gs::train {
 /// have large second moments and hardly move. The moments of Gaussians that no view shows decay.
 struct lower_by_penalty {
     parameter_arrays<float> values;
-    parameter_arrays<const float> second;  ///< second moments
-    const std::uint32_t* last_step;        ///< last step that updated each Gaussian
-    std::uint32_t step;                    ///< number t of this step
-    float correction;                      ///< 1 / (1 - beta2^t) for the second moments
-    float opacity_rate, scale_rate;        ///< learning rates
-    float opacity_gradient;                ///< gradient of the penalty by an opacity
-    float scale_gradient;                  ///< gradient of the penalty by a scale
+    moment_arrays moments;
+    const std::uint32_t* last_step;  ///< last step that updated each Gaussian
+    std::uint32_t step;              ///< number t of this step
+    float correction;                ///< 1 / (1 - beta2^t) for the second moments
+    float opacity_rate, scale_rate;  ///< learning rates
+    float opacity_gradient;          ///< gradient of the penalty by an opacity
+    float scale_gradient;            ///< gradient of the penalty by a scale
     raster::list_capacity capacity;
 
     WARPAGG_HD void operator()(std::size_t i) const {
@@ -36,11 +36,13 @@ struct lower_by_penalty {
         const float missed = static_cast<float>(step) - static_cast<float>(last_step[i]);
         const float left = warpagg::math::exp2(-0.0014434168696687186f * missed) * correction;
         const float o = sigmoid(values.opacity[i]);
-        lower(values.opacity[i], left * second.opacity[i], opacity_rate, opacity_gradient * o * (1 - o));
+        lower(values.opacity[i], left * moments.second_of(parameter::opacity, i), opacity_rate,
+              opacity_gradient * o * (1 - o));
         if (scale_gradient == 0) return;
         for (std::size_t k = 0; k < 3; ++k) {
-            float& log_scale = values.log_scale[aosoa_index(i, k, 3)];
-            lower(log_scale, left * second.log_scale[aosoa_index(i, k, 3)], scale_rate,
+            const std::size_t at = aosoa_index(i, k, 3);
+            float& log_scale = values.log_scale[at];
+            lower(log_scale, left * moments.second_of(parameter::log_scale, at), scale_rate,
                   scale_gradient * glm::exp(log_scale));
         }
     }
@@ -68,13 +70,13 @@ void apply_penalties(const penalty_weights& weights, double extent, int iteratio
     const auto count = static_cast<double>(c.count);
     const double left = std::pow(adam<float>::beta2, iteration);
     c.device.for_each_index(
-        c.own, lower_by_penalty{c.parameters.values.write(), c.parameters.second.read(),
-                                c.parameters.last_step.data(), static_cast<std::uint32_t>(iteration),
-                                static_cast<float>(1 / (1 - left)),
-                                c.rates[static_cast<std::size_t>(parameter::opacity)],
-                                c.rates[static_cast<std::size_t>(parameter::log_scale)],
-                                static_cast<float>(weights.opacity / count),
-                                static_cast<float>(weights.scale / (3 * count * extent)), c.capacity});
+        c.own,
+        lower_by_penalty{c.parameters.values.write(), c.parameters.moments(), c.parameters.last_step.data(),
+                         static_cast<std::uint32_t>(iteration), static_cast<float>(1 / (1 - left)),
+                         c.rates[static_cast<std::size_t>(parameter::opacity)],
+                         c.rates[static_cast<std::size_t>(parameter::log_scale)],
+                         static_cast<float>(weights.opacity / count),
+                         static_cast<float>(weights.scale / (3 * count * extent)), c.capacity});
 }
 
 }  // namespace gs::train

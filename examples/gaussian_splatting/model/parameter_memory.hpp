@@ -14,28 +14,33 @@
 
 namespace gs {
 
-/// Arrays in device memory, one per parameter, with an element for each component of each Gaussian.
-/// Their layout is AoSoA: see `aosoa_index`.
-template <device::device Device>
+/// Arrays in device memory, one per parameter, with `Widths` elements for each Gaussian, by parameter:
+/// as many as the parameter has components, or another number for data about parameters. Their layout
+/// is AoSoA: see `aosoa_index`.
+template <device::device Device, class T = float, const auto& Widths = parameter_width>
 class parameter_memory {
   public:
-    using buffer = typename Device::template buffer<float>;
+    using buffer = typename Device::template buffer<T>;
 
-    /// Sets the number of Gaussians and the SH degree. Loses the contents. SH coefficients above
-    /// the degree have no memory.
-    void resize(std::size_t count, int sh_degree) {
-        for (std::size_t p = 0; p < parameter_count; ++p)
-            arrays_[p].resize(has_parameter(p, sh_degree)
-                                  ? in_whole_blocks(count) * width_of(static_cast<parameter>(p))
-                                  : 0);
-        gaussians_with_sh_ = count;
+    /// Returns the number of elements of a parameter for each Gaussian.
+    static constexpr std::size_t width(std::size_t p) { return static_cast<std::size_t>(Widths[p]); }
+
+    /// Sets the number of Gaussians, of those with SH coefficients above degree 0, and the SH degree.
+    /// Loses the contents. SH coefficients above the degree have no memory.
+    void resize(std::size_t count, std::size_t with_sh, int sh_degree) {
+        for (std::size_t p = 0; p < parameter_count; ++p) {
+            const std::size_t rows = is_view_dependent(p) ? with_sh : count;
+            arrays_[p].resize(has_parameter(p, sh_degree) ? in_whole_blocks(rows) * width(p) : 0);
+        }
+        gaussians_with_sh_ = with_sh;
     }
+    void resize(std::size_t count, int sh_degree) { resize(count, count, sh_degree); }
     /// Returns the size of the parameters of a Gaussian.
     static std::size_t bytes_per_gaussian(int sh_degree) {
         std::size_t values = 0;
         for (std::size_t p = 0; p < parameter_count; ++p)
-            if (has_parameter(p, sh_degree)) values += width_of(static_cast<parameter>(p));
-        return values * sizeof(float);
+            if (has_parameter(p, sh_degree)) values += width(p);
+        return values * sizeof(T);
     }
     /// Changes the SH degree and keeps the contents. Frees the coefficients above degree `to`; new
     /// coefficients above degree `from` are zero.
@@ -44,7 +49,7 @@ class parameter_memory {
             if (has_parameter(p, from) == has_parameter(p, to)) continue;
             arrays_[p] = buffer();
             if (!has_parameter(p, to)) continue;
-            arrays_[p].resize(in_whole_blocks(gaussians_with_sh_) * width_of(static_cast<parameter>(p)));
+            arrays_[p].resize(in_whole_blocks(gaussians_with_sh_) * width(p));
             device.zero(arrays_[p].data(), arrays_[p].size());
         }
     }
@@ -55,8 +60,8 @@ class parameter_memory {
     void set_gaussians_with_sh(std::size_t count) { gaussians_with_sh_ = count; }
     /// @}
 
-    parameter_arrays<const float> read() const { return pointers<const float>(); }
-    parameter_arrays<float> write() { return pointers<float>(); }
+    parameter_arrays<const T> read() const { return pointers<const T>(); }
+    parameter_arrays<T> write() { return pointers<T>(); }
 
     void zero(Device& device) {
         for (auto& a : arrays_) device.zero(a.data(), a.size());
@@ -65,9 +70,8 @@ class parameter_memory {
     void share(std::vector<ranks::shared_array>& arrays) const {
         for (std::size_t p = 0; p < parameter_count; ++p)
             if (arrays_[p].size() > 0)
-                arrays.push_back(ranks::shared_array::of(arrays_[p].data(),
-                                                         block_length * width_of(static_cast<parameter>(p)),
-                                                         arrays_[p].size()));
+                arrays.push_back(
+                    ranks::shared_array::of(arrays_[p].data(), block_length * width(p), arrays_[p].size()));
     }
     /// Saves or loads all arrays. Waits for the device.
     void exchange(state_archive& archive, Device& device) {
@@ -82,9 +86,7 @@ class parameter_memory {
         for (std::size_t p = 0; p < parameter_count; ++p) {
             const std::size_t rows = is_view_dependent(p) ? gaussians_with_sh_ : count;
             fits = fits &&
-                   arrays_[p].size() == (has_parameter(p, sh_degree)
-                                             ? in_whole_blocks(rows) * width_of(static_cast<parameter>(p))
-                                             : 0);
+                   arrays_[p].size() == (has_parameter(p, sh_degree) ? in_whole_blocks(rows) * width(p) : 0);
         }
         return fits;
     }

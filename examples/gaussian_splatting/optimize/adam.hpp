@@ -8,6 +8,7 @@
 #include "../render/geometry/list_capacity.hpp"
 #include "../render/project/gaussian_row.hpp"
 #include "finite_check.hpp"
+#include "moment_arrays.hpp"
 
 namespace gs::train {
 
@@ -24,17 +25,19 @@ using warpagg::math::select;
 /// and bias corrections. This is an approximation if k is large.
 ///
 /// A value and its moments stay as they are if the gradient is not finite or too large to square,
-/// or if the new value would not be finite. The missed steps are then forgotten. (The square of
+/// or if the new value would not be finite. The missed steps are then forgotten. Compact moments of an
+/// SH coefficient need this for all of its channels. (The square of
 /// such a gradient would prevent all later updates of the value.) Missed steps are also forgotten
 /// for SH coefficients that this step does not update.
 template <class Real>
 struct adam {
-    parameter_arrays<Real> values, first, second;  ///< parameters, first and second moments
-    std::uint32_t* last_step;                      ///< last step that updated each Gaussian
-    std::uint32_t step;                            ///< number t of this step, counted from 1
-    Real rates[parameter_count];                   ///< alpha / (1 - beta1^t)
-    Real correction;                               ///< 1 / sqrt(1 - beta2^t)
-    raster::list_capacity capacity;                ///< capacity of the view's tile lists
+    parameter_arrays<Real> values;
+    moment_arrays moments;
+    std::uint32_t* last_step;        ///< last step that updated each Gaussian
+    std::uint32_t step;              ///< number t of this step, counted from 1
+    Real rates[parameter_count];     ///< alpha / (1 - beta1^t)
+    Real correction;                 ///< 1 / sqrt(1 - beta2^t)
+    raster::list_capacity capacity;  ///< capacity of the view's tile lists
     finite_check check;
 
     static constexpr double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-15;
@@ -46,42 +49,144 @@ struct adam {
     template <class W>
     struct row_sink {
         using real = value_t<W, Real>;
+        using word = value_t<W, std::uint32_t>;
 
         const adam& of;
         const W& w;
         const raster::gaussian_row<W>& row;
         real first_left, second_left;  ///< decay during the missed steps: beta1^k, beta2^k
         real drift;                    ///< movement in these steps, in units of rate m / sqrt(v)
+        /// The compact second moment of all SH coefficients, before and after SH degree 0 is updated.
+        mutable real color_before, color_after;
 
         template <int N>
         WARPAGG_HD void operator()(parameter p, std::size_t k, std::size_t width,
                                    const glm::vec<N, real>& value, const glm::vec<N, real>& gradient) const {
-            const glm::vec<N, real> m = row.template load<N>(w, of.first[p], k, width);
-            const glm::vec<N, real> v = row.template load<N>(w, of.second[p], k, width);
-            const real rate(of.rates[static_cast<int>(p)]), most = constant<real>(most_gradient);
+            change<N> by(*this, p, value, gradient);
+            if (!of.moments.are_compact())
+                step_with_floats(by, p, k, width);
+            else if (p < parameter::sh0)
+                step_with_pairs(by, p, k, width);
+            else if constexpr (N == 3)
+                step_with_colors(by, p, k, width);
+            if (!w.any(row.active && !by.all_valid)) return;
+            note(by, p);
+        }
+
+      private:
+        /// The change of N components.
+        template <int N>
+        struct change {
+            const row_sink& sink;
+            real rate;
+            const glm::vec<N, real>&value, &gradient;
+            real next_first[N], next[N];
             mask_t<W> bounded[N], valid[N], all_valid = true;
+
+            WARPAGG_HD change(const row_sink& of, parameter p, const glm::vec<N, real>& before,
+                              const glm::vec<N, real>& by)
+                : sink(of), rate(of.of.rates[static_cast<int>(p)]), value(before), gradient(by) {}
+
+            /// Computes component n from its moments m and v, and from the next v.
+            WARPAGG_HD void compute(int n, const real& m, const real& v, const real& next_v) {
+                const real g = gradient[n];
+                next_first[n] = constant<real>(beta1) * sink.first_left * m + constant<real>(1 - beta1) * g;
+                next[n] = value[n] - rate * (sink.of.relative(sink.drift * m, v) +
+                                             sink.of.relative(next_first[n], next_v));
+                const real most = constant<real>(most_gradient);
+                bounded[n] = g < most && -g < most;  // mutate: squared_without_bound
+                valid[n] = bounded[n] && raster::is_finite(next[n]);
+                all_valid = all_valid && valid[n];
+            }
+        };
+
+        /// Returns the second moment after a step. `weighted_square` is (1 - beta2) g^2.
+        WARPAGG_HD real next_second(const real& v, const real& weighted_square) const {
+            return constant<real>(beta2) * second_left * v + weighted_square;
+        }
+        static WARPAGG_HD real weighted_square(const real& g) { return constant<real>(1 - beta2) * g * g; }
+
+        template <int N>
+        WARPAGG_HD void step_with_floats(change<N>& by, parameter p, std::size_t k, std::size_t width) const {
+            const auto m = row.template load<N>(w, of.moments.first[p], k, width);
+            const auto v = row.template load<N>(w, of.moments.second[p], k, width);
             WARPAGG_UNROLL
             for (int n = 0; n < N; ++n) {
-                const real g = gradient[n];
-                const real next_m = constant<real>(beta1) * first_left * m[n] + constant<real>(1 - beta1) * g;
-                const real next_v =
-                    constant<real>(beta2) * second_left * v[n] + constant<real>(1 - beta2) * g * g;
-                const real next =
-                    value[n] - rate * (of.relative(drift * m[n], v[n]) + of.relative(next_m, next_v));
-                bounded[n] = g < most && -g < most;  // mutate: squared_without_bound
-                valid[n] = bounded[n] && raster::is_finite(next);
-                all_valid = all_valid && valid[n];
-                row.store(w, of.first[p], k, n, width, next_m, m[n], valid[n]);
-                row.store(w, of.second[p], k, n, width, next_v, v[n], valid[n]);
-                row.store(w, of.values[p], k, n, width, next, value[n], valid[n]);
+                const real next_v = next_second(v[n], weighted_square(by.gradient[n]));
+                by.compute(n, m[n], v[n], next_v);
+                row.store(w, of.moments.first[p], k, n, width, by.next_first[n], m[n], by.valid[n]);
+                row.store(w, of.moments.second[p], k, n, width, next_v, v[n], by.valid[n]);
+                row.store(w, of.values[p], k, n, width, by.next[n], by.value[n], by.valid[n]);
             }
-            if (!w.any(row.active && !all_valid)) return;
+        }
+
+        template <int N>
+        WARPAGG_HD void step_with_pairs(change<N>& by, parameter p, std::size_t k, std::size_t width) const {
+            using pair = moment_pair<real, word>;
+            const auto words = row.template load<N>(w, of.moments.packed[p], k, width);
+            WARPAGG_UNROLL
+            for (int n = 0; n < N; ++n) {
+                const pair before = pair::unpack(words[n]);
+                const real next_v = next_second(before.second, weighted_square(by.gradient[n]));
+                by.compute(n, before.first, before.second, next_v);
+                const word after =
+                    pair{by.next_first[n], next_v}.pack(random(p, k + static_cast<unsigned>(n)));
+                row.store(w, of.moments.packed[p], k, n, width, after, words[n], by.valid[n]);
+                row.store(w, of.values[p], k, n, width, by.next[n], by.value[n], by.valid[n]);
+            }
+        }
+
+        /// For the three channels of an SH coefficient. SH degree 0 comes before the others.
+        WARPAGG_HD void step_with_colors(change<3>& by, parameter p, std::size_t k, std::size_t width) const {
+            using moments = color_moments<real, word>;
+            std::uint32_t* const packed = of.moments.packed[p];
+            const std::size_t at = k / 3, words = p == parameter::sh0 ? 2 : width / 3;
+            const word before = row.template load<1>(w, packed, at, words)[0];
+            word variance(0u);
+            if (p == parameter::sh0) {
+                variance = row.template load<1>(w, packed, 1, words)[0];
+                color_before = same_bits<real>(variance);
+                const real square = glm::dot(by.gradient, by.gradient) * constant<real>(1.0 / 3);
+                color_after = next_second(color_before, constant<real>(1 - beta2) * square);
+            }
+            const moments m = moments::unpack(before);
+            const real root = color_before * inverse_root(color_before), inverse = inverse_root(color_after);
+            moments after;
+            WARPAGG_UNROLL
+            for (int n = 0; n < 3; ++n) {
+                by.compute(n, m.relative[n] * root, color_before, color_after);
+                after.relative[n] = by.next_first[n] * inverse;
+            }
+            const mask_t<W> valid = by.all_valid;
+            row.store(w, packed, at, 0, words, after.pack(random(p, at)), before, valid);
+            if (p == parameter::sh0) {
+                row.store(w, packed, 1, 0, words, same_bits<word>(color_after), variance, valid);
+                color_after = select(valid, color_after, color_before);
+            }
+            WARPAGG_UNROLL
+            for (int n = 0; n < 3; ++n)
+                row.store(w, of.values[p], k, n, width, by.next[n], by.value[n], valid);
+        }
+
+        /// Returns 1 / sqrt(v), where v may be zero.
+        static WARPAGG_HD real inverse_root(const real& v) {
+            return warpagg::math::inverse_sqrt(v + constant<real>(1e-36));
+        }
+        /// Returns random bits for a word of moments, different for each Gaussian, word and step.
+        WARPAGG_HD word random(parameter p, std::size_t k) const {
+            const std::uint32_t slot = static_cast<std::uint32_t>(p) * 8 + static_cast<std::uint32_t>(k);
+            const word gaussian = word(w.lane()) + word(static_cast<std::uint32_t>(row.first));
+            return counter_hash(gaussian, (of.step * 64 + slot) * 0x9e3779b1u);
+        }
+
+        template <int N>
+        WARPAGG_HD void note(const change<N>& by, parameter p) const {
             using number = value_t<W, unsigned>;
             number gradients(0), parameters(0);
             WARPAGG_UNROLL
             for (int n = 0; n < N; ++n) {
-                gradients += select(row.active && !bounded[n], number(1), number(0));
-                parameters += select(row.active && bounded[n] && !valid[n], number(1), number(0));
+                gradients += select(row.active && !by.bounded[n], number(1), number(0));
+                parameters += select(row.active && by.bounded[n] && !by.valid[n], number(1), number(0));
             }
             of.check.note(w, fault_kind::gradient, p, row.first, gradients);
             of.check.note(w, fault_kind::parameter, p, row.first, parameters);
@@ -102,7 +207,9 @@ struct adam {
         const real first_left = warpagg::math::exp2(constant<real>(-0.15200309344504995) * missed);
         const real second_left = warpagg::math::exp2(constant<real>(-0.0014434168696687186) * missed);
         const real r_left = warpagg::math::exp2(constant<real>(-0.15128138501021560) * missed);
-        return {*this, w, row, first_left, second_left, constant<real>(9.0452374997021932) * (1 - r_left)};
+        return {*this,      w,           row,
+                first_left, second_left, constant<real>(9.0452374997021932) * (1 - r_left),
+                real(0),    real(0)};
     }
 
   private:

@@ -16,54 +16,114 @@ namespace gs::train {
 /// The parameters of the Gaussians in training, with the state of Adam.
 template <device::device Device>
 struct trained_parameters {
-    parameter_memory<Device> values, first, second;  ///< `first` and `second`: Adam's moments
+    parameter_memory<Device> values;
+    /// Adam's moments, in one of two forms: see `moment_precision`.
+    /// @{
+    parameter_memory<Device> first, second;
+    parameter_memory<Device, std::uint32_t, packed_width> packed;
+    moment_precision precision = moment_precision::full;
+    /// @}
     /// The last step that updated each Gaussian.
     typename Device::template buffer<std::uint32_t> last_step;
 
     /// Returns the size of the parameters of a Gaussian with their moments.
-    static std::size_t bytes_per_gaussian(int sh_degree) {
-        return 3 * parameter_memory<Device>::bytes_per_gaussian(sh_degree) + sizeof(std::uint32_t);
+    static std::size_t bytes_per_gaussian(int sh_degree, moment_precision how) {
+        const std::size_t floats = parameter_memory<Device>::bytes_per_gaussian(sh_degree);
+        const std::size_t moments =
+            how == moment_precision::full
+                ? 2 * floats
+                : parameter_memory<Device, std::uint32_t, packed_width>::bytes_per_gaussian(sh_degree);
+        return floats + moments + sizeof(std::uint32_t);
     }
+    /// Calls f(array) for `values` and each array of moments that is in use.
+    template <class F>
+    void for_each(const F& f) {
+        f(values);
+        for_each_moment(f);
+    }
+    template <class F>
+    void for_each_moment(const F& f) {
+        if (precision == moment_precision::compact) {
+            f(packed);
+        } else {
+            f(first);
+            f(second);
+        }
+    }
+    /// Replaces the values, and frees the moments. Waits for the device.
+    void set_values(Device& device, const gaussians& model) {
+        free_moments();
+        values.upload(device, model);
+    }
+    /// Sets all moments to zero, in this precision.
+    void clear_moments(Device& device, std::size_t count, int sh_degree, moment_precision how) {
+        free_moments();
+        precision = how;
+        for_each_moment([&](auto& moments) {
+            moments.resize(count, values.gaussians_with_sh(), sh_degree);
+            moments.zero(device);
+        });
+        last_step.resize(count);
+        device.zero(last_step.data(), count);
+    }
+    /// Returns whether there are moments.
+    bool has_moments() const { return last_step.size() > 0; }
     /// Returns whether all arrays have the sizes for this number of Gaussians and this SH degree.
-    bool fits(std::size_t count, int sh_degree) const {
-        const std::size_t with_sh = values.gaussians_with_sh();
-        return values.fits(count, sh_degree) && first.fits(count, sh_degree) &&
-               second.fits(count, sh_degree) && last_step.size() == count &&
-               first.gaussians_with_sh() == with_sh && second.gaussians_with_sh() == with_sh;
+    bool fits(std::size_t count, int sh_degree) {
+        bool fits = last_step.size() == count;
+        for_each([&](auto& memory) {
+            fits = fits && memory.fits(count, sh_degree) &&
+                   memory.gaussians_with_sh() == values.gaussians_with_sh();
+        });
+        return fits;
     }
+    moment_arrays moments() { return {first.write(), second.write(), packed.write()}; }
     /// Returns Adam's step number t, counted from 1, with learning rates by `parameter`.
     adam<float> descent(std::uint32_t t, const std::array<float, parameter_count>& rates,
                         const raster::list_capacity& capacity, const finite_check& check) {
         const double by_first = 1 / (1 - std::pow(adam<float>::beta1, t));
         const double by_second = 1 / std::sqrt(1 - std::pow(adam<float>::beta2, t));
-        adam<float> step{values.write(),
-                         first.write(),
-                         second.write(),
-                         last_step.data(),
-                         t,
-                         {},
-                         static_cast<float>(by_second),
-                         capacity,
-                         check};
+        adam<float> step{values.write(), moments(), last_step.data(), t, {}, static_cast<float>(by_second),
+                         capacity,       check};
+        // A shared second moment exceeds that of most coefficients, so that their steps are shorter.
+        constexpr double of_shared = 1.5;
         for (std::size_t p = 0; p < parameter_count; ++p)
-            step.rates[p] = static_cast<float>(rates[p] * by_first);
+            step.rates[p] = static_cast<float>(
+                rates[p] * by_first *
+                (precision == moment_precision::compact && is_view_dependent(p) ? of_shared : 1));
         return step;
     }
     /// Appends all arrays, for `device::gather`.
-    void share(std::vector<ranks::shared_array>& arrays) const {
-        for (const auto* memory : {&values, &first, &second}) memory->share(arrays);
+    void share(std::vector<ranks::shared_array>& arrays) {
+        for_each([&](auto& memory) { memory.share(arrays); });
         arrays.push_back(ranks::shared_array::of(last_step.data(), block_length, last_step.size()));
     }
-    /// Saves or loads all parameters. Waits for the device.
+    /// Saves or loads all parameters. Loading takes over the precision. Waits for the device.
     void exchange(state_archive& archive, Device& device) {
-        const auto exchange_memory = [&](const char* name, parameter_memory<Device>& memory) {
+        const auto exchange_memory = [&](const char* name, auto& memory) {
             const state_archive::scope scope(archive, name);
             memory.exchange(archive, device);
         };
+        if (archive.loads()) {
+            free_moments();
+            const state_archive::scope scope(archive, "moments");
+            precision = archive.has("mean") ? moment_precision::compact : moment_precision::full;
+        }
         exchange_memory("values", values);
-        exchange_memory("first_moments", first);
-        exchange_memory("second_moments", second);
+        if (precision == moment_precision::compact) {
+            exchange_memory("moments", packed);
+        } else {
+            exchange_memory("first_moments", first);
+            exchange_memory("second_moments", second);
+        }
         exchange_buffer(archive, device, "last_step", last_step);
+    }
+
+  private:
+    void free_moments() {
+        for (auto* memory : {&first, &second}) *memory = {};
+        packed = {};
+        last_step = {};
     }
 };
 

@@ -72,14 +72,9 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         effects_.antialiasing = model.antialiased;
         renderer_.set_effects(effects_);
         features_.set_model(model);
-        trained_.values.upload(device_, model);
-        for (auto* moments : {&trained_.first, &trained_.second}) {
-            moments->resize(model.count(), sh_degree_);
-            moments->zero(device_);
-        }
-        trained_.last_step.resize(model.count());
-        device_.zero(trained_.last_step.data(), model.count());
+        trained_.set_values(device_, model);
         begin_generation(model.count());
+        if (runs_ > 0) trained_.clear_moments(device_, count_, sh_degree_, setup_.precision);
         lists_.reset(views_.count());
         device_.wait();
         is_complete_ = true;
@@ -190,8 +185,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
       public:
         explicit sh_state(device_engine& on) : on_(on) {}
         void set_degree(int degree) override {
-            for (auto* all : {&on_.trained_.values, &on_.trained_.first, &on_.trained_.second})
-                all->change_sh_degree(on_.device_, on_.sh_degree_, degree);
+            on_.trained_.for_each(
+                [&](auto& memory) { memory.change_sh_degree(on_.device_, on_.sh_degree_, degree); });
             on_.sh_degree_ = degree;
         }
         std::size_t prune(double change) override {
@@ -275,8 +270,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     std::size_t bytes_per_gaussian(int sh_degree) const {
         constexpr std::size_t of_sort = 2 * sizeof(std::uint32_t), of_distribution = sizeof(std::uint64_t),
                               of_strategy = 4 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
-        return trained_parameters<Device>::bytes_per_gaussian(sh_degree) + sizeof(raster::visibility) +
-               renderer_type::bytes_per_gaussian(setup_.facts.gradient) +
+        return trained_parameters<Device>::bytes_per_gaussian(sh_degree, setup_.precision) +
+               sizeof(raster::visibility) + renderer_type::bytes_per_gaussian(setup_.facts.gradient) +
                parameter_gather<Device>::bytes_per_gaussian(sh_degree) + of_sort + of_distribution +
                of_strategy;
     }
@@ -354,6 +349,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         features_.begin(setup);
         setup_ = setup;
         ++runs_;
+        if (!trained_.has_moments() || trained_.precision != setup.precision)
+            trained_.clear_moments(device_, count_, sh_degree_, setup.precision);
     }
 
     void set_level(std::size_t level) {

@@ -48,6 +48,7 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     setup.facts.gradient = options.gradient;
     setup.densification = options.densification;
     setup.loss = options.loss;
+    setup.precision = options.precision;
     setup.dropout = schedule.dropout_share();
     setup.ranks = options.ranks;
     for (const auto& feature : options.features.all())
@@ -376,6 +377,11 @@ train_result train(engine& engine, const scene& scene, const train_options& opti
 
 std::size_t default_cap(const scene& scene) {
     return std::max<std::size_t>(pixels_of(scene.train) / 32, 10000);
+}
+
+moment_precision precision_in(state_archive& checkpoint) {
+    const state_archive::scope engine(checkpoint, "engine"), moments(checkpoint, "moments");
+    return checkpoint.has("mean") ? moment_precision::compact : moment_precision::full;
 }
 
 int default_downscales(const scene& scene, const schedule& schedule) {

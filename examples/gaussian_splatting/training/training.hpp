@@ -36,6 +36,7 @@ struct train_options {
     std::size_t max_cap = 0;             ///< largest number of Gaussians
     std::uint64_t max_device_bytes = 0;  ///< see `training_facts::max_device_bytes`
     std::string loss = default_loss;
+    moment_precision precision = moment_precision::full;
     std::uint64_t seed = 0;
     accumulator gradient = accumulator::native;
     background_choice background;
@@ -51,6 +52,9 @@ struct train_options {
     ranks::communicator* ranks = nullptr;  ///< the processes that train this model, or null for one
     state_archive* resume_from = nullptr;  ///< state of a checkpoint to continue from, or null
 };
+
+/// Returns the precision of the moments in a checkpoint.
+moment_precision precision_in(state_archive& checkpoint);
 
 /// The progress of a training run.
 struct progress {

@@ -31,8 +31,8 @@ struct penalized {
           scale_moment(3 * gs::block_length, moment) {
         penalty.values.opacity = opacity.data();
         penalty.values.log_scale = log_scale.data();
-        penalty.second.opacity = opacity_moment.data();
-        penalty.second.log_scale = scale_moment.data();
+        penalty.moments.second.opacity = opacity_moment.data();
+        penalty.moments.second.log_scale = scale_moment.data();
         penalty.last_step = last_step.data();
         penalty.step = 7;
         penalty.correction = 1;

@@ -88,8 +88,8 @@ class training_on {
             const auto t = static_cast<double>(step.step);
             step.check.found = found.data();
             step.values.opacity = values.data();
-            step.first.opacity = first.data();
-            step.second.opacity = second.data();
+            step.moments.first.opacity = first.data();
+            step.moments.second.opacity = second.data();
             step.rates[static_cast<int>(gs::parameter::opacity)] =
                 static_cast<float>(rate / (1 - std::pow(adam::beta1, t)));
             step.correction = static_cast<float>(1 / std::sqrt(1 - std::pow(adam::beta2, t)));

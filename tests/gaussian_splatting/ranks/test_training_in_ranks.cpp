@@ -135,9 +135,10 @@ TEST_CASE("ranks: any number of them revises the SH degree alike, from equal mea
         density_control + words{"--eval", "--sh-degree-interval", "33", "--test-iterations", "25"}, 96);
 }
 
-TEST_CASE("ranks: any number of them writes the same model, with a sky, depth maps and masks") {
+TEST_CASE("ranks: any number of them writes the same model, with a sky, depths, masks and compact moments") {
     check_equal_models("synthetic:spheres,sky=0.6,depths=0.02,passers=0.1,views=8",
-                       density_control + words{"--effects", "auto,+sky,+depth", "--dropout", "0.1"});
+                       density_control + words{"--effects", "auto,+sky,+depth,+direction", "--dropout", "0.1",
+                                               "--precision", "compact"});
 }
 
 TEST_CASE("ranks: any number of them writes the same model, with another strategy and tests in between") {

@@ -65,11 +65,15 @@ gs::gaussians trained(make_engine make, const gs::scene& scene, gs::train::train
 TEST_CASE("resume: a run that continues from any checkpoint gives the same model bit for bit") {
     const gs::scene scene = small_scene("synthetic:spheres,depths=0.02", 24);
     using iterations = std::vector<int>;
+    using enum gs::train::moment_precision;
     for (const auto make : engines())
-        for (const auto& [strategy, last, resumed] : {std::tuple("adaptive", 80, iterations{14, 31, 45, 79}),
-                                                      std::tuple("mcmc", 130, iterations{99, 100})}) {
+        for (const auto& [strategy, precision, last, resumed] :
+             {std::tuple("adaptive", full, 80, iterations{14, 31, 45, 79}),
+              std::tuple("mcmc", full, 130, iterations{99, 100}),
+              std::tuple("adaptive", compact, 80, iterations{31, 50})}) {
             CAPTURE(std::string(strategy));
             gs::train::train_options o = options_for(scene, strategy);
+            o.precision = precision;
             o.schedule.iterations = last;
             o.checkpoint_every = 1;
             std::map<int, gs::state_archive> checkpoints, ignored;
@@ -81,6 +85,7 @@ TEST_CASE("resume: a run that continues from any checkpoint gives the same model
                 gs::train::train_options rest = o;
                 rest.checkpoint_every.reset();
                 rest.resume_from = &checkpoints.at(iteration);
+                CHECK(gs::train::precision_in(checkpoints.at(iteration)) == precision);
                 check_equal(trained(make, scene, rest, ignored), uninterrupted);
             }
         }

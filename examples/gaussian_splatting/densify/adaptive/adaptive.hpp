@@ -54,9 +54,8 @@ class adaptive final : public strategy<Device> {
         const auto values = g.parameters.values.write();
         constexpr float reset_opacity = 0.01f;
         if (schedule_.resets_opacity(iteration))
-            g.device.for_each_index(g.count,
-                                    lower_opacity{values.opacity, g.parameters.first.write().opacity,
-                                                  g.parameters.second.write().opacity, logit(reset_opacity)});
+            g.device.for_each_index(
+                g.count, lower_opacity{values.opacity, g.parameters.moments(), logit(reset_opacity)});
         if (schedule_.hides_near_cameras(iteration)) hide_near_cameras(g);
     }
 

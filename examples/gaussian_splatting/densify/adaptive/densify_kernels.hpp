@@ -55,14 +55,12 @@ struct rate_by_gradient {
 /// Lowers each opacity to at most `most`, a logit, and clears its moments. One index per Gaussian.
 struct lower_opacity {
     float* opacity;
-    float* first;
-    float* second;
+    moment_arrays moments;
     float most;
 
     WARPAGG_HD void operator()(std::size_t i) const {
         opacity[i] = warpagg::math::min(opacity[i], most);
-        first[i] = 0;
-        second[i] = 0;
+        moments.clear(parameter::opacity, i);
     }
 };
 

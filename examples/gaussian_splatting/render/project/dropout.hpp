@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "../geometry/vectors.hpp"
+#include "../../core/counter_hash.hpp"
 
 namespace gs::raster {
 
@@ -24,14 +24,10 @@ struct dropout {
           gain(static_cast<float>(1 / (1 - share))) {}
 
     /// Returns in which lanes Gaussian i is left out. `Number` is the type of 32-bit unsigned
-    /// integers of a warp. Source of the hash: the finalizer of MurmurHash3 (Appleby 2011).
+    /// integers of a warp.
     template <class Number>
     WARPAGG_HD auto leaves_out(const Number& i) const {
-        Number h = (i ^ Number(key)) * Number(0x9e3779b1u);
-        h = (h ^ (h >> Number(16u))) * Number(0x85ebca6bu);
-        h = (h ^ (h >> Number(13u))) * Number(0xc2b2ae35u);
-        h = h ^ (h >> Number(16u));
-        return (h & Number(0xffffu)) < Number(limit);
+        return (counter_hash(i, key) & Number(0xffffu)) < Number(limit);
     }
 };
 
