@@ -13,8 +13,8 @@ namespace gs::raster {
 template <class Real>
 using bits_as = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
 
-/// Returns the bits of x as an integer, lane by lane for SIMD values. The bits of non-negative
-/// floats have the order of the floats, so they can serve as a sort key.
+/// Returns the bits of x as an integer, or as another type of this size, lane by lane for SIMD values.
+/// The bits of non-negative floats have the order of the floats, so they can serve as a sort key.
 template <class Bits = std::uint32_t, class V>
 WARPAGG_HD Bits bits_of(const V& x) {
     Bits bits;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "../core/large_memory.hpp"
 #include "image.hpp"
 
 namespace gs {
@@ -47,7 +48,8 @@ image average(const image& source, int width, int height) {
     const auto lines = coverages(source_height, static_cast<std::size_t>(height));
     const std::uint64_t area = std::uint64_t{source_width} * source_height;
 
-    image result{width, height, std::vector<std::uint8_t>(4 * columns.size() * lines.size())};
+    image result{width, height, {}};
+    resize_for_image(result.rgba, 4 * columns.size() * lines.size());
     std::uint8_t* to = result.rgba.data();
     std::vector<std::uint32_t> rows(4 * source_width);
     for (const coverage& line : lines) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "../core/large_memory.hpp"
 #include "codecs/codec.hpp"
 
 namespace gs {
@@ -32,7 +33,7 @@ void read_image(const std::filesystem::path& path, image& pixels) {
     const image_size size = checked_size(file, codec);
     file.check_density(size);
     pixels = {static_cast<int>(size.width), static_cast<int>(size.height), std::move(pixels.rgba)};
-    pixels.rgba.resize(4 * size.width * size.height);
+    resize_for_image(pixels.rgba, 4 * size.width * size.height);
     codec.read(file, pixels);
 }
 

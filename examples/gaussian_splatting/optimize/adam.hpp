@@ -145,7 +145,7 @@ struct adam {
             word variance(0u);
             if (p == parameter::sh0) {
                 variance = row.template load<1>(w, packed, 1, words)[0];
-                color_before = same_bits<real>(variance);
+                color_before = raster::bits_of<real>(variance);
                 const real square = glm::dot(by.gradient, by.gradient) * constant<real>(1.0 / 3);
                 color_after = next_second(color_before, constant<real>(1 - beta2) * square);
             }
@@ -160,7 +160,7 @@ struct adam {
             const mask_t<W> valid = by.all_valid;
             row.store(w, packed, at, 0, words, after.pack(random(p, at)), before, valid);
             if (p == parameter::sh0) {
-                row.store(w, packed, 1, 0, words, same_bits<word>(color_after), variance, valid);
+                row.store(w, packed, 1, 0, words, raster::bits_of<word>(color_after), variance, valid);
                 color_after = select(valid, color_after, color_before);
             }
             WARPAGG_UNROLL

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
+#include "../core/bits.hpp"
 #include "../core/counter_hash.hpp"
 #include "../model/parameters.hpp"
 #include "../render/geometry/vectors.hpp"
@@ -19,27 +19,18 @@ namespace gs::train {
 /// coefficient.
 inline constexpr std::array<int, parameter_count> packed_width{3, 3, 4, 1, 2, 3, 5, 7};
 
-/// Converts between floats and their bits, lane by lane.
-template <class To, class From>
-WARPAGG_HD To same_bits(const From& from) {
-    static_assert(sizeof(To) == sizeof(From));
-    To to;
-    std::memcpy(&to, &from, sizeof to);
-    return to;
-}
-
 /// Two moments in a word. `Bits` and `Real` are the types of 32-bit unsigned integers and floats of a warp.
 template <class Real, class Bits>
 struct moment_pair {
     Real first, second;
 
     static WARPAGG_HD moment_pair unpack(const Bits& word) {
-        return {same_bits<Real>(word & Bits(0xffff0000u)), same_bits<Real>(word << Bits(16u))};
+        return {raster::bits_of<Real>(word & Bits(0xffff0000u)), raster::bits_of<Real>(word << Bits(16u))};
     }
     /// Precondition: the moments are finite.
     WARPAGG_HD Bits pack(const Bits& random) const {
-        const Bits one = same_bits<Bits>(first) + (random & Bits(0xffffu)),
-                   two = same_bits<Bits>(second) + (random >> Bits(16u));
+        const Bits one = raster::bits_of<Bits>(first) + (random & Bits(0xffffu)),
+                   two = raster::bits_of<Bits>(second) + (random >> Bits(16u));
         return (one & Bits(0xffff0000u)) | (two >> Bits(16u));
     }
 };
@@ -88,7 +79,7 @@ struct moment_arrays {
     WARPAGG_HD bool are_compact() const { return packed.mean != nullptr; }
     /// Returns the second moment of an element of a parameter that is no SH coefficient.
     WARPAGG_HD float second_of(parameter p, std::size_t element) const {
-        return are_compact() ? same_bits<float>(packed[p][element] << 16) : second[p][element];
+        return are_compact() ? raster::bits_of<float>(packed[p][element] << 16) : second[p][element];
     }
     /// Sets the moments of such an element to zero.
     WARPAGG_HD void clear(parameter p, std::size_t element) const {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 
+#include "../../core/large_memory.hpp"
 #include "codec.hpp"
 #include "jpeg_reader.hpp"
 
@@ -108,7 +109,7 @@ void read_jpeg_planes(const std::filesystem::path& path, jpeg_planes& planes) {
     const image_file file(path);
     jpeg_reader reader;
     if (!read_header(file, reader, planes)) file.refuse("its samples have changed");
-    planes.samples.resize(planes.bytes());
+    resize_for_image(planes.samples, planes.bytes());
     const plane_sizes sizes(planes);
     std::uint8_t* const all = planes.samples.data();
     if (!reader.read_planes({{{all, sizes.row_bytes, sizes.rows},
