@@ -109,3 +109,27 @@ TEST_CASE("--max-memory stops the growth of the model") {
     CHECK(gaussians("free", {}) == 20000);
     CHECK(gaussians("limited", {"--max-memory", "6MB"}) < 18000);
 }
+
+TEST_CASE("--precision: moments are compact if memory is short, and a resumed run keeps its precision") {
+    const temporary_folder folder;
+    const auto trained = [&](const words& options, const char* iterations = "10") {
+        const words train{"train",     "-i",   iterations, "-o", (folder / "output").string(),
+                          "--max-cap", "20000"};
+        const outcome ended = run(train + small_spheres + options);
+        REQUIRE(ended.code == 0);
+        return ended.out;
+    };
+    const auto precision = [&] { return read_json(folder / "output" / "settings.json").at("precision"); };
+    trained({});
+    CHECK(precision() == "float");
+    trained({"--overwrite", "--max-memory", "6MB", "--deterministic"});
+    CHECK(precision() == "float");
+    trained({"--overwrite", "--max-memory", "6MB", "--precision", "float"});
+    CHECK(precision() == "float");
+    trained({"--overwrite", "--max-memory", "6MB", "--checkpoint-every", "10"});
+    CHECK(precision() == "compact");
+    const std::string resumed = trained({"--resume", "--precision", "float"}, "20");
+    CHECK(says(resumed,
+               {"--precision remains compact, as in the checkpoint", "continuing after iteration 10"}));
+    CHECK(precision() == "compact");
+}
