@@ -26,8 +26,8 @@ load_options with_limit(load_options source, const photos::photo_limits& limits)
 /// Returns the memory for photos: empty if they are resident.
 photos::photo_plan photo_memory(const scene& of, const photos::photo_limits& limits);
 
-/// Returns --precision. If it is unset: compact if the forecast for float moments exceeds the limit, which
-/// may be 0 for none.
+/// Returns --precision. If it is unset: compact if the forecast for float moments exceeds the limit. A
+/// limit of 0 means none.
 train::moment_precision precision_for(const settings& s, const device::memory_forecast& with_floats,
                                       std::uint64_t limit);
 

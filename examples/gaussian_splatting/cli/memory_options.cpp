@@ -7,26 +7,24 @@ namespace gs::cli {
 std::vector<options::option> memory_options(settings& s) {
     using namespace options;
     using enum command;
-    return
-
-        {{.names = "--photo-memory",
-          .commands = {train},
-          .value = byte_size(s.photo_memory),
-          .help = "Largest size of decoded photos in memory, of host and device together; above it, "
-                  "photos stay in their files and threads decode them ahead of training",
-          .default_text = "a share of the memory that is available"},
-         {.names = "--max-memory",
-          .commands = {train},
-          .value = byte_size(s.max_memory),
-          .help = "Size of the device memory near which the number of Gaussians stops growing",
-          .default_text = "a share of the memory that is available, or none with --deterministic"},
-         {.names = "--precision",
-          .commands = {train},
-          .value = choice(s.precision),
-          .help = "Precision of Adam's moments: compact halves the memory of a Gaussian",
-          .default_text = "compact if --max-cap Gaussians do not fit into memory otherwise; float with "
-                          "--deterministic",
-          .is_rare = true}};
+    return {{.names = "--photo-memory",
+             .commands = {train},
+             .value = byte_size(s.photo_memory),
+             .help = "Largest size of decoded photos in memory, of host and device together; above it, "
+                     "photos stay in their files and threads decode them ahead of training",
+             .default_text = "a share of the memory that is available"},
+            {.names = "--max-memory",
+             .commands = {train},
+             .value = byte_size(s.max_memory),
+             .help = "Size of the device memory near which the number of Gaussians stops growing",
+             .default_text = "a share of the memory that is available, or none with --deterministic"},
+            {.names = "--precision",
+             .commands = {train},
+             .value = choice(s.precision),
+             .help = "Precision of Adam's moments: compact takes a quarter of their memory",
+             .default_text = "compact if --max-cap Gaussians do not fit into memory otherwise; float with "
+                             "--deterministic",
+             .is_rare = true}};
 }
 
 }  // namespace gs::cli

@@ -98,15 +98,16 @@ class parameter_gather {
     /// origin has none. Does not wait for the device.
     void run(trained_parameters<Device>& all, std::size_t count, std::size_t with_sh, int sh_degree) {
         const std::size_t with_sh_before = all.values.gaussians_with_sh();
-        all.for_each([&](auto& memory) {
-            const bool are_values = static_cast<const void*>(&memory) == &all.values;
+        const auto gather_all = [&](auto& memory, bool are_moments) {
             for (std::size_t p = 0; p < parameter_count; ++p)
                 if (has_parameter(p, sh_degree))
                     gather(memory[p], memory.width(p), is_view_dependent(p) ? with_sh : count,
                            is_view_dependent(p) ? with_sh_before : std::numeric_limits<std::size_t>::max(),
-                           !are_values);
+                           are_moments);
             memory.set_gaussians_with_sh(with_sh);
-        });
+        };
+        gather_all(all.values, false);
+        all.for_each_moment([&](auto& moments) { gather_all(moments, true); });
         spare_steps_.resize(count);
         device_.for_each_index(count,
                                gather_last_steps{origin_.data(), all.last_step.data(), spare_steps_.data()});

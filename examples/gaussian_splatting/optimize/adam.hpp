@@ -25,10 +25,10 @@ using warpagg::math::select;
 /// and bias corrections. This is an approximation if k is large.
 ///
 /// A value and its moments stay as they are if the gradient is not finite or too large to square,
-/// or if the new value would not be finite. The missed steps are then forgotten. Compact moments of an
-/// SH coefficient need this for all of its channels. (The square of
-/// such a gradient would prevent all later updates of the value.) Missed steps are also forgotten
-/// for SH coefficients that this step does not update.
+/// or if the new value would not be finite. The missed steps are then forgotten. (The square of such a
+/// gradient would prevent all later updates of the value.) Missed steps are also forgotten for SH
+/// coefficients that this step does not update. With compact moments, one such channel of an SH
+/// coefficient keeps all three channels as they are.
 template <class Real>
 struct adam {
     parameter_arrays<Real> values;
