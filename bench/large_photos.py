@@ -16,6 +16,7 @@ import json
 import math
 import multiprocessing
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
@@ -87,16 +88,33 @@ def make(args):
         for done, _ in enumerate(pool.imap_unordered(write_photo, jobs), 1):
             print(f"\r{done} of {args.photos} photos", end="", file=sys.stderr)
     print(file=sys.stderr)
-    (sparse / "cameras.txt").write_text(f"1 PINHOLE {width} {height} {width} {width} {width / 2} {height / 2}\n")
-    with open(sparse / "images.txt", "w") as file:
+    write_sparse(sparse, args, names, width, height)
+
+
+def write_sparse(sparse, args, names, width, height):
+    """Writes the cameras and the points in COLMAP's binary form, the points in parts."""
+    import numpy as np
+    with open(sparse / "cameras.bin", "wb") as file:
+        pinhole = 1
+        file.write(struct.pack("<QIiQQ4d", 1, 1, pinhole, width, height, width, width, width / 2, height / 2))
+    with open(sparse / "images.bin", "wb") as file:
+        file.write(struct.pack("<Q", len(names)))
         for index, name in enumerate(names):
             rotation, center = camera(index, args.photos)
-            numbers = [*quaternion(rotation), *(-rotation @ center)]
-            file.write(f"{index + 1} {' '.join(f'{n:.12g}' for n in numbers)} 1 {name}\n\n")
-    place = np.random.default_rng(0).uniform(-1.5 * RADIUS, 1.5 * RADIUS, (args.points, 2))
-    with open(sparse / "points3D.txt", "w") as file:
-        for index, ((x, y), color) in enumerate(zip(place, colors(place[:, 0], place[:, 1]))):
-            file.write(f"{index + 1} {x:.6f} {y:.6f} 0 {' '.join(map(str, color))} 0.1\n")
+            file.write(struct.pack("<I7dI", index + 1, *quaternion(rotation), *(-rotation @ center), 1))
+            file.write(name.encode() + b"\0" + struct.pack("<Q", 0))
+    random, part = np.random.default_rng(0), 1000000
+    record = np.dtype([("id", "<u8"), ("position", "<f8", 3), ("color", "u1", 3), ("error", "<f8"), ("tracks", "<u8")])
+    with open(sparse / "points3D.bin", "wb") as file:
+        file.write(struct.pack("<Q", args.points))
+        for first in range(0, args.points, part):
+            points = np.zeros(min(part, args.points - first), record)
+            place = random.uniform(-1.5 * RADIUS, 1.5 * RADIUS, (len(points), 2))
+            points["id"] = np.arange(first + 1, first + 1 + len(points))
+            points["position"][:, :2] = place
+            points["color"] = colors(place[:, 0], place[:, 1])
+            points["error"] = 0.1
+            points.tofile(file)
 
 
 def train(args, memory, out):

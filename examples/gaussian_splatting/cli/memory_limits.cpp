@@ -28,23 +28,42 @@ photos::photo_limits photo_limits(const settings& s, const device::profiler& dev
     photos::photo_limits limits;
     limits.host = share(available_host_bytes() / static_cast<std::uint64_t>(ranks));
     const std::uint64_t free = own_device_bytes(device, ranks);
-    limits.device = share(std::min(free, s.max_memory.value_or(free)));
+    limits.device = share(std::min(free, s.gpu_memory.value_or(free)));
     limits.total = device.shares_host_memory() ? limits.host : limits.host + limits.device;
     if (s.photo_memory) limits.total = *s.photo_memory;
     return limits;
 }
 
 std::uint64_t device_limit(const settings& s, const device::profiler& device, int ranks) {
-    if (s.max_memory) return *s.max_memory;
+    if (s.gpu_memory) return *s.gpu_memory;
     if (s.deterministic) return 0;
     return (device.used_device_bytes() + own_device_bytes(device, ranks)) / 10 * 9;
 }
 
-train::moment_precision precision_for(const settings& s, const device::memory_forecast& with_floats,
-                                      std::uint64_t limit) {
+train::parameter_storage storage_for(const largest_model& model,
+                                     std::optional<train::moment_precision> precision, bool keeps_floats) {
     using enum train::moment_precision;
-    if (s.precision) return *s.precision;
-    return limit > 0 && !s.deterministic && with_floats.total() > limit ? compact : full;
+    const auto bytes = [&](const train::parameter_storage& how) {
+        return train::bytes_per_gaussian(model.sh_degree, how);
+    };
+    const auto fits = [&](const train::parameter_storage& how) {
+        const std::uint64_t saved = model.gaussians * (bytes({}).on_device - bytes(how).on_device);
+        return model.device_limit == 0 || model.forecast.total() <= model.device_limit + saved;
+    };
+    const bool chooses = !precision && !keeps_floats;
+    train::parameter_storage chosen{precision.value_or(full)};
+    if (chooses && !fits(chosen)) chosen.precision = compact;
+    while (!fits(chosen) && chosen.first_degree_on_host > 1) {
+        train::parameter_storage next = chosen;
+        --next.first_degree_on_host;
+        if (model.gaussians * bytes(next).on_host > model.host_bytes) break;
+        chosen = next;
+    }
+    return chosen;
+}
+
+std::uint64_t parameter_bytes_on_host(const device::profiler& device, int ranks) {
+    return device.shares_host_memory() || ranks > 1 ? 0 : available_host_bytes() / 10 * 8;
 }
 
 load_options with_limit(load_options source, const photos::photo_limits& limits) {
@@ -68,11 +87,12 @@ std::uint64_t photos_on_host(const scene& of, const photos::photo_plan& plan) {
 }
 
 std::string expected_memory(const device::memory_forecast& forecast, std::size_t most,
-                            std::uint64_t on_host) {
+                            std::uint64_t photos_on_host) {
     const auto gb = [](std::uint64_t bytes) { return in_gigabytes(static_cast<double>(bytes)); };
     return "expects " + gb(forecast.total()) + " GB of device memory (" + gb(forecast.photos) + " photos, " +
            gb(forecast.gaussians) + " for up to " + std::to_string(most) + " Gaussians, " +
-           gb(forecast.others) + " others), and " + gb(on_host) + " GB of host memory for photos";
+           gb(forecast.others) + " others), and " + gb(photos_on_host) + " GB of host memory for photos" +
+           (forecast.on_host == 0 ? "" : " and " + gb(forecast.on_host) + " GB for SH coefficients");
 }
 
 }  // namespace gs::cli

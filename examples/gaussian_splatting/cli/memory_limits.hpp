@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "../device/profiler.hpp"
+#include "../optimize/parameter_storage.hpp"
 #include "../photos/photo_plan.hpp"
 #include "settings.hpp"
 
@@ -16,8 +18,8 @@ namespace gs::cli {
 /// wherever they are, so the limits do not change results. The ranks share the host's memory.
 photos::photo_limits photo_limits(const settings& s, const device::profiler& device, int ranks);
 
-/// Returns the limit of --max-memory, or a share of the available memory. Returns 0, which means no
-/// limit, for --deterministic without --max-memory: the result must not depend on the machine.
+/// Returns the limit of --gpu-memory, or a share of the available memory. Returns 0, which means no
+/// limit, for --deterministic without --gpu-memory: the result must not depend on the machine.
 std::uint64_t device_limit(const settings& s, const device::profiler& device, int ranks);
 
 /// Returns the scene to load, whose photos stay in their files if they exceed the limits.
@@ -26,13 +28,28 @@ load_options with_limit(load_options source, const photos::photo_limits& limits)
 /// Returns the memory for photos: empty if they are resident.
 photos::photo_plan photo_memory(const scene& of, const photos::photo_limits& limits);
 
-/// Returns --precision. If it is unset: compact if the forecast for float moments exceeds the limit. A
-/// limit of 0 means none.
-train::moment_precision precision_for(const settings& s, const device::memory_forecast& with_floats,
-                                      std::uint64_t limit);
+/// The largest model that training expects, and the memory for it.
+struct largest_model {
+    std::size_t gaussians = 0;
+    int sh_degree = 0;
+    device::memory_forecast forecast;  ///< with float moments, and nothing in host memory
+    std::uint64_t device_limit = 0;    ///< see `device_limit`
+    std::uint64_t host_bytes = 0;      ///< host memory for parameters; zero if they must stay on the device
+};
 
-/// Returns a line for the user about the expected memory with `most` Gaussians.
-std::string expected_memory(const device::memory_forecast& forecast, std::size_t most, std::uint64_t on_host);
+/// Returns the first of these that fits into device memory: float moments, compact moments, and compact
+/// moments with SH degrees 3, 2 and 1 in host memory. If none fits, returns the last one for which the
+/// host has memory. Moments have this precision if it is set, and are float if `keeps_floats`.
+train::parameter_storage storage_for(const largest_model& model,
+                                     std::optional<train::moment_precision> precision, bool keeps_floats);
+
+/// Returns the host memory for parameters: a share of what is available, or none if the device shares the
+/// host's memory or if there are several ranks.
+std::uint64_t parameter_bytes_on_host(const device::profiler& device, int ranks);
+
+/// Returns a line for the user about the expected memory with `most` Gaussians. `photos_on_host`: see below.
+std::string expected_memory(const device::memory_forecast& forecast, std::size_t most,
+                            std::uint64_t photos_on_host);
 
 /// Returns the size of the photos in host memory.
 std::uint64_t photos_on_host(const scene& of, const photos::photo_plan& plan);

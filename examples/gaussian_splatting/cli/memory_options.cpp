@@ -13,10 +13,11 @@ std::vector<options::option> memory_options(settings& s) {
              .help = "Largest size of decoded photos in memory, of host and device together; above it, "
                      "photos stay in their files and threads decode them ahead of training",
              .default_text = "a share of the memory that is available"},
-            {.names = "--max-memory",
+            {.names = "--gpu-memory",
              .commands = {train},
-             .value = byte_size(s.max_memory),
-             .help = "Size of the device memory near which the number of Gaussians stops growing",
+             .value = byte_size(s.gpu_memory),
+             .help = "Device memory to use: above it, SH coefficients stay in slower host memory, and "
+                     "then the model stops growing",
              .default_text = "a share of the memory that is available, or none with --deterministic"},
             {.names = "--precision",
              .commands = {train},

@@ -391,7 +391,7 @@ rows densification_options(settings& s) {
                      .help = "Densification strategy: decides which Gaussians training adds and removes"},
                     {.names = "--max-cap",
                      .commands = {train},
-                     .value = whole(s.max_cap, 1, 100000000),
+                     .value = whole(s.max_cap, 1, 300000000),
                      .help = "Largest number of Gaussians",
                      .unit = "Gaussians",
                      .default_text = "one for every 32 pixels of the training photos, at least 10000"}});

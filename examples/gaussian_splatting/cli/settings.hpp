@@ -82,8 +82,8 @@ struct settings {
     std::optional<int> num_downscales;   ///< if unset, the size of the photos decides
     std::optional<std::size_t> max_cap;  ///< if unset, the size of the photos decides
     std::optional<std::uint64_t> photo_memory,
-        max_memory;                                    ///< limits in bytes; if unset, see `memory_limits`
-    std::optional<train::moment_precision> precision;  ///< if unset, see `precision_for`
+        gpu_memory;                                    ///< limits in bytes; if unset, see `memory_limits`
+    std::optional<train::moment_precision> precision;  ///< if unset, see `storage_for`
     bool fit_exposure = false;
     std::string lpips;  ///< file of weights; if empty, LPIPS is not computed
     std::set<int> save_iterations;

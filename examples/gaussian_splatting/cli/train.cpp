@@ -96,6 +96,13 @@ class training_run {
     /// Ends the program after Ctrl-C, or after a page of the live view has asked to stop.
     [[noreturn]] void end_early();
     void say_expected_memory();
+    train::parameter_storage storage(std::optional<train::moment_precision> precision) const {
+        const device::profiler& device = engine_->profile();
+        return storage_for(
+            {options_.max_cap, first_sh_degree(), device.forecast(options_.max_cap, first_sh_degree()),
+             options_.max_device_bytes, parameter_bytes_on_host(device, ranks_.count())},
+            precision, s_.deterministic);
+    }
     int first_sh_degree() const {
         return features::first_sh_degree(options_.features.values_if_on("direction"));
     }
@@ -155,8 +162,7 @@ training_run::training_run(const settings& s, const load_options& source,
     options_.features.prepare(scene_, model);
     engine_->set_views(scene_.train, scene_.test, options_.schedule.num_downscales, photo_memory_);
     engine_->set_model(model);
-    options_.precision = precision_for(s_, engine_->profile().forecast(options_.max_cap, first_sh_degree()),
-                                       options_.max_device_bytes);
+    options_.storage = storage(s.precision);
     measures_.load_seconds = loading_.seconds();
     measures_.device = engine_->profile().device_name();
     if (ranks_.count() > 1) measures_.device += ", " + std::to_string(ranks_.count()) + " ranks";
@@ -179,9 +185,9 @@ void training_run::resume() {
     exchange_history(archive, measures_.history);
     measures_.tests = parse_json(tests, "the value of tests in " + checkpoint_->file.string());
     options_.resume_from = &archive;
-    options_.precision = train::precision_in(archive);
-    if (s_.precision && *s_.precision != options_.precision)
-        context_.say("--precision remains " + name_of(options_.precision) + ", as in the checkpoint");
+    options_.storage = storage(train::precision_in(archive));
+    if (s_.precision && *s_.precision != options_.storage.precision)
+        context_.say("--precision remains " + name_of(options_.storage.precision) + ", as in the checkpoint");
     context_.say("continuing after iteration " + std::to_string(checkpoint_->iteration) + ", from " +
                  checkpoint_->file.string());
     const std::string changes =

@@ -68,7 +68,7 @@ settings resolved(settings s, const train::train_options& options, std::size_t v
     s.sh_degree = features::first_sh_degree(options.features.values_if_on("direction"));
     s.effects.text = effects_in_use;
     s.max_cap = options.max_cap;
-    s.precision = options.precision;
+    s.precision = options.storage.precision;
     s.num_downscales = plan.num_downscales;
     s.save_iterations = options.save_iterations;
     s.save_iterations.insert(plan.iterations.last());

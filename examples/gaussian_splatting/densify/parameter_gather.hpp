@@ -101,7 +101,7 @@ class parameter_gather {
         const auto gather_all = [&](auto& memory, bool are_moments) {
             for (std::size_t p = 0; p < parameter_count; ++p)
                 if (has_parameter(p, sh_degree))
-                    gather(memory[p], memory.width(p), is_view_dependent(p) ? with_sh : count,
+                    gather(memory, p, is_view_dependent(p) ? with_sh : count,
                            is_view_dependent(p) ? with_sh_before : std::numeric_limits<std::size_t>::max(),
                            are_moments);
             memory.set_gaussians_with_sh(with_sh);
@@ -122,15 +122,16 @@ class parameter_gather {
     }
 
   private:
-    template <class T>
-    void gather(buffer<T>& array, std::size_t width, std::size_t count, std::size_t before,
-                bool are_moments) {
-        const std::size_t n = in_whole_blocks(count) * width;
+    template <class T, const auto& Widths>
+    void gather(parameter_memory<Device, T, Widths>& memory, std::size_t p, std::size_t count,
+                std::size_t before, bool are_moments) {
+        buffer<T>& array = memory[p];
+        const std::size_t width = memory.width(p), n = in_whole_blocks(count) * width;
         auto& spare = this->spare(T{});
         spare.resize(n);
         device_.for_each_index(n, gather_array<T>{count, before, origin_.data(), births_.data(), width,
                                                   are_moments, array.data(), spare.data()});
-        if (n < array.size()) array = {};  // frees memory
+        if (n < array.size()) memory.free(p);
         array.resize(n);
         device_.copy(array.data(), spare.data(), n);
     }

@@ -18,6 +18,7 @@
 
 #include "../ranks/communicator.hpp"
 #include "distribute.hpp"
+#include "memory_place.hpp"
 #include "stages.hpp"
 
 namespace gs::device {
@@ -61,12 +62,20 @@ concept buffer_of = std::movable<B> && std::default_initializable<B> && requires
 
 /// `D::host_buffer<T>`: the same in host memory, for `begin_upload` and `begin_download`.
 
+/// A buffer of a device that can also lie in host memory, where kernels still reach it.
+/// - `free_in(place)`: frees the memory. Later calls of `resize` allocate in this place, at first in
+///   device memory. If the device shares the host's memory, both places are the same.
+template <class B>
+concept placed_buffer = requires(B b) {
+    b.free_in(memory_place::host);
+};
+
 /// A device. All pointers are to its memory, except the host side of copies from and to the host.
 ///
 /// Types
 /// - `warp`: the model of `warpagg::warp` that kernels run on.
 /// - `narrow_warp`: the same for kernels that hold many values per lane; may have fewer lanes.
-/// - `buffer<T>`: see `buffer_of`.
+/// - `buffer<T>`: see `buffer_of` and `placed_buffer`.
 /// - `host_buffer<T>`: see `buffer_of`.
 /// - `transfer`: a copy by `begin_upload` or `begin_download`. `is_done()` returns whether it has
 ///   finished, or was never begun. `wait()` waits for it.
@@ -147,6 +156,7 @@ float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, s
     d.download(p, from, n);
     requires buffer_of < typename D::template host_buffer<float>,
     float > ;
+    requires placed_buffer<typename D::template buffer<float>>;
     d.begin_upload(transfer, p, from, n);
     d.await(transfer);
     d.begin_download(transfer, p, from, n);

@@ -11,7 +11,7 @@
 #include "../densify/strategy_settings.hpp"
 #include "../densify/timetable.hpp"
 #include "../losses/loss.hpp"
-#include "../optimize/moment_precision.hpp"
+#include "../optimize/parameter_storage.hpp"
 #include "../ranks/communicator.hpp"
 #include "../render/gradients/accumulator.hpp"
 #include "step_plan.hpp"
@@ -23,7 +23,7 @@ struct training_setup {
     training_facts facts;
     strategy_settings densification;
     std::string loss = default_loss;
-    moment_precision precision = moment_precision::full;
+    parameter_storage storage{};
     ranks::communicator* ranks = nullptr;  ///< the processes that train this model, or null for one
     double dropout = 0;  ///< share of the Gaussians that each step leaves out: see `raster::dropout`
     /// The features that are on, by name, with their initial values.

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "../checkpoint/exchange_buffer.hpp"
@@ -35,19 +36,35 @@ class parameter_memory {
         gaussians_with_sh_ = with_sh;
     }
     void resize(std::size_t count, int sh_degree) { resize(count, count, sh_degree); }
-    /// Returns the size of the parameters of a Gaussian.
-    static std::size_t bytes_per_gaussian(int sh_degree) {
-        std::size_t values = 0;
-        for (std::size_t p = 0; p < parameter_count; ++p)
-            if (has_parameter(p, sh_degree)) values += width(p);
-        return values * sizeof(T);
+    /// Moves the arrays of this SH degree and above to host memory, and the others to device memory. Keeps
+    /// the contents. Precondition: the degree is at least 1.
+    void move_to_host_from(Device& device, int sh_degree) {
+        for (std::size_t p = 0; p < parameter_count; ++p) {
+            const auto place = has_parameter(p, sh_degree - 1) ? device::memory_place::device
+                                                               : device::memory_place::host;
+            if (place == places_[p]) continue;
+            buffer moved;
+            moved.free_in(place);
+            moved.resize(arrays_[p].size());
+            if (moved.size() > 0) device.copy(moved.data(), arrays_[p].data(), moved.size());
+            arrays_[p] = std::move(moved);
+            places_[p] = place;
+        }
     }
+    /// Frees the memory of one array, or of all.
+    /// @{
+    void free(std::size_t p) { arrays_[p].free_in(places_[p]); }
+    void free() {
+        for (std::size_t p = 0; p < parameter_count; ++p) free(p);
+        gaussians_with_sh_ = 0;
+    }
+    /// @}
     /// Changes the SH degree and keeps the contents. Frees the coefficients above degree `to`; new
     /// coefficients above degree `from` are zero.
     void change_sh_degree(Device& device, int from, int to) {
         for (std::size_t p = 0; p < parameter_count; ++p) {
             if (has_parameter(p, from) == has_parameter(p, to)) continue;
-            arrays_[p] = buffer();
+            free(p);
             if (!has_parameter(p, to)) continue;
             arrays_[p].resize(in_whole_blocks(gaussians_with_sh_) * width(p));
             device.zero(arrays_[p].data(), arrays_[p].size());
@@ -150,6 +167,7 @@ class parameter_memory {
     }
 
     std::array<buffer, parameter_count> arrays_;
+    std::array<device::memory_place, parameter_count> places_{};
     std::size_t gaussians_with_sh_ = 0;
 };
 

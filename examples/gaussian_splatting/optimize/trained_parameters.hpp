@@ -10,6 +10,7 @@
 #include "../device/device.hpp"
 #include "../model/parameter_memory.hpp"
 #include "adam.hpp"
+#include "parameter_storage.hpp"
 
 namespace gs::train {
 
@@ -26,15 +27,6 @@ struct trained_parameters {
     /// The last step that updated each Gaussian.
     typename Device::template buffer<std::uint32_t> last_step;
 
-    /// Returns the size of the parameters of a Gaussian with their moments.
-    static std::size_t bytes_per_gaussian(int sh_degree, moment_precision how) {
-        const std::size_t floats = parameter_memory<Device>::bytes_per_gaussian(sh_degree);
-        const std::size_t moments =
-            how == moment_precision::full
-                ? 2 * floats
-                : parameter_memory<Device, std::uint32_t, packed_width>::bytes_per_gaussian(sh_degree);
-        return floats + moments + sizeof(std::uint32_t);
-    }
     /// Calls f(array) for `values` and each array of moments that is in use.
     template <class F>
     void for_each(const F& f) {
@@ -55,10 +47,18 @@ struct trained_parameters {
         free_moments();
         values.upload(device, model);
     }
-    /// Sets all moments to zero, in this precision.
-    void clear_moments(Device& device, std::size_t count, int sh_degree, moment_precision how) {
+    /// Moves the values to the places of this storage. Moments follow, unless their precision changes: then
+    /// they are freed.
+    void set_storage(Device& device, const parameter_storage& how) {
+        if (how.precision != precision) free_moments();
+        precision = how.precision;
+        values.move_to_host_from(device, how.first_degree_on_host);
+        for (auto* moments : {&first, &second}) moments->move_to_host_from(device, how.first_degree_on_host);
+        packed.move_to_host_from(device, how.first_degree_on_host);
+    }
+    /// Sets all moments to zero.
+    void clear_moments(Device& device, std::size_t count, int sh_degree) {
         free_moments();
-        precision = how;
         for_each_moment([&](auto& moments) {
             moments.resize(count, values.gaussians_with_sh(), sh_degree);
             moments.zero(device);
@@ -121,8 +121,8 @@ struct trained_parameters {
 
   private:
     void free_moments() {
-        for (auto* memory : {&first, &second}) *memory = {};
-        packed = {};
+        for (auto* moments : {&first, &second}) moments->free();
+        packed.free();
         last_step = {};
     }
 };

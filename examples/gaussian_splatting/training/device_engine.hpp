@@ -74,7 +74,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         features_.set_model(model);
         trained_.set_values(device_, model);
         begin_generation(model.count());
-        if (runs_ > 0) trained_.clear_moments(device_, count_, sh_degree_, setup_.precision);
+        if (runs_ > 0) trained_.clear_moments(device_, count_, sh_degree_);
         lists_.reset(views_.count());
         device_.wait();
         is_complete_ = true;
@@ -260,18 +260,19 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         constexpr std::size_t of_pixel = renderer_type::bytes_per_pixel() +
                                          image_comparison<Device, float>::bytes_per_pixel() +
                                          3 * sizeof(float);
-        return {views_.photo_bytes(), gaussians * bytes_per_gaussian(sh_degree),
-                instances * renderer_type::bytes_per_instance() + views_.most_pixels() * of_pixel};
+        const parameter_bytes of_parameters = train::bytes_per_gaussian(sh_degree, setup_.storage);
+        return {views_.photo_bytes(), gaussians * (of_parameters.on_device + bytes_beside_parameters(sh_degree)),
+                instances * renderer_type::bytes_per_instance() + views_.most_pixels() * of_pixel,
+                gaussians * of_parameters.on_host};
     }
     void wait() override { device_.wait(); }
     /// @}
 
-    /// Returns the memory of a Gaussian, without its tile lists.
-    std::size_t bytes_per_gaussian(int sh_degree) const {
+    /// Returns the device memory of a Gaussian, without its parameters and tile lists.
+    std::size_t bytes_beside_parameters(int sh_degree) const {
         constexpr std::size_t of_sort = 2 * sizeof(std::uint32_t), of_distribution = sizeof(std::uint64_t),
                               of_strategy = 4 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
-        return trained_parameters<Device>::bytes_per_gaussian(sh_degree, setup_.precision) +
-               sizeof(raster::visibility) + renderer_type::bytes_per_gaussian(setup_.facts.gradient) +
+        return sizeof(std::uint32_t) + sizeof(raster::visibility) + renderer_type::bytes_per_gaussian(setup_.facts.gradient) +
                parameter_gather<Device>::bytes_per_gaussian(sh_degree) + of_sort + of_distribution +
                of_strategy;
     }
@@ -349,8 +350,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         features_.begin(setup);
         setup_ = setup;
         ++runs_;
-        if (!trained_.has_moments() || trained_.precision != setup.precision)
-            trained_.clear_moments(device_, count_, sh_degree_, setup.precision);
+        trained_.set_storage(device_, setup.storage);
+        if (!trained_.has_moments()) trained_.clear_moments(device_, count_, sh_degree_);
     }
 
     void set_level(std::size_t level) {

@@ -48,7 +48,7 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     setup.facts.gradient = options.gradient;
     setup.densification = options.densification;
     setup.loss = options.loss;
-    setup.precision = options.precision;
+    setup.storage = options.storage;
     setup.dropout = schedule.dropout_share();
     setup.ranks = options.ranks;
     for (const auto& feature : options.features.all())
@@ -126,11 +126,11 @@ training::training(train::engine& engine, const gs::scene& scene, const train_op
 void training::note_limited_growth(int iteration, const std::function<void(const std::string&)>& warn) {
     std::string& by = result_.growth_limited_by;
     if (engine_.lacks_memory()) {
-        if (by != "max_memory")
+        if (by != "gpu_memory")
             warn("iteration " + std::to_string(iteration) + ": growth stops at " +
                  std::to_string(engine_.count()) + " Gaussians, because the device's memory is limited to " +
-                 size_in_bytes(options_.max_device_bytes) + " (--max-memory)");
-        by = "max_memory";
+                 size_in_bytes(options_.max_device_bytes) + " (--gpu-memory)");
+        by = "gpu_memory";
     } else if (by.empty() && engine_.count() >= options_.max_cap) {
         by = "max_cap";
     }

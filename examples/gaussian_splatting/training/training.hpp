@@ -36,7 +36,7 @@ struct train_options {
     std::size_t max_cap = 0;             ///< largest number of Gaussians
     std::uint64_t max_device_bytes = 0;  ///< see `training_facts::max_device_bytes`
     std::string loss = default_loss;
-    moment_precision precision = moment_precision::full;
+    parameter_storage storage{};
     std::uint64_t seed = 0;
     accumulator gradient = accumulator::native;
     background_choice background;
@@ -73,7 +73,7 @@ struct train_result {
     std::uint64_t left_out_gradients = 0;  ///< number of elements that were not finite
     std::uint64_t left_out_sums = 0;       ///< number of steps with a sum out of range
     std::uint64_t without_gradient = 0;    ///< largest result of `engine::densify`
-    std::string growth_limited_by;         ///< option that stopped growth, such as "max_memory", or empty
+    std::string growth_limited_by;         ///< option that stopped growth, such as "gpu_memory", or empty
     std::map<std::string, nlohmann::ordered_json> feature_reports;  ///< parts of metrics.json
 };
 

@@ -93,7 +93,7 @@ TEST_CASE("--photo-memory: a photo that is lost during training ends it with a c
     CHECK(model_in(folder / "lost", iterations) == model_in(folder / "whole", iterations));
 }
 
-TEST_CASE("--max-memory stops the growth of the model") {
+TEST_CASE("--gpu-memory stops the growth of the model") {
     const temporary_folder folder;
     const auto gaussians = [&](const char* name, const words& options) {
         const words train{"train",      "-i",   "300",       "-o",   (folder / name).string(),
@@ -101,13 +101,13 @@ TEST_CASE("--max-memory stops the growth of the model") {
         const outcome ended = run(train + small_spheres + options);
         REQUIRE(ended.code == 0);
         const json metrics = read_json(folder / name / "metrics.json");
-        const bool stopped = metrics.at("growth_limited_by") == "max_memory";
+        const bool stopped = metrics.at("growth_limited_by") == "gpu_memory";
         CHECK((ended.out.find("growth stops") != std::string::npos) == stopped);
         CHECK(stopped == (std::string(name) == "limited"));
         return metrics.at("gaussians").get<int>();
     };
     CHECK(gaussians("free", {}) == 20000);
-    CHECK(gaussians("limited", {"--max-memory", "6MB"}) < 18000);
+    CHECK(gaussians("limited", {"--gpu-memory", "6MB"}) < 18000);
 }
 
 TEST_CASE("--precision: moments are compact if memory is short, and a resumed run keeps its precision") {
@@ -122,11 +122,11 @@ TEST_CASE("--precision: moments are compact if memory is short, and a resumed ru
     const auto precision = [&] { return read_json(folder / "output" / "settings.json").at("precision"); };
     trained({});
     CHECK(precision() == "float");
-    trained({"--overwrite", "--max-memory", "6MB", "--deterministic"});
+    trained({"--overwrite", "--gpu-memory", "6MB", "--deterministic"});
     CHECK(precision() == "float");
-    trained({"--overwrite", "--max-memory", "6MB", "--precision", "float"});
+    trained({"--overwrite", "--gpu-memory", "6MB", "--precision", "float"});
     CHECK(precision() == "float");
-    trained({"--overwrite", "--max-memory", "6MB", "--checkpoint-every", "10"});
+    trained({"--overwrite", "--gpu-memory", "6MB", "--checkpoint-every", "10"});
     CHECK(precision() == "compact");
     const std::string resumed = trained({"--resume", "--precision", "float"}, "20");
     CHECK(says(resumed,

@@ -88,9 +88,9 @@ TEST_CASE("long: memory: growth stops near the limit, with one warning") {
             CHECK(limited.gaussians > 4000);
             CHECK(limited.gaussians < 3 * free.gaussians / 4);
             CHECK(static_cast<double>(limited.used) < 1.1 * static_cast<double>(limit));
-            CHECK(limited.result.growth_limited_by == "max_memory");
+            CHECK(limited.result.growth_limited_by == "gpu_memory");
             REQUIRE(limited.warnings.size() == 1);
-            CHECK(limited.warnings[0].find("--max-memory") != std::string::npos);
+            CHECK(limited.warnings[0].find("--gpu-memory") != std::string::npos);
         }
 }
 

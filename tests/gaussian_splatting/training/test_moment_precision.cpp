@@ -10,10 +10,10 @@
 #include <random>
 #include <vector>
 
-#include "device/cpu/cpu.hpp"
 #include "engines.hpp"
 #include "model/spherical_harmonics.hpp"
-#include "optimize/trained_parameters.hpp"
+#include "optimize/moment_arrays.hpp"
+#include "optimize/parameter_storage.hpp"
 #include "training/initialize.hpp"
 #include "training/training.hpp"
 
@@ -51,7 +51,7 @@ gs::train::train_options short_run(gs::train::moment_precision precision) {
     adaptive.opacity_reset_interval = 120;
     o.max_cap = 3000;
     o.gradient = gs::accumulator::fixed;
-    o.precision = precision;
+    o.storage.precision = precision;
     return o;
 }
 
@@ -118,10 +118,9 @@ TEST_CASE("compact moments: the mean square of the SH basis is the same for all 
 }
 
 TEST_CASE("compact moments: a Gaussian takes half the memory") {
-    using parameters = gs::train::trained_parameters<gs::device::cpu>;
     using enum gs::train::moment_precision;
-    CHECK(parameters::bytes_per_gaussian(3, full) == 708 + 4);
-    CHECK(parameters::bytes_per_gaussian(3, compact) == 348 + 4);
+    CHECK(gs::train::bytes_per_gaussian(3, {full}).on_device == 708);
+    CHECK(gs::train::bytes_per_gaussian(3, {compact}).on_device == 348);
     const gs::scene scene = small_scene();
     for (const auto make : engines()) {
         const auto engine = make();
@@ -130,7 +129,7 @@ TEST_CASE("compact moments: a Gaussian takes half the memory") {
         std::array<std::uint64_t, 2> expected{};
         for (const auto how : {full, compact}) {
             auto setup = setup_with(gs::accumulator::native);
-            setup.precision = how;
+            setup.storage.precision = how;
             engine->begin(setup);
             expected[static_cast<std::size_t>(how)] = engine->profile().forecast(1000000, 3).gaussians;
         }

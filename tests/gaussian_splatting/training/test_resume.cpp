@@ -73,7 +73,7 @@ TEST_CASE("resume: a run that continues from any checkpoint gives the same model
               std::tuple("adaptive", compact, 80, iterations{31, 50})}) {
             CAPTURE(std::string(strategy));
             gs::train::train_options o = options_for(scene, strategy);
-            o.precision = precision;
+            o.storage.precision = precision;
             o.schedule.iterations = last;
             o.checkpoint_every = 1;
             std::map<int, gs::state_archive> checkpoints, ignored;
@@ -85,6 +85,7 @@ TEST_CASE("resume: a run that continues from any checkpoint gives the same model
                 gs::train::train_options rest = o;
                 rest.checkpoint_every.reset();
                 rest.resume_from = &checkpoints.at(iteration);
+                rest.storage.first_degree_on_host = 2;
                 CHECK(gs::train::precision_in(checkpoints.at(iteration)) == precision);
                 check_equal(trained(make, scene, rest, ignored), uninterrupted);
             }

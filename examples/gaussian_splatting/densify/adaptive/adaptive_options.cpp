@@ -44,7 +44,7 @@ std::vector<option> growth_options(adaptive_config& c) {
          .default_text = "8e-5 if densification ends at iteration 15000; higher if it ends earlier or photos "
                          "have more than 600000 pixels"},
         {.names = "--budget",
-         .value = whole(c.budget, 1, 100000000),
+         .value = whole(c.budget, 1, 300000000),
          .help = "Number of Gaussians that densification grows to in even steps, whatever the gradients "
                  "(Mallick et al. 2024)",
          .unit = "Gaussians",

@@ -63,6 +63,10 @@ class basic_cpu {
             }
             size_ = n;
         }
+        void free_in(memory_place) {
+            memory_.reset();
+            size_ = capacity_ = 0;
+        }
         T* data() const { return memory_.get(); }
         std::size_t size() const { return size_; }
 

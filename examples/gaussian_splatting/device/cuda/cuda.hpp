@@ -144,15 +144,15 @@ class cuda {
     }
     template <class T>
     void copy(T* to, const T* from, std::size_t n) {
-        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToDevice, stream_));
+        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDefault, stream_));
     }
     template <class T>
     void upload(T* to, const T* from, std::size_t n) {
-        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyHostToDevice, stream_));
+        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDefault, stream_));
     }
     template <class T>
     void download(T* to, const T* from, std::size_t n) {
-        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToHost, stream_));
+        check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDefault, stream_));
         wait();
     }
 

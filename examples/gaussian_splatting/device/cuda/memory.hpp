@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "../../core/error.hpp"
+#include "../memory_place.hpp"
 
 namespace gs::device {
 
@@ -53,7 +54,8 @@ class cuda_pool {
     cudaMemPool_t pool_{};
 };
 
-/// An array in device memory: see `buffer_of`. Growing it loses the contents.
+/// An array in device memory, or in page-locked host memory that kernels reach: see `buffer_of` and
+/// `placed_buffer`. Growing it loses the contents.
 template <class T>
 class cuda_buffer {
   public:
@@ -68,10 +70,14 @@ class cuda_buffer {
     void resize(std::size_t n) {
         if (n > capacity_) {
             release();
-            check(cudaMallocAsync(&memory_, n * sizeof(T), in_order()));
+            allocate(n * sizeof(T));
             capacity_ = n;
         }
         size_ = n;
+    }
+    void free_in(memory_place place) {
+        release();
+        place_ = place;
     }
     T* data() const { return memory_; }
     std::size_t size() const { return size_; }
@@ -81,9 +87,22 @@ class cuda_buffer {
     /// streams.
     static cudaStream_t in_order() { return cudaStreamLegacy; }
 
+    void allocate(std::size_t bytes) {
+        if (place_ == memory_place::device) return check(cudaMallocAsync(&memory_, bytes, in_order()));
+        if (cudaHostAlloc(&memory_, bytes, cudaHostAllocDefault) == cudaSuccess) return;
+        cudaGetLastError();  // otherwise the next call of another library reports it
+        throw error("the system refuses " + std::to_string(bytes) +
+                    " bytes of page-locked memory for SH coefficients: lower --max-cap, or raise "
+                    "--gpu-memory");
+    }
     void release() {
         if (memory_ == nullptr) return;
-        cudaFreeAsync(memory_, in_order());
+        if (place_ == memory_place::device) {
+            cudaFreeAsync(memory_, in_order());
+        } else {
+            cudaStreamSynchronize(in_order());  // kernels may still use the memory
+            cudaFreeHost(memory_);
+        }
         memory_ = nullptr;
         size_ = capacity_ = 0;
     }
@@ -91,10 +110,12 @@ class cuda_buffer {
         std::swap(memory_, other.memory_);
         std::swap(size_, other.size_);
         std::swap(capacity_, other.capacity_);
+        std::swap(place_, other.place_);
     }
 
     T* memory_ = nullptr;
     std::size_t size_ = 0, capacity_ = 0;
+    memory_place place_ = memory_place::device;
 };
 
 }  // namespace gs::device
