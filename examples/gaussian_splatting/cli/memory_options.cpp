@@ -16,8 +16,8 @@ std::vector<options::option> memory_options(settings& s) {
             {.names = "--gpu-memory",
              .commands = {train},
              .value = byte_size(s.gpu_memory),
-             .help = "Device memory to use: above it, SH coefficients stay in slower host memory, and "
-                     "then the model stops growing",
+             .help = "Device memory to use; if it is full, SH coefficients move to the host, and then the "
+                     "model stops growing",
              .default_text = "a share of the memory that is available, or none with --deterministic"},
             {.names = "--precision",
              .commands = {train},

@@ -385,7 +385,13 @@ rows learning_rate_options(settings& s) {
 
 rows densification_options(settings& s) {
     return grouped("Densification",
-                   {{.names = "--strategy",
+                   {{.names = "--init",
+                     .commands = {train},
+                     .value = choice(s.init),
+                     .help = "Source of the first Gaussians: given takes the scene's points, stereo compares "
+                             "photos, and auto adds points of stereo to few given ones",
+                     .is_rare = true},
+                    {.names = "--strategy",
                      .commands = {train},
                      .value = word(s.densification.name, train::strategy_settings::names()),
                      .help = "Densification strategy: decides which Gaussians training adds and removes"},

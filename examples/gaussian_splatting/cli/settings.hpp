@@ -20,6 +20,7 @@
 #include "../options/command.hpp"
 #include "../options/enum_names.hpp"
 #include "../readers/load_scene.hpp"
+#include "../training/first_points.hpp"
 #include "../training/schedule.hpp"
 #include "../writers/writer.hpp"
 
@@ -78,6 +79,7 @@ struct settings {
     train::strategy_settings densification;
     std::string loss = train::default_loss;
     features::selection effects;
+    train::point_source init = train::point_source::automatic;
     std::optional<int> sh_degree;        ///< if unset, `effects` decides
     std::optional<int> num_downscales;   ///< if unset, the size of the photos decides
     std::optional<std::size_t> max_cap;  ///< if unset, the size of the photos decides

@@ -56,18 +56,6 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     return o;
 }
 
-/// Returns the first model, from the points of the scene or from random points. Random points use
-/// at most half of the allowed number of Gaussians, so that densification can add Gaussians where
-/// they matter.
-gaussians first_model(const scene& scene, const train::train_options& o) {
-    constexpr std::size_t most_random = 100000;
-    const std::size_t most = o.densification.target_count().value_or(o.max_cap);
-    const auto points = scene.points.empty()
-                            ? random_points(scene, std::min(most_random, most / 2 + 1), o.seed)
-                            : scene.points;
-    return from_points(points, 0, most, o.seed);
-}
-
 /// A training run. Call its public functions once each, in the order of their declaration.
 class training_run {
   public:
@@ -102,6 +90,16 @@ class training_run {
             {options_.max_cap, first_sh_degree(), device.forecast(options_.max_cap, first_sh_degree()),
              options_.max_device_bytes, parameter_bytes_on_host(device, ranks_.count())},
             precision, s_.deterministic);
+    }
+    /// Returns the Gaussians that training begins with. A checkpoint replaces them, so they need no stereo
+    /// then.
+    gaussians first_model() {
+        using enum train::point_source;
+        const std::size_t most = options_.densification.target_count().value_or(options_.max_cap);
+        const train::point_source any = scene_.points.empty() ? random : given;
+        const auto first = find_first_points(scene_, checkpoint_ ? any : s_.init, most, s_.seed);
+        if (!first.remark.empty() && !checkpoint_) context_.say(first.remark);
+        return from_points(first.points, 0, most, s_.seed);
     }
     int first_sh_degree() const {
         return features::first_sh_degree(options_.features.values_if_on("direction"));
@@ -158,7 +156,7 @@ training_run::training_run(const settings& s, const load_options& source,
     if (ranks_.is_first()) output_.emplace(s.output);
     options_.gradient = gradient;
     options_.ranks = &ranks_;
-    gaussians model = first_model(scene_, options_);
+    gaussians model = first_model();
     options_.features.prepare(scene_, model);
     engine_->set_views(scene_.train, scene_.test, options_.schedule.num_downscales, photo_memory_);
     engine_->set_model(model);

@@ -146,6 +146,7 @@ const std::map<std::string, option_case> cases{
      {{"1e-4"}, [](const settings& s) { return adaptive(s).densify_grad_threshold == 1e-4; }}},
     {"--budget", {{"900"}, [](const settings& s) { return adaptive(s).budget == 900; }}},
     {"--photo-memory", {{"2KiB"}, [](const settings& s) { return s.photo_memory == 2048; }}},
+    {"--init", {{"stereo"}, [](const settings& s) { return s.init == gs::train::point_source::stereo; }}},
     {"--gpu-memory", {{"1.5GB"}, [](const settings& s) { return s.gpu_memory == 1500000000; }}},
     {"--precision",
      {{"compact"}, [](const settings& s) { return s.precision == gs::train::moment_precision::compact; }}},
