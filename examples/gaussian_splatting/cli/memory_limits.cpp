@@ -40,9 +40,14 @@ std::uint64_t device_limit(const settings& s, const device::profiler& device, in
     return (device.used_device_bytes() + own_device_bytes(device, ranks)) / 10 * 9;
 }
 
-train::parameter_storage storage_for(const largest_model& model,
-                                     std::optional<train::moment_precision> precision, bool keeps_floats) {
+train::moment_precision precision_for(std::optional<train::moment_precision> wanted,
+                                      const device::memory_forecast& with_floats, std::uint64_t limit) {
     using enum train::moment_precision;
+    if (wanted) return *wanted;
+    return limit > 0 && with_floats.total() > limit ? compact : full;
+}
+
+train::parameter_storage storage_for(const model_memory& model, train::moment_precision precision) {
     const auto bytes = [&](const train::parameter_storage& how) {
         return train::bytes_per_gaussian(model.sh_degree, how);
     };
@@ -50,13 +55,11 @@ train::parameter_storage storage_for(const largest_model& model,
         const std::uint64_t saved = model.gaussians * (bytes({}).on_device - bytes(how).on_device);
         return model.device_limit == 0 || model.forecast.total() <= model.device_limit + saved;
     };
-    const bool chooses = !precision && !keeps_floats;
-    train::parameter_storage chosen{precision.value_or(full)};
-    if (chooses && !fits(chosen)) chosen.precision = compact;
+    train::parameter_storage chosen{precision};
     while (!fits(chosen) && chosen.first_degree_on_host > 1) {
         train::parameter_storage next = chosen;
         --next.first_degree_on_host;
-        if (model.gaussians * bytes(next).on_host > model.host_bytes) break;
+        if (model.gaussians * bytes(next).on_host > model.host_limit) break;
         chosen = next;
     }
     return chosen;

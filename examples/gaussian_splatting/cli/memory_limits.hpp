@@ -28,20 +28,23 @@ load_options with_limit(load_options source, const photos::photo_limits& limits)
 /// Returns the memory for photos: empty if they are resident.
 photos::photo_plan photo_memory(const scene& of, const photos::photo_limits& limits);
 
-/// The largest model that training expects, and the memory for it.
-struct largest_model {
+/// Returns the precision of moments: `wanted` if it is set, and otherwise compact if the forecast for float
+/// moments exceeds the limit. A limit of 0 means none.
+train::moment_precision precision_for(std::optional<train::moment_precision> wanted,
+                                      const device::memory_forecast& with_floats, std::uint64_t limit);
+
+/// A model, and the memory for it.
+struct model_memory {
     std::size_t gaussians = 0;
     int sh_degree = 0;
     device::memory_forecast forecast;  ///< with float moments, and nothing in host memory
     std::uint64_t device_limit = 0;    ///< see `device_limit`
-    std::uint64_t host_bytes = 0;      ///< host memory for parameters; zero if they must stay on the device
+    std::uint64_t host_limit = 0;      ///< see `parameter_bytes_on_host`
 };
 
-/// Returns the first of these that fits into device memory: float moments, compact moments, and compact
-/// moments with SH degrees 3, 2 and 1 in host memory. If none fits, returns the last one for which the
-/// host has memory. Moments have this precision if it is set, and are float if `keeps_floats`.
-train::parameter_storage storage_for(const largest_model& model,
-                                     std::optional<train::moment_precision> precision, bool keeps_floats);
+/// Returns the storage with as few SH degrees in host memory as the limit of the device permits. If it
+/// permits none, returns the one with as many as the host has room for.
+train::parameter_storage storage_for(const model_memory& model, train::moment_precision precision);
 
 /// Returns the host memory for parameters: a share of what is available, or none if the device shares the
 /// host's memory or if there are several ranks.

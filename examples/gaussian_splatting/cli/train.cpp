@@ -47,6 +47,7 @@ train::train_options options_of(const settings& s, const scene& scene, const com
         s.max_cap.value_or(std::max(train::default_cap(scene), s.densification.target_count().value_or(0)));
     o.seed = s.seed;
     o.max_device_bytes = device_limit(s, device, ranks);
+    o.host_bytes = parameter_bytes_on_host(device, ranks);
     o.background = context.background(scene.has_alpha && !features.is_on("exposure"));
     o.save_iterations = s.save_iterations;
     o.test_iterations = s.test_iterations;
@@ -84,12 +85,16 @@ class training_run {
     /// Ends the program after Ctrl-C, or after a page of the live view has asked to stop.
     [[noreturn]] void end_early();
     void say_expected_memory();
+    /// Returns the storage of the first model. Training changes it if the model outgrows the limit of memory.
     train::parameter_storage storage(std::optional<train::moment_precision> precision) const {
-        const device::profiler& device = engine_->profile();
+        const auto forecast = [&](std::size_t gaussians) {
+            return engine_->profile().forecast(gaussians, first_sh_degree());
+        };
+        if (s_.deterministic && !precision) precision = train::moment_precision::full;
+        const std::uint64_t limit = options_.max_device_bytes;
         return storage_for(
-            {options_.max_cap, first_sh_degree(), device.forecast(options_.max_cap, first_sh_degree()),
-             options_.max_device_bytes, parameter_bytes_on_host(device, ranks_.count())},
-            precision, s_.deterministic);
+            {engine_->count(), first_sh_degree(), forecast(engine_->count()), limit, options_.host_bytes},
+            precision_for(precision, forecast(options_.max_cap), limit));
     }
     /// Returns the Gaussians that training begins with. A checkpoint replaces them, so they need no stereo
     /// then.

@@ -72,6 +72,8 @@ class engine {
     std::size_t count() const { return count_; }
     /// Returns whether the last call of `densify` made as many Gaussians as `max_device_bytes` allows.
     bool lacks_memory() const { return lacks_memory_; }
+    /// Returns the lowest SH degree whose coefficients lie in host memory: see `parameter_storage`.
+    int first_degree_on_host() const { return first_degree_on_host_; }
     /// Returns the timetable of the densification strategy. Precondition: `begin` was called.
     const train::timetable& timetable() const { return *timetable_; }
     device::profiler& profile() { return *profiler_; }
@@ -86,6 +88,7 @@ class engine {
   protected:
     std::size_t count_ = 0;  ///< number of Gaussians
     bool lacks_memory_ = false;
+    int first_degree_on_host_ = 4;
     const train::timetable* timetable_ = nullptr;
     device::profiler* profiler_ = nullptr;
     checkpointed* state_ = nullptr;

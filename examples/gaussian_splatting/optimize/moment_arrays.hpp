@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -13,11 +12,6 @@
 #include "moment_precision.hpp"
 
 namespace gs::train {
-
-/// Number of words of compact moments per Gaussian, by parameter. SH degree 0 has one word for its first
-/// moments and one for the second moment of all SH degrees. The other degrees have one word for each
-/// coefficient.
-inline constexpr std::array<int, parameter_count> packed_width{3, 3, 4, 1, 2, 3, 5, 7};
 
 /// Two moments in a word. `Bits` and `Real` are the types of 32-bit unsigned integers and floats of a warp.
 template <class Real, class Bits>

@@ -5,6 +5,8 @@
 #include <array>
 #include <string_view>
 
+#include "../model/parameters.hpp"
+
 namespace gs::train {
 
 /// The precision of Adam's moments. `compact` takes 112 instead of 472 bytes per Gaussian of SH degree 3:
@@ -21,5 +23,10 @@ namespace gs::train {
 enum class moment_precision { full, compact };
 
 constexpr std::array<std::string_view, 2> names_of(moment_precision) { return {"float", "compact"}; }
+
+/// Number of words of compact moments per Gaussian, by parameter. SH degree 0 has one word for its first
+/// moments and one for the second moment of all SH degrees. The other degrees have one word for each
+/// coefficient.
+inline constexpr std::array<int, parameter_count> packed_width{3, 3, 4, 1, 2, 3, 5, 7};
 
 }  // namespace gs::train

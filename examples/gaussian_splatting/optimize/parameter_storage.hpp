@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 #include "../model/parameters.hpp"
-#include "moment_arrays.hpp"
 #include "moment_precision.hpp"
 
 namespace gs::train {

@@ -21,6 +21,7 @@
 #include "../render/renderer.hpp"
 #include "clamp_render.hpp"
 #include "device_views.hpp"
+#include "engine_memory.hpp"
 #include "engine_parts.hpp"
 #include "list_sizer.hpp"
 #include "refine_pose.hpp"
@@ -125,8 +126,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         const std::size_t most = growth_limit();
         const densify_report report =
             strategy_->run(iteration, {in_training(), seen_.data(), gather_, views, most});
-        lacks_memory_ = report.count >= most;
         begin_generation(report.count);
+        lacks_memory_ = report.count >= most && !move_sh_to_host();
         return report.without_gradient;
     }
 
@@ -254,27 +255,27 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     std::size_t used_device_bytes() const override { return device_.used_bytes(); }
     std::size_t free_device_bytes() const override { return device_.free_bytes(); }
     device::memory_forecast forecast(std::size_t gaussians, int sh_degree) const override {
-        const double per_gaussian = static_cast<double>(renderer_.reserved_instances()) /
-                                    static_cast<double>(std::max<std::size_t>(count_, 1));
-        const auto instances = static_cast<std::uint64_t>(per_gaussian * static_cast<double>(gaussians));
-        constexpr std::size_t of_pixel = renderer_type::bytes_per_pixel() +
-                                         image_comparison<Device, float>::bytes_per_pixel() +
-                                         3 * sizeof(float);
-        const parameter_bytes of_parameters = train::bytes_per_gaussian(sh_degree, setup_.storage);
-        return {views_.photo_bytes(), gaussians * (of_parameters.on_device + bytes_beside_parameters(sh_degree)),
-                instances * renderer_type::bytes_per_instance() + views_.most_pixels() * of_pixel,
-                gaussians * of_parameters.on_host};
+        device::memory_forecast all =
+            forecast_of_gaussians<Device>(renderer_, count_, gaussians, sh_degree, setup_);
+        all.photos = views_.photo_bytes();
+        all.others += views_.most_pixels() * bytes_per_pixel<Device, renderer_type>();
+        return all;
     }
     void wait() override { device_.wait(); }
     /// @}
 
-    /// Returns the device memory of a Gaussian, without its parameters and tile lists.
-    std::size_t bytes_beside_parameters(int sh_degree) const {
-        constexpr std::size_t of_sort = 2 * sizeof(std::uint32_t), of_distribution = sizeof(std::uint64_t),
-                              of_strategy = 4 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
-        return sizeof(std::uint32_t) + sizeof(raster::visibility) + renderer_type::bytes_per_gaussian(setup_.facts.gradient) +
-               parameter_gather<Device>::bytes_per_gaussian(sh_degree) + of_sort + of_distribution +
-               of_strategy;
+    /// Moves the SH coefficients of the highest degree on the device to host memory, with their moments.
+    /// Returns false if there are none, or if the host has no room for them.
+    bool move_sh_to_host() {
+        parameter_storage next = setup_.storage;
+        next.first_degree_on_host = std::min(next.first_degree_on_host, sh_degree_ + 1) - 1;
+        if (next.first_degree_on_host < 1 ||
+            count_ * bytes_per_gaussian(sh_degree_, next).on_host > setup_.host_bytes)
+            return false;
+        trained_.set_storage(device_, next);
+        first_degree_on_host_ = next.first_degree_on_host;
+        setup_.storage = next;
+        return true;
     }
     /// Returns the largest number of Gaussians for which the limit of memory suffices.
     std::size_t growth_limit() {
@@ -349,6 +350,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         timetable_ = strategy_.get();
         features_.begin(setup);
         setup_ = setup;
+        first_degree_on_host_ = setup.storage.first_degree_on_host;
         ++runs_;
         trained_.set_storage(device_, setup.storage);
         if (!trained_.has_moments()) trained_.clear_moments(device_, count_, sh_degree_);

@@ -49,6 +49,7 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     setup.densification = options.densification;
     setup.loss = options.loss;
     setup.storage = options.storage;
+    setup.host_bytes = options.host_bytes;
     setup.dropout = schedule.dropout_share();
     setup.ranks = options.ranks;
     for (const auto& feature : options.features.all())
@@ -114,12 +115,21 @@ training::training(train::engine& engine, const gs::scene& scene, const train_op
     add_step();
     add({phase::restructure, "densify", [this](int iteration) { return timetable().due(iteration); },
          [this, warn = events.warn](int iteration) {
+             const int on_host_before = engine_.first_degree_on_host();
              result_.without_gradient = std::max(result_.without_gradient, engine_.densify(iteration));
+             if (engine_.first_degree_on_host() < on_host_before) warn(moved_to_host(iteration));
              note_limited_growth(iteration, warn);
          }});
     add({phase::upkeep, "adjust parameters", [](int) { return true; },
          [this](int iteration) { engine_.adjust(iteration); }});
     add_reports(events);
+}
+
+std::string training::moved_to_host(int iteration) const {
+    return "iteration " + std::to_string(iteration) + ": SH coefficients from degree " +
+           std::to_string(engine_.first_degree_on_host()) +
+           " on lie in host memory, because the device's memory is limited to " +
+           size_in_bytes(options_.max_device_bytes) + " (--gpu-memory): steps take longer";
 }
 
 /// Warns once if the limit of memory stops growth.

@@ -37,6 +37,7 @@ struct train_options {
     std::uint64_t max_device_bytes = 0;  ///< see `training_facts::max_device_bytes`
     std::string loss = default_loss;
     parameter_storage storage{};
+    std::uint64_t host_bytes = 0;  ///< see `training_setup::host_bytes`
     std::uint64_t seed = 0;
     accumulator gradient = accumulator::native;
     background_choice background;
@@ -182,6 +183,8 @@ class training {
     train_result& result() { return result_; }
 
   private:
+    /// Returns a warning for the user.
+    std::string moved_to_host(int iteration) const;
     void note_limited_growth(int iteration, const std::function<void(const std::string&)>& warn);
     void add_step();
     void add_memory();

@@ -24,7 +24,7 @@ struct outcome {
 
 /// Trains with a strategy that grows from 4000 Gaussians to `most`, if memory permits it.
 outcome grown(make_engine make, const gs::scene& scene, const std::string& strategy, std::size_t most,
-              std::uint64_t max_bytes) {
+              std::uint64_t max_bytes, std::uint64_t host_bytes = 0) {
     outcome found;
     gs::train::train_options o;
     o.schedule.iterations = 240;
@@ -37,6 +37,7 @@ outcome grown(make_engine make, const gs::scene& scene, const std::string& strat
     adaptive.densify_grad_threshold = 1e-9;
     o.max_cap = most;
     o.max_device_bytes = max_bytes;
+    o.host_bytes = host_bytes;
     const auto engine = make();
     const std::size_t before = engine->profile().used_device_bytes();
     engine->set_views(scene.train, {}, 0);
@@ -92,6 +93,22 @@ TEST_CASE("long: memory: growth stops near the limit, with one warning") {
             REQUIRE(limited.warnings.size() == 1);
             CHECK(limited.warnings[0].find("--gpu-memory") != std::string::npos);
         }
+}
+
+TEST_CASE("long: memory: a model that reaches the limit grows on when SH coefficients move to the host") {
+    const gs::scene scene = scene_with_points();
+    for (const auto make : engines()) {
+        const bool gains_room = !make()->profile().shares_host_memory();
+        const std::uint64_t limit = grown(make, scene, "mcmc", 15000, 0).used / 2;
+        const outcome alone = grown(make, scene, "mcmc", 15000, limit);
+        const outcome helped = grown(make, scene, "mcmc", 15000, limit, std::uint64_t{1} << 30);
+        REQUIRE(helped.warnings.size() >= 2);
+        CHECK(helped.warnings[0].find("SH coefficients from degree 3 on lie in host memory") !=
+              std::string::npos);
+        CHECK(helped.warnings[1].find("from degree 2 on") != std::string::npos);
+        if (gains_room) CHECK(helped.gaussians > alone.gaussians);
+        CHECK(static_cast<double>(helped.used) < 1.1 * static_cast<double>(limit));
+    }
 }
 
 TEST_CASE("sizes in bytes have decimal and binary units") {
