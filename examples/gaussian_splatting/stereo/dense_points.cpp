@@ -10,7 +10,6 @@
 #include <optional>
 #include <utility>
 
-#include "../core/median.hpp"
 #include "../core/parallel.hpp"
 #include "plane_sweep.hpp"
 
@@ -18,7 +17,7 @@ namespace gs::stereo {
 namespace {
 
 constexpr int longer_side = 192;
-constexpr std::size_t most_others = 4;
+constexpr std::size_t most_photos = 400, most_others = 4;
 constexpr int least_steps = 32, most_steps = 320;
 /// The angle at the surface between two views that compare best, and the limits.
 constexpr double best_angle = 8, least_angle = 1, most_angle = 35;  // degrees
@@ -55,13 +54,21 @@ distances distances_in(const scene& of, const camera& c) {
     return {0.7 * at(0.01), at(0.5), 2 * at(0.99)};
 }
 
+/// Returns at most `most_photos` training views, evenly from all.
+std::vector<const view*> chosen_views(const scene& of) {
+    const std::size_t count = std::min(of.train.size(), most_photos);
+    std::vector<const view*> chosen;
+    for (std::size_t i = 0; i < count; ++i) chosen.push_back(&of.train[i * of.train.size() / count]);
+    return chosen;
+}
+
 /// Returns the views that compare best with a view, the best first.
-std::vector<std::size_t> others_of(const scene& of, std::size_t which, double typical) {
-    const camera& c = of.train[which].camera;
+std::vector<std::size_t> others_of(const std::vector<const view*>& views, std::size_t which, double typical) {
+    const camera& c = views[which]->camera;
     const glm::dvec3 axis = c.ray(0.5 * c.width, 0.5 * c.height), target = c.center() + typical * axis;
     std::vector<std::pair<double, std::size_t>> found;
-    for (std::size_t v = 0; v < of.train.size(); ++v) {
-        const camera& other = of.train[v].camera;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        const camera& other = views[v]->camera;
         if (v == which) continue;
         const double angle = degrees_between(target - c.center(), target - other.center());
         if (angle < least_angle || angle > most_angle) continue;
@@ -122,11 +129,12 @@ std::optional<std::size_t> pixel_that_agrees(const swept_view& with, const glm::
 }  // namespace
 
 std::vector<colored_point> dense_points(const scene& of) {
-    std::vector<swept_view> views(of.train.size());
+    const std::vector<const view*> chosen = chosen_views(of);
+    std::vector<swept_view> views(chosen.size());
     for_each_in_parallel(views.size(), [&](std::size_t v) {
-        const distances found = distances_in(of, of.train[v].camera);
-        views[v].photo = reduced(of.train[v], longer_side);
-        views[v].others = others_of(of, v, found.typical);
+        const distances found = distances_in(of, chosen[v]->camera);
+        views[v].photo = reduced(*chosen[v], longer_side);
+        views[v].others = others_of(chosen, v, found.typical);
         views[v].range = {1 / found.farthest, 1 / found.nearest};
         views[v].is_taken.resize(views[v].photo.pixels());
     });

@@ -17,7 +17,8 @@ namespace gs::device {
 
 inline void check(cudaError_t status) {
     if (status == cudaErrorMemoryAllocation)
-        throw error("the GPU is out of memory: lower --max-cap, --resolution or --photo-memory");
+        throw error(
+            "the GPU is out of memory: lower --gpu-memory, --max-cap, --resolution or --photo-memory");
     if (status != cudaSuccess) throw std::runtime_error(std::string("CUDA: ") + cudaGetErrorString(status));
 }
 
