@@ -58,6 +58,7 @@ first_points find_first_points(const scene& of, point_source source, std::size_t
     first_points first{is_automatic ? of.points : std::vector<colored_point>(), {}};
     const std::vector<colored_point> added = sampled(found, enough_points - first.points.size(), seed);
     first.points.insert(first.points.end(), added.begin(), added.end());
+    if (added.empty()) return first;
     first.remark = "begins with " + std::to_string(added.size()) + " points that stereo finds in the photos";
     if (is_automatic && !of.points.empty())
         first.remark += ", and " + std::to_string(of.points.size()) + " points of the scene";

@@ -7,9 +7,26 @@
 
 #include "engine/engine.hpp"
 #include "run_program.hpp"
+#include "small_scene.hpp"
 #include "small_training.hpp"
 
 using namespace gs_test;
+
+TEST_CASE("--init selects the first points, and the program says so if they are not those of the scene") {
+    const temporary_folder folder;
+    small_scene scene;
+    scene.write(folder / "scene");
+    const auto trained = [&](const char* init) {
+        return run({"train", "-d", (folder / "scene").string(), "-o", (folder / init).string(), "--init",
+                    init, "--device", "cpu", "-i", "2"});
+    };
+    CHECK(trained("auto").out.find("begins with") == std::string::npos);  // the photos are smooth
+    CHECK(trained("given").out.find(" 8 Gaussians") != std::string::npos);
+    CHECK(says(trained("random").out, {"begins with random points", " 5001 Gaussians"}));
+    const outcome refused = trained("stereo");
+    CHECK(refused.code == 2);
+    CHECK(says(refused.err, {"stereo finds only 0 points", "use --init auto"}));
+}
 
 TEST_CASE("settings.json records rates and intervals, and training uses them") {
     const temporary_folder folder;
