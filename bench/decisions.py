@@ -23,15 +23,15 @@ from scenes import by
 
 WORLDS = ["spheres", "alpha"]
 BACKGROUND = "background"
-CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales", "sky": "sky", "masks": "passers", "depth": "depths",
-          "lens": "fisheye"}
+CAUSES = {"direction": "gloss", "exposure": "exposure", "antialiasing": "scales", "sky": "sky", "moving": "moving", "masks": "passers",
+          "depth": "depths", "lens": "fisheye"}
 EFFECTS = [*CAUSES, BACKGROUND]
-PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"walls": 0.8}, {"passers": 0.1}, {"depths": 0.05}, {"depths": 2},
-        {"fisheye": 60}, {"noise": 0.03}]
+PURE = [{}, {"gloss": 1}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"walls": 0.8}, {"moving": 0.2}, {"passers": 0.1},
+        {"depths": 0.05}, {"depths": 2}, {"fisheye": 60}, {"noise": 0.03}]
 SKYLESS = "alpha"  # pixels without a surface are transparent
 SURROUNDINGS = {"sky", "walls"}  # parameters that SKYLESS lacks
 RIGHT_DEPTHS = 0.05  # more noise hides the order of depths
-MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "sky": (0.3, 1), "passers": (0.05, 0.2),
+MIXED = {"gloss": (0.3, 1), "exposure": (0.15, 0.5), "scales": (3, 8), "sky": (0.3, 1), "moving": (0.1, 0.5), "passers": (0.05, 0.2),
          "depths": (0.01, 0.02), "fisheye": (50, 70)}
 
 

@@ -9,6 +9,7 @@
 #include "../checkpoint/state_archive.hpp"
 #include "../engine/feature_state.hpp"
 #include "../engine/training_setup.hpp"
+#include "../metrics/target_image.hpp"
 #include "../model/gaussians.hpp"
 #include "../render/renderer.hpp"
 
@@ -20,7 +21,8 @@ template <class Renderer>
 struct step {
     const train::step_plan& plan;
     const gs::camera& camera;
-    const std::uint16_t* depths;  ///< depth map of the view, in device memory, or null
+    const train::target_image& target;  ///< the photo of the view
+    const std::uint16_t* depths;        ///< depth map of the view, in device memory, or null
     Renderer& renderer;
     float gradient_scale;  ///< the largest gradient scale of the loss and of all features
     accumulator accumulate;

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "../core/parallel.hpp"
 #include "view_photo.hpp"
@@ -87,6 +88,20 @@ std::optional<observation> look(const image& photo, const place_in_photo& p) {
 }
 
 }  // namespace
+
+void keep_one_size(std::vector<observation>& seen, float factor) {
+    std::ranges::sort(seen, {}, [](const observation& o) { return std::pair(o.footprint, o.view); });
+    std::size_t first = 0, most = 0;
+    for (std::size_t i = 0, end = 0; i < seen.size(); ++i) {
+        while (end < seen.size() && seen[end].footprint <= factor * seen[i].footprint) ++end;
+        if (end - i > most) {
+            most = end - i;
+            first = i;
+        }
+    }
+    seen = {seen.begin() + static_cast<std::ptrdiff_t>(first),
+            seen.begin() + static_cast<std::ptrdiff_t>(first + most)};
+}
 
 std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vector<colored_point>& points) {
     std::vector<place_in_photo> seen = project(camera, points);

@@ -25,6 +25,10 @@ struct observation {
 /// The observations of each point.
 using observed_points = std::vector<std::vector<observation>>;
 
+/// Keeps the largest set of observations of a point in which the footprints differ by at most this
+/// factor. From a larger distance, the color of a point mixes with its surroundings.
+void keep_one_size(std::vector<observation>& seen, float factor);
+
 /// The pixel coordinates and the depth of a point in a photo: see `camera::image_point`.
 struct place_in_photo {
     std::uint32_t point;

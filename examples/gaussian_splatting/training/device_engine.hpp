@@ -111,7 +111,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         renderer_.set_strip(strip);
         if (strip) target.rows = strip->own_pixels(shot.camera.height);
         loss_->set_target(target);
-        step_type s{plan, seen, loaded.depths(), renderer_, 0, setup_.facts.gradient};
+        step_type s{plan, seen, target, loaded.depths(), renderer_, 0, setup_.facts.gradient};
         s.gradient_scale = std::max(loss_->gradient_scale(), features_.gradient_scale(s));
         device_.iteration(key_of(s, target), [&] { iterate(s); });
         lists_.was_noted(plan.view, count_);
@@ -238,8 +238,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         const photo& shot = views_.held_out()[test_view];
         renderer_.set_strip({});
         const auto loss = parts_.make_loss(device_, setup_.loss);
-        loss->set_target(views_.load_in_order(views_.held_out(), test_view).target(background));
-        return refine_pose(device_, renderer_, features_, *loss, test_view, shot.camera,
+        const target_image target = views_.load_in_order(views_.held_out(), test_view).target(background);
+        return refine_pose(device_, renderer_, features_, *loss, target, test_view, shot.camera,
                            setup_.facts.gradient,
                            [&](const camera& seen) { draw(renderer_, seen, background); });
     }

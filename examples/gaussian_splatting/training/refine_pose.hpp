@@ -21,23 +21,26 @@ struct first_columns {
 };
 
 /// Returns the camera of a held-out view with a refined pose: see `learned_cameras`. `draw`
-/// renders a camera with the renderer. `loss` has the photo as its target. Effects that
-/// features have on the render, such as exposures, pass the gradient through unchanged.
+/// renders a camera with the renderer. `target` is the view's photo. Effects that features have on the
+/// render, such as exposures, pass the gradient through unchanged.
 template <class Renderer, class Draw>
 camera refine_pose(typename Renderer::device_type& device, Renderer& renderer,
-                   features::device_features<Renderer>& features, loss<float>& loss, std::size_t test_view,
-                   const camera& given, accumulator accumulate, const Draw& draw) {
+                   features::device_features<Renderer>& features, loss<float>& loss,
+                   const target_image& target, std::size_t test_view, const camera& given,
+                   accumulator accumulate, const Draw& draw) {
     constexpr int steps = 100;
     typename Renderer::template buffer<float> left;
     // Windows of the loss extend this far, so the other columns depend on the right half.
     const int columns = given.width / 2 - std::min(loss.reach(), given.width / 2);
     step_plan plan;
     plan.view = test_view;
+    loss.set_target(target);
     features.begin_refinement();
     camera seen = features.refined(given);
     for (int i = 0; i < steps; ++i) {
         draw(seen);
-        const features::step<Renderer> s{plan, seen, nullptr, renderer, loss.gradient_scale(), accumulate};
+        const features::step<Renderer> s{plan,      seen, target, nullptr, renderer, loss.gradient_scale(),
+                                         accumulate};
         left.resize(3 * s.pixels());
         const float* gradient = loss.gradient(
             features.show_held_out(test_view, renderer.render(), s.pixels()), renderer.capacity());

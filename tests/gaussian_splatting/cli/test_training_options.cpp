@@ -167,6 +167,7 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
                                              {"antialiasing", true},
                                              {"sky", false},
                                              {"poses", false},
+                                             {"moving", false},
                                              {"masks", false},
                                              {"depth", false},
                                              {"background", false}});
@@ -186,6 +187,7 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
                                                                              {"antialiasing", true},
                                                                              {"sky", false},
                                                                              {"poses", false},
+                                                                             {"moving", false},
                                                                              {"masks", false},
                                                                              {"depth", false},
                                                                              {"background", false}});

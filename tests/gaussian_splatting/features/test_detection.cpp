@@ -80,7 +80,7 @@ TEST_CASE("long: detection recommends the effects that a scene was made with, an
         INFO(c.scene);
         const gs::scene scene = made(c.scene);
         const gs::scene_statistics statistics(scene);
-        REQUIRE(all_features().size() == 9);
+        REQUIRE(all_features().size() == 10);
         for (const auto& f : all_features()) {
             INFO(f->name());
             const finding found = f->analyze(statistics);
@@ -351,12 +351,12 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
     CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
     CHECK(refusal("spheres,glos=0.5") ==
           "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
-          "sky, walls, fisheye, panorama, depths, points, views, poses, noise");
+          "moving, sky, walls, fisheye, panorama, depths, points, views, poses, noise");
     CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
     CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
     CHECK(refusal("spheres,") ==
           "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
-          "sky, walls, fisheye, panorama, depths, points, views, poses, noise");
+          "moving, sky, walls, fisheye, panorama, depths, points, views, poses, noise");
     CHECK(refusal("spheres,gloss=nan") ==
           "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
     CHECK(refusal("spheres,views=4,depths=0") == "");

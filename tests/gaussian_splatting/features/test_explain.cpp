@@ -82,7 +82,7 @@ TEST_CASE("explain: each effect names its condition, and shows photos of the sce
 TEST_CASE("explain: a scene without points has no photos of effects that need points") {
     gs::scene scene = explained_scene("spheres,views=3,points=300");
     scene.points.clear();
-    for (const char* name : {"direction", "exposure", "antialiasing", "sky", "masks", "depth"}) {
+    for (const char* name : {"direction", "exposure", "antialiasing", "sky", "moving", "masks", "depth"}) {
         CAPTURE(name);
         const explanation found = explained(name, scene);
         CHECK(!found.condition.empty());
@@ -129,6 +129,30 @@ TEST_CASE("explain: sky is marked where it is") {
     REQUIRE(found.charts.size() == 1);
     CHECK(found.charts[0].curves[0].points[view].second ==
           doctest::Approx(100 * of_fit / (most.width * most.height)));
+}
+
+TEST_CASE("explain: rings mark the points that a moving thing hides") {
+    const gs::scene scene = explained_scene("spheres,moving=0.1");
+    const gs::scene static_scene = explained_scene("spheres");
+    const explanation found = explained("moving", scene);
+    const gs::pages::marked_photo& most = photo_labelled(found, "Most hidden points");
+    const std::size_t view = view_called(scene, most.name);
+    const gs::image &with = scene.train[view].pixels, &without = static_scene.train[view].pixels;
+    REQUIRE(most.marks.size() >= 10);
+    const auto differs = [&](int x, int y) {
+        const auto i = 4 * static_cast<std::size_t>(y * with.width + x);
+        return !std::equal(&with.rgba[i], &with.rgba[i] + 3, &without.rgba[i]);
+    };
+    for (const gs::pages::mark& m : most.marks) {
+        int differing = 0;  // of the pixels whose mean is compared
+        for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx)
+                differing += differs(static_cast<int>(m.left) + dx, static_cast<int>(m.top) + dy) ? 1 : 0;
+        CHECK(differing > 0);
+    }
+    const auto& shares = found.charts.at(0).curves.at(0).points;
+    CHECK(shares.size() == scene.train.size());
+    CHECK(shares[view].second > 8);
 }
 
 TEST_CASE("explain: the gain of a degree is the mean of the gains at points") {

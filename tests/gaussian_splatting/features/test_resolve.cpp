@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "device/cpu/cpu.hpp"  // before kernels, which call functions of its SIMD values
 #include "features/exposure/exposures.hpp"
 #include "features/resolve.hpp"
 #include "features/sh_degree/sh_degree_feature.hpp"
@@ -36,7 +37,7 @@ std::string refusal(const std::string& text) {
 
 /// The names of the selectable features.
 const selected_feature& outcome(const feature_set& features, std::size_t i) {
-    REQUIRE(features.all().size() == 7);
+    REQUIRE(features.all().size() == 8);
     return features.all()[i];
 }
 
@@ -77,9 +78,9 @@ TEST_CASE("long: training simulates the recommended effects, or those that --eff
     CHECK(revises_sh_degree(matte));
     CHECK(gains_of(matte).empty());
     CHECK_FALSE(matte.is_on("antialiasing"));
-    REQUIRE(matte.all().size() == 7);
-    for (std::size_t i = 0;
-         const char* name : {"direction", "exposure", "antialiasing", "sky", "poses", "masks", "depth"}) {
+    REQUIRE(matte.all().size() == 8);
+    for (std::size_t i = 0; const char* name : {"direction", "exposure", "antialiasing", "sky", "poses",
+                                                "moving", "masks", "depth"}) {
         CHECK(matte.all()[i].name == name);
         CHECK_FALSE(matte.all()[i++].on);
     }
@@ -152,7 +153,7 @@ TEST_CASE("a selection of effects that is none is refused") {
     }
     CHECK(refusal("glare") ==
           "--effects: there is no effect 'glare'; the effects are direction, exposure, antialiasing, sky, "
-          "poses, masks, depth");
+          "poses, moving, masks, depth");
     CHECK(parse_selection("auto").allows("masks"));
     CHECK(parse_selection("masks").allows("masks"));
     CHECK_FALSE(parse_selection("none").allows("masks"));

@@ -40,6 +40,7 @@ gs::train::train_options options_for(const gs::scene& scene, const std::string& 
         {{"direction", true, "", {1, 1}},  // revises the SH degree
          {"exposure", true, "", gs::features::exposure_feature().neutral_values(scene)},
          {"poses", true, "", gs::features::poses_feature().neutral_values(scene)},
+         {"moving", true, "", {}},
          {"depth", true, "", gs::features::depth_feature().neutral_values(scene)}});
     return o;
 }

@@ -16,26 +16,10 @@ namespace gs::features {
 namespace {
 
 constexpr double ridges[] = {0.3, 1, 3, 10};  ///< penalties in observations; none on degree 0
-constexpr float one_size = 1.6f;
-constexpr double outlier = 4.0;  ///< standard deviations; another object hid the point
+constexpr float one_size = 1.6f;              ///< of footprints: see `keep_one_size`
+constexpr double outlier = 4.0;               ///< standard deviations; another object hid the point
 
 constexpr std::size_t some_points = 10;
-
-/// Keeps the largest set of observations in which the footprints differ by at most a factor of
-/// `one_size`. From a larger distance, the color of a point mixes with its surroundings.
-void keep_one_size(std::vector<observation>& seen) {
-    std::ranges::sort(seen, {}, [](const observation& o) { return std::pair(o.footprint, o.view); });
-    std::size_t first = 0, most = 0;
-    for (std::size_t i = 0, end = 0; i < seen.size(); ++i) {
-        while (end < seen.size() && seen[end].footprint <= one_size * seen[i].footprint) ++end;
-        if (end - i > most) {
-            most = end - i;
-            first = i;
-        }
-    }
-    seen = {seen.begin() + static_cast<std::ptrdiff_t>(first),
-            seen.begin() + static_cast<std::ptrdiff_t>(first + most)};
-}
 
 /// Returns the squared residuals of the observations of one point, for SH degrees 0 to 3. A
 /// residual is the difference between an observation and its leave-one-out prediction. Each square
@@ -166,7 +150,7 @@ observed_points comparable_points(const scene_statistics& statistics) {
     const photo_brightness& brightness = statistics.brightness();
     for (auto& seen : points) {
         std::erase_if(seen, [&](const observation& o) { return brightness.error[o.view] == 0; });
-        keep_one_size(seen);
+        keep_one_size(seen, one_size);
         for (observation& o : seen) o.color *= static_cast<float>(std::exp2(-brightness.log2[o.view]));
     }
     std::erase_if(points,

@@ -21,6 +21,8 @@
 #include "../size_text.hpp"
 #include "synthetic_cameras.hpp"
 #include "synthetic_parameters.hpp"
+#include "synthetic_passers.hpp"
+#include "synthetic_random.hpp"
 #include "synthetic_walls.hpp"
 
 namespace gs {
@@ -254,20 +256,6 @@ vec shade(const world& w, const surface_point& s, const vec& to_eye) {
     return glm::sqrt(glm::clamp(color, 0.0, 1.0));
 }
 
-std::uint8_t to_byte(double in_unit_interval) {
-    return static_cast<std::uint8_t>(std::lround(255 * in_unit_interval));
-}
-
-/// Returns a uniform number in [0, 1). `std::uniform_real_distribution` is not used, because its
-/// results depend on the implementation.
-double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
-
-/// Returns a standard normal number (Box and Muller 1958).
-double normal(std::mt19937_64& random) {
-    const double radius = std::sqrt(-2 * std::log(1 - uniform(random)));
-    return radius * std::cos(2 * std::numbers::pi * uniform(random));
-}
-
 /// Returns the exposure of a photo, a factor on displayed values.
 double exposure_of(const world& w, std::size_t photo) {
     std::mt19937_64 random(~photo);  // distinct from the seeds of the noise
@@ -299,26 +287,6 @@ void render_row(const world& w, const camera& c, std::size_t photo, int row, std
             rgba[channel] = to_byte(std::clamp(shown, 0.0, most));
         }
     }
-}
-
-/// Paints or masks a disc of one color at a random place of one photo. It stands for a passer-by in
-/// front of the scene.
-void paint_passer(const world& w, std::size_t photo, bool masks, image& pixels) {
-    std::mt19937_64 random(photo + (std::uint64_t{1} << 63));
-    const double x = uniform(random) * pixels.width, y = uniform(random) * pixels.height;
-    const double square = w.how.passers * pixels.width * pixels.height / std::numbers::pi;
-    std::uint8_t color[4] = {0, 0, 0, 255};
-    for (int c = 0; c < 3; ++c) color[c] = to_byte(uniform(random));
-    std::size_t i = 0;
-    for (int row = 0; row < pixels.height; ++row)
-        for (int column = 0; column < pixels.width; ++column, ++i) {
-            const double dx = column + 0.5 - x, dy = row + 0.5 - y;
-            if (dx * dx + dy * dy > square) continue;
-            if (masks)
-                pixels.mask_pixel(i);
-            else
-                std::copy(color, color + 4, &pixels.rgba[4 * i]);
-        }
 }
 
 /// Returns inverse depths as a network might estimate them: with noise, and with an unknown scale
@@ -368,7 +336,7 @@ void take_photos(const world& w, std::vector<view>& views, bool masks = true) {
                    v->pixels.rgba.data() + bytes_per_row * static_cast<std::size_t>(row));
     }
     if (w.how.passers > 0)
-        for (std::size_t i = 0; i < views.size(); ++i) paint_passer(w, i, masks, views[i].pixels);
+        for (std::size_t i = 0; i < views.size(); ++i) paint_passer(w.how, i, masks, views[i].pixels);
 }
 
 /// Returns `count` of the views, evenly spread.
@@ -443,6 +411,8 @@ scene_description describe(const load_options& options, const log_function& log)
     }
     const std::size_t most = std::min(train.size(), static_cast<std::size_t>(w.how.views));
     train = spread(std::move(train), most);
+
+    for (std::size_t i = 0; i < train.size(); ++i) paint_moving_thing(w.how, i, train[i].pixels);
 
     scene_description result;
     result.object_centered = result.rendered = true;

@@ -25,6 +25,7 @@ constexpr parameter parameters[] = {{"gloss", &synthetic_parameters::gloss, 0, 1
                                     {"scales", &synthetic_parameters::scales, 1, 16},
                                     {"distance", &synthetic_parameters::distance, 0.25, 16},
                                     {"passers", &synthetic_parameters::passers, 0, 0.5},
+                                    {"moving", &synthetic_parameters::moving, 0, 1},
                                     {"sky", &synthetic_parameters::sky, 0, 1},
                                     {"walls", &synthetic_parameters::walls, 0, 1},
                                     {"fisheye", &synthetic_parameters::fisheye, 0, 190},

@@ -15,6 +15,7 @@ struct synthetic_parameters {
     double scales = 1;     ///< ratio of the largest and smallest camera distance, 1 to 16
     double distance = 1;   ///< factor of all camera distances, 0.25 to 16
     double passers = 0;    ///< share of each photo that a masked disc hides, 0 to 0.5
+    double moving = 0;     ///< share of the training photos in which a moving thing hides a part, 0 to 1
     double depths = -1;    ///< relative noise of depth maps, 0 to 10; negative for no depth maps
     double sky = 0;        ///< brightness of the sky, which depends only on direction, 0 to 1
     double walls = 0;      ///< brightness of smooth walls around scene and cameras, 0 to 1; 0 for none
