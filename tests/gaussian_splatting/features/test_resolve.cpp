@@ -123,25 +123,25 @@ TEST_CASE("long: training simulates the recommended effects, or those that --eff
     CHECK(simulated(spheres, "all").values_if_on("sky") == std::vector<float>(gs::sky_width, 0.0f));
     CHECK(simulated(made("alpha"), "all").values_if_on("sky").empty());
     CHECK(outcome(simulated(made("alpha"), "all"), 3).reason == "photos have transparent parts");
-    CHECK(outcome(simulated(spheres, "all"), 5).reason == "no training photo has masked pixels");
+    CHECK(outcome(simulated(spheres, "all"), 6).reason == "no training photo has masked pixels");
     const feature_set masked = simulated(made("spheres,passers=0.1"), "auto");
-    CHECK(outcome(masked, 5).on);
-    CHECK(outcome(masked, 5).reason.starts_with("48 of 48 photos have masks, which exclude "));
+    CHECK(outcome(masked, 6).on);
+    CHECK(outcome(masked, 6).reason.starts_with("48 of 48 photos have masks, which exclude "));
 
-    CHECK(outcome(simulated(spheres, "all"), 6).reason == "no training photo has a depth map");
+    CHECK(outcome(simulated(spheres, "all"), 7).reason == "no training photo has a depth map");
     CHECK(simulated(spheres, "all").values_if_on("depth").empty());
     const gs::scene estimated = made("spheres,views=4,points=1000,depths=0.02");
     CHECK(simulated(estimated, "none").values_if_on("depth").empty());
     for (const char* text : {"auto", "depth"}) {
         const feature_set deep = simulated(estimated, text);
-        CHECK(outcome(deep, 6).on);
+        CHECK(outcome(deep, 7).on);
         const std::vector<float> fits = deep.values_if_on("depth");
         REQUIRE(fits.size() == 8);
         for (std::size_t i = 0; i < 8; i += 2) CHECK(fits[i] > 0);
     }
     const feature_set wrong = simulated(made("spheres,views=4,depths=10"), "all");
-    CHECK_FALSE(outcome(wrong, 6).on);
-    CHECK(outcome(wrong, 6).reason.starts_with(
+    CHECK_FALSE(outcome(wrong, 7).on);
+    CHECK(outcome(wrong, 7).reason.starts_with(
         "4 of 4 photos have depth maps, of which 0 agree with the points; the median correlation is "));
 }
 
