@@ -70,25 +70,36 @@ struct residual_bins {
 /// channels of the absolute difference between the render, clamped to [0, 1], and the target. Pixels that
 /// are masked or not finite do not count. One index per cell.
 struct sum_residuals {
-    train::target_image target;
+    const std::uint32_t* rgba;  ///< see `target_image`
+    cell_grid grid;
+    float background[3];
     const float* shown;  ///< the render, three planes
     row_range own;
     float* sums;    ///< per cell
     float* pixels;  ///< per cell, number of pixels that count
 
+    sum_residuals(const train::target_image& target, const float* render, const row_range& rows,
+                  float* sums_of_cells, float* pixels_of_cells)
+        : rgba(reinterpret_cast<const std::uint32_t*>(target.rgba)),
+          grid{target.width, target.height},
+          background{target.background[0], target.background[1], target.background[2]},
+          shown(render),
+          own(rows),
+          sums(sums_of_cells),
+          pixels(pixels_of_cells) {}
+
     WARPAGG_HD void operator()(std::size_t cell) const {
-        const cell_grid grid{target.width, target.height};
         const int left = static_cast<int>(cell) % grid.across() * cell_grid::side,
                   top = static_cast<int>(cell) / grid.across() * cell_grid::side;
         const row_range rows{
             top > own.first ? top : own.first,
-            warpagg::math::min(top + cell_grid::side, warpagg::math::min(own.last, target.height))};
-        const int right = warpagg::math::min(left + cell_grid::side, target.width);
+            warpagg::math::min(top + cell_grid::side, warpagg::math::min(own.last, grid.height))};
+        const int right = warpagg::math::min(left + cell_grid::side, grid.width);
         float sum = 0, n = 0;
         for (int row = rows.first; row < rows.last; ++row)
             for (int column = left; column < right; ++column) {
                 const float error =
-                    residual(static_cast<std::size_t>(row) * static_cast<std::size_t>(target.width) +
+                    residual(static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.width) +
                              static_cast<std::size_t>(column));
                 if (!(error >= 0)) continue;
                 sum += error;
@@ -101,16 +112,13 @@ struct sum_residuals {
   private:
     /// Returns the residual of a pixel, or a negative number if it is masked.
     WARPAGG_HD float residual(std::size_t i) const {
-        const std::uint32_t rgba = reinterpret_cast<const std::uint32_t*>(target.rgba)[i];
-        if (rgba == masked_pixel) return -1;
-        const std::size_t plane = cell_grid{target.width, target.height}.pixels();
-        const float background[] = {target.background[0], target.background[1], target.background[2]};
+        if (rgba[i] == masked_pixel) return -1;
         float sum = 0;
         for (int c = 0; c < 3; ++c) {
-            const float x = shown[static_cast<std::size_t>(c) * plane + i];
+            const float x = shown[static_cast<std::size_t>(c) * grid.pixels() + i];
             const float value = warpagg::math::min(warpagg::math::max(x, 0.0f), 1.0f);
             sum += glm::abs(value -
-                            train::target_value<warpagg::emulator::serial, float>(rgba, c, background[c]));
+                            train::target_value<warpagg::emulator::serial, float>(rgba[i], c, background[c]));
         }
         return sum / 3;
     }
