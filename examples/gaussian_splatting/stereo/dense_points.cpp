@@ -16,7 +16,8 @@
 namespace gs::stereo {
 namespace {
 
-constexpr int longer_side = 192;
+constexpr int longer_side = 192, coarse_side = 96;
+constexpr std::size_t least_points = 20;  ///< that tell the distances in a photo
 constexpr std::size_t most_photos = 400, most_others = 4;
 constexpr int least_steps = 32, most_steps = 320;
 /// The angle at the surface between two views that compare best, and the limits.
@@ -31,10 +32,20 @@ double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
 /// The distances of the surfaces in a photo.
 struct distances {
     double nearest, typical, farthest;
+    bool are_known = true;  ///< whether points tell them
 };
 
+/// Returns the distances of surfaces with these points, which are a sample, with margins.
+distances around(std::vector<double> found) {
+    std::ranges::sort(found);
+    const auto at = [&](double share) {
+        return found[static_cast<std::size_t>(share * static_cast<double>(found.size() - 1))];
+    };
+    return {0.7 * at(0.01), at(0.5), 2 * at(0.99)};
+}
+
 distances distances_in(const scene& of, const camera& c) {
-    constexpr std::size_t most_points = 20000, least_points = 20;
+    constexpr std::size_t most_points = 20000;
     const std::size_t step = of.points.size() / most_points + 1;
     std::vector<double> found;
     for (std::size_t i = 0; i < of.points.size(); i += step)
@@ -45,13 +56,9 @@ distances distances_in(const scene& of, const camera& c) {
         const double extent = of.extent();
         const auto center = of.looked_at();
         const double typical = center ? glm::distance(*center, c.center()) : extent;
-        return {typical / 5, typical, 20 * std::max(typical, extent)};
+        return {typical / 5, typical, 20 * std::max(typical, extent), false};
     }
-    std::ranges::sort(found);
-    const auto at = [&](double share) {
-        return found[static_cast<std::size_t>(share * static_cast<double>(found.size() - 1))];
-    };
-    return {0.7 * at(0.01), at(0.5), 2 * at(0.99)};
+    return around(std::move(found));
 }
 
 /// Returns at most `most_photos` training views, evenly from all.
@@ -90,6 +97,7 @@ std::vector<std::size_t> others_of(const std::vector<const view*>& views, std::s
 struct swept_view {
     small_view photo;
     std::vector<std::size_t> others;
+    bool has_known_range = true;
     sweep_range range;
     std::vector<float> inverse;  ///< inverse distance by pixel, or 0
     std::vector<bool> is_taken;  ///< whether a point already stands for the pixel
@@ -111,6 +119,45 @@ int steps_for(const swept_view& view, const std::vector<swept_view>& all) {
     return static_cast<int>(std::clamp<double>(steps, least_steps, most_steps));
 }
 
+/// Sweeps a view at its size, over its range.
+void sweep_view(std::vector<swept_view>& views, std::size_t which) {
+    swept_view& view = views[which];
+    view.range.steps = steps_for(view, views);
+    std::vector<const small_view*> others;
+    for (const std::size_t other : view.others) others.push_back(&views[other].photo);
+    view.inverse =
+        others.empty() ? std::vector<float>(view.photo.pixels()) : sweep(view.photo, others, view.range);
+}
+
+/// Returns the training views at this size, with their ranges, and the views to compare them with.
+std::vector<swept_view> prepared(const scene& of, const std::vector<const view*>& chosen, int size) {
+    std::vector<swept_view> views(chosen.size());
+    for_each_in_parallel(views.size(), [&](std::size_t v) {
+        const distances found = distances_in(of, chosen[v]->camera);
+        views[v].photo = reduced(*chosen[v], size);
+        views[v].others = others_of(chosen, v, found.typical);
+        views[v].has_known_range = found.are_known;
+        views[v].range = {1 / found.farthest, 1 / found.nearest};
+        views[v].is_taken.resize(views[v].photo.pixels());
+    });
+    return views;
+}
+
+/// Narrows the ranges that no points tell: to the distances that a sweep of smaller photos finds.
+void narrow_ranges(std::vector<swept_view>& views, std::vector<swept_view> small) {
+    for_each_in_parallel(views.size(), [&](std::size_t v) {
+        if (views[v].has_known_range) return;
+        sweep_view(small, v);
+        std::vector<double> found;
+        for (const float inverse : small[v].inverse)
+            if (inverse > 0) found.push_back(1 / static_cast<double>(inverse));
+        if (found.size() < least_points) return;
+        const distances narrow = around(std::move(found));
+        views[v].range = {std::max(views[v].range.farthest, 1 / narrow.farthest),
+                          std::min(views[v].range.nearest, 1 / narrow.nearest)};
+    });
+}
+
 /// Returns the pixel of a view that shows the point at about the same distance, or none.
 std::optional<std::size_t> pixel_that_agrees(const swept_view& with, const glm::dvec3& point) {
     constexpr double most_steps_apart = 2;
@@ -130,22 +177,10 @@ std::optional<std::size_t> pixel_that_agrees(const swept_view& with, const glm::
 
 std::vector<colored_point> dense_points(const scene& of) {
     const std::vector<const view*> chosen = chosen_views(of);
-    std::vector<swept_view> views(chosen.size());
-    for_each_in_parallel(views.size(), [&](std::size_t v) {
-        const distances found = distances_in(of, chosen[v]->camera);
-        views[v].photo = reduced(*chosen[v], longer_side);
-        views[v].others = others_of(chosen, v, found.typical);
-        views[v].range = {1 / found.farthest, 1 / found.nearest};
-        views[v].is_taken.resize(views[v].photo.pixels());
-    });
-    for_each_in_parallel(views.size(), [&](std::size_t v) {
-        swept_view& view = views[v];
-        view.range.steps = steps_for(view, views);
-        std::vector<const small_view*> others;
-        for (const std::size_t other : view.others) others.push_back(&views[other].photo);
-        view.inverse =
-            others.empty() ? std::vector<float>(view.photo.pixels()) : sweep(view.photo, others, view.range);
-    });
+    std::vector<swept_view> views = prepared(of, chosen, longer_side);
+    if (!std::ranges::all_of(views, &swept_view::has_known_range))
+        narrow_ranges(views, prepared(of, chosen, coarse_side));
+    for_each_in_parallel(views.size(), [&](std::size_t v) { sweep_view(views, v); });
     std::vector<colored_point> points;
     for (swept_view& view : views)
         for (std::size_t i = 0; i < view.inverse.size(); ++i) {
