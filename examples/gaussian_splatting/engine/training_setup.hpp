@@ -25,7 +25,8 @@ struct training_setup {
     strategy_settings densification;
     std::string loss = default_loss;
     parameter_storage storage{};
-    std::uint64_t host_bytes = 0;  ///< host memory for parameters that `facts.max_device_bytes` has no room for
+    std::uint64_t host_bytes =
+        0;  ///< host memory for parameters that `facts.max_device_bytes` has no room for
     ranks::communicator* ranks = nullptr;  ///< the processes that train this model, or null for one
     double dropout = 0;  ///< share of the Gaussians that each step leaves out: see `raster::dropout`
     /// The features that are on, by name, with their initial values.
