@@ -40,8 +40,8 @@ class parameter_memory {
     /// the contents. Precondition: the degree is at least 1.
     void move_to_host_from(Device& device, int sh_degree) {
         for (std::size_t p = 0; p < parameter_count; ++p) {
-            const auto place = has_parameter(p, sh_degree - 1) ? device::memory_place::device
-                                                               : device::memory_place::host;
+            const auto place =
+                has_parameter(p, sh_degree - 1) ? device::memory_place::device : device::memory_place::host;
             if (place == places_[p]) continue;
             buffer moved;
             moved.free_in(place);
