@@ -22,6 +22,7 @@ import sys
 import tempfile
 
 HEIGHT, RADIUS = 4.0, 6.0
+PART = 1000000  # points that one process writes at once
 BAND = 32  # rows of a photo that are computed at once, so that they stay in the cache
 
 
@@ -103,18 +104,27 @@ def write_sparse(sparse, args, names, width, height):
             rotation, center = camera(index, args.photos)
             file.write(struct.pack("<I7dI", index + 1, *quaternion(rotation), *(-rotation @ center), 1))
             file.write(name.encode() + b"\0" + struct.pack("<Q", 0))
-    random, part = np.random.default_rng(0), 1000000
+    file = sparse / "points3D.bin"
+    file.write_bytes(struct.pack("<Q", args.points))
+    parts = [(file, first, min(PART, args.points - first)) for first in range(0, args.points, PART)]
+    with multiprocessing.Pool() as pool:
+        pool.map(write_points, parts, chunksize=1)
+
+
+def write_points(part):
+    """Writes random points of the ground at their place in the file."""
+    import numpy as np
+    file, first, count = part
     record = np.dtype([("id", "<u8"), ("position", "<f8", 3), ("color", "u1", 3), ("error", "<f8"), ("tracks", "<u8")])
-    with open(sparse / "points3D.bin", "wb") as file:
-        file.write(struct.pack("<Q", args.points))
-        for first in range(0, args.points, part):
-            points = np.zeros(min(part, args.points - first), record)
-            place = random.uniform(-1.5 * RADIUS, 1.5 * RADIUS, (len(points), 2))
-            points["id"] = np.arange(first + 1, first + 1 + len(points))
-            points["position"][:, :2] = place
-            points["color"] = colors(place[:, 0], place[:, 1])
-            points["error"] = 0.1
-            points.tofile(file)
+    points = np.zeros(count, record)
+    place = np.random.default_rng(first).uniform(-1.5 * RADIUS, 1.5 * RADIUS, (count, 2))
+    points["id"] = np.arange(first + 1, first + 1 + count)
+    points["position"][:, :2] = place
+    points["color"] = colors(place[:, 0], place[:, 1])
+    points["error"] = 0.1
+    with open(file, "r+b") as into:
+        into.seek(8 + first * record.itemsize)
+        points.tofile(into)
 
 
 def train(args, memory, out):
