@@ -34,8 +34,8 @@ class engine {
     /// loads their photos within `memory` when they are needed.
     virtual void set_views(const std::vector<view>& train, const std::vector<view>& test, int downscales = 0,
                            const photos::photo_plan& memory = {}) = 0;
-    /// Replaces the model and sets Adam's moments to zero. Features keep their learned values, such
-    /// as exposures.
+    /// Replaces the model and sets Adam's moments to zero. An empty `gaussians::sh_rest` means zeros.
+    /// Features keep their learned values, such as exposures.
     virtual void set_model(const gaussians& model) = 0;
     virtual gaussians get_model() = 0;
 

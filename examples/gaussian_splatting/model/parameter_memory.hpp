@@ -107,11 +107,16 @@ class parameter_memory {
         }
         return fits;
     }
-    /// Resizes the arrays and copies the model to them. Waits for the device.
+    /// Resizes the arrays and copies the model to them. An empty `sh_rest` means zeros. Waits for the device.
     void upload(Device& device, const gaussians& model) {
         resize(model.count(), model.sh_degree);
         for_each_part(
             model, [&](parameter p, const std::vector<float>& from, std::size_t stride, std::size_t first) {
+                if (&from == &model.sh_rest && from.empty()) {
+                    auto& zeros = arrays_[static_cast<std::size_t>(p)];
+                    device.zero(zeros.data(), zeros.size());
+                    return;
+                }
                 const auto blocks = to_blocks(from.data() + first, model.count(), stride, width_of(p));
                 buffer& to = arrays_[static_cast<std::size_t>(p)];
                 device.upload(to.data(), blocks.data(), blocks.size());

@@ -14,8 +14,7 @@ namespace gs {
 /// points, or to all if there are fewer, and at least sqrt(1e-7) in internal coordinates. If there
 /// are more than `most` points, uses a random sample of `most` points, which `seed` determines.
 /// Precondition: there is at least one point.
-gaussians from_points(const std::vector<colored_point>& points, int sh_degree, std::size_t most,
-                      std::uint64_t seed);
+gaussians from_points(std::vector<colored_point> points, int sh_degree, std::size_t most, std::uint64_t seed);
 
 /// Returns `count` points of random color, uniform in a box, for scenes without points. If
 /// `scene::object_centered` and the cameras look at a common point, the box is centered there, and

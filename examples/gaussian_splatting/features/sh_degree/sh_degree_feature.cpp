@@ -80,7 +80,7 @@ explanation sh_degree_feature::explain(const scene_statistics& statistics, const
 
 void sh_degree_feature::prepare(const selected_feature& selected, scene&, gaussians& model) const {
     model.sh_degree = first_sh_degree(selected.values);
-    model.sh_rest.assign(model.count() * static_cast<std::size_t>(model.rest_width()), 0.0f);
+    model.sh_rest = {};  // zero: see `train::engine::set_model`
 }
 
 void sh_degree_feature::schedule(const selected_feature& selected, train::training& training) const {
