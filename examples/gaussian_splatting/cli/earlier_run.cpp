@@ -17,7 +17,7 @@ constexpr const char *checkpoints_name = "checkpoints", *replaced_name = "replac
 /// The results of training that belong to one run.
 constexpr std::array result_names{"point_cloud", "test",        "settings.json",  "metrics.json",
                                   "metrics.csv", "metrics.md",  "exposures.json", "poses.json",
-                                  "viewer.html", "report.html", checkpoints_name};
+                                  "viewer.html", "report.html", "cameras",        checkpoints_name};
 
 bool is_finished(const fs::path& output) { return fs::exists(output / "metrics.json"); }
 
@@ -66,8 +66,8 @@ std::optional<checkpoint_folder::found_checkpoint> checkpoint_to_resume(const se
 
 std::string changed_options(const nlohmann::ordered_json& before, const nlohmann::ordered_json& now) {
     constexpr std::array ignored{
-        "output",           "save_iterations", "checkpoint_iterations", "checkpoint_every", "log_level",
-        "keep_checkpoints", "device"};
+        "output",           "save_iterations", "save_cameras",     "checkpoint_iterations",
+        "checkpoint_every", "log_level",       "keep_checkpoints", "device"};
     const auto is_given = [](const nlohmann::ordered_json& all, const std::string& name) {
         const auto given = all.find(given_options_key);
         return given != all.end() && given->contains(name);

@@ -89,6 +89,7 @@ struct settings {
     bool fit_exposure = false;
     std::string lpips;  ///< file of weights; if empty, LPIPS is not computed
     std::set<int> save_iterations;
+    bool save_cameras = false;
     std::optional<int> checkpoint_every;  ///< iterations between two checkpoints
     std::set<int> checkpoint_iterations;
     std::size_t keep_checkpoints = 2;

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <utility>
 
 #include "../core/atomic_file_write.hpp"
 #include "../core/error.hpp"
 #include "../core/parse_json.hpp"
 #include "../features/sh_degree/sh_degree_feature.hpp"
 #include "../pages/report_page.hpp"
+#include "../readers/colmap/write_colmap_model.hpp"
 #include "../training/initialize.hpp"
 #include "../writers/html/html.hpp"
 #include "../writers/writer.hpp"
@@ -102,9 +104,9 @@ class training_run {
         using enum train::point_source;
         const std::size_t most = options_.densification.target_count().value_or(options_.max_cap);
         const train::point_source any = scene_.points.empty() ? random : given;
-        const auto first = find_first_points(scene_, checkpoint_ ? any : s_.init, most, s_.seed);
+        auto first = find_first_points(scene_, checkpoint_ ? any : s_.init, most, s_.seed);
         if (!first.remark.empty() && !checkpoint_) context_.say(first.remark);
-        return from_points(first.points, 0, most, s_.seed);
+        return from_points(std::move(first.points), 0, most, s_.seed);
     }
     int first_sh_degree() const {
         return features::first_sh_degree(options_.features.values_if_on("direction"));
@@ -158,6 +160,7 @@ training_run::training_run(const settings& s, const load_options& source,
       options_(options_of(s, scene_, context_, engine_->profile(), ranks_.count(),
                           resolve_effects(s, scene_, context_))),
       bar_(s.log_level < log_level::info) {
+    if (s.save_cameras) require_colmap_cameras(scene_);
     if (ranks_.is_first()) output_.emplace(s.output);
     options_.gradient = gradient;
     options_.ranks = &ranks_;
@@ -354,6 +357,10 @@ void training_run::write_reports() {
     metrics_["effects"] = effects_json(s_, scene_, options_, measures_.result);
     write_json(output_->path() / "settings.json", resolved_settings());
     options_.features.write_results(*engine_, scene_, output_->path());
+    if (s_.save_cameras)
+        write_colmap_model(output_->path() / "cameras" / "sparse" / "0", scene_, [this](std::size_t view) {
+            return engine_->cameras().training_camera(view, scene_.train[view].camera);
+        });
     write_metrics(output_->path(), metrics_, measures_.held_out);
     remove_replaced_run(output_->path());
 }

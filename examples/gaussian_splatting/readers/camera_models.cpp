@@ -18,6 +18,7 @@ constexpr camera_model camera_models[] = {
     {3, "RADIAL", false, 2},
     {4, "OPENCV", true, 4},
     {5, "OPENCV_FISHEYE", true, 4, true},
+    {6, "FULL_OPENCV", true, 8},
     {8, "SIMPLE_RADIAL_FISHEYE", false, 1, true},
     {9, "RADIAL_FISHEYE", false, 2, true},
 };

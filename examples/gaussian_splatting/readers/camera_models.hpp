@@ -14,7 +14,7 @@ struct camera_model {
     int id;  ///< number in COLMAP's binary files
     const char* name;
     bool two_focal_lengths;
-    std::size_t distortion_count;  ///< how many of k1 k2 p1 p2 it has, or of k1 to k4 for a fisheye
+    std::size_t distortion_count;  ///< how many of k1 k2 p1 p2 k3 to k6, or of k1 to k4 of a fisheye
     bool is_fisheye = false;
 
     std::size_t parameter_count() const { return (two_focal_lengths ? 4U : 3U) + distortion_count; }

@@ -144,6 +144,7 @@ std::vector<view> load_views(const std::vector<image_record>& records, const loa
         views[i] = streams ? streamed_view(std::make_shared<const photo_source>(std::move(source)))
                            : resident_view(source);
         views[i].removed_distortion = records[i].distortion;
+        views[i].camera_of_file = fitted[i].taken_with;
     });
     report_count(records, &image_record::mask, " has a mask", " have masks", log);
     report_count(records, &image_record::depth, " has a depth map", " have depth maps", log);

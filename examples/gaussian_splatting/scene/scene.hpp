@@ -32,6 +32,9 @@ struct view {
     image pixels;               ///< has size and flags, but no values if `is_streamed`
     depth_map depths{};         ///< has the photo's size, or is empty; has no values if `is_streamed`
     lens removed_distortion{};  ///< of the file, which loading has removed from the photo
+    /// The camera of the photo's file, with its size and without this distortion. Its pose has no meaning.
+    /// Empty if the photo comes from no file.
+    std::optional<gs::camera> camera_of_file{};
 
     /// Decodes the photo, and replaces the argument, whose memory it reuses. Empty if the view holds
     /// the photo. Threads may call it. Throws `error`, for example if the file has changed since the

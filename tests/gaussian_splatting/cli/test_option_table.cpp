@@ -72,6 +72,7 @@ const std::map<std::string, option_case> cases{
       [](const settings& s) {
           return s.save_iterations == std::set{10, 30};
       }}},
+    {"--save-cameras", {{}, [](const settings& s) { return s.save_cameras; }}},
     {"--overwrite", {{}, [](const settings& s) { return s.overwrite; }}},
     {"--resume", {{}, [](const settings& s) { return s.resume; }}},
     {"--checkpoint-every", {{"5"}, [](const settings& s) { return s.checkpoint_every == 5; }}},

@@ -28,6 +28,20 @@ TEST_CASE("--init selects the first points, and the program says so if they are 
     CHECK(says(refused.err, {"stereo finds only 0 points", "use --init auto"}));
 }
 
+TEST_CASE("--save-cameras writes a COLMAP model, with which the photos can be trained again") {
+    const temporary_folder folder;
+    small_scene().write(folder / "scene");
+    const words options{"--device", "cpu", "-i", "8", "-q"};
+    const std::string out = (folder / "out").string(), photos = (folder / "scene/images").string();
+    check_success(
+        words{"train", "-d", (folder / "scene").string(), "-o", out, "--save-cameras", "--effects", "poses"} +
+        options);
+    check_success(
+        words{"train", "-d", out + "/cameras", "--images", photos, "-o", (folder / "again").string()} +
+        options);
+    CHECK(contents(folder / "out/cameras/sparse/0").size() == 3);
+}
+
 TEST_CASE("settings.json records rates and intervals, and training uses them") {
     const temporary_folder folder;
     check_success(small_training(folder / "default") + words{"-q"});

@@ -68,7 +68,7 @@ std::vector<image_record> image_records(const colmap_model& model, const std::fi
         one.file = photos / name;
         one.camera = by.camera();
         one.distortion = by.distortion();
-        one.camera_model = by.model;
+        one.camera_model = by.model().name;
         if (!masks.empty()) one.mask = beside_photo(masks, one.name);
         if (!depths.empty()) one.depth = beside_photo(depths, one.name);
         one.camera.rotation = glm::mat3_cast(taken.rotation);

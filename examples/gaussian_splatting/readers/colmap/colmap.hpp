@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "../camera_models.hpp"
 #include "../reader.hpp"
 
 namespace gs {
@@ -16,21 +17,22 @@ namespace gs {
 struct colmap_camera {
     std::uint32_t id = 0;
     int width = 0, height = 0;
-    bool is_fisheye = false;
-    const char* model = "";  ///< name of the camera model, for messages
+    int model_id = 0;  ///< see `camera_model`
     double fx = 0, fy = 0, cx = 0, cy = 0;
     std::array<double, 4> coefficients{};  ///< k1 k2 p1 p2 of `lens`, or k1 to k4 of `fisheye`
+    double k3 = 0;                         ///< of `lens`
 
+    const camera_model& model() const { return camera_model_with_id(model_id, {}); }
     /// Returns the camera at the origin, without distortion.
     gs::camera camera() const {
         gs::camera c{width, height, fx, fy, cx, cy};
-        if (is_fisheye) c.fisheye = fisheye(coefficients);
+        if (model().is_fisheye) c.fisheye = fisheye(coefficients);
         return c;
     }
 
     lens distortion() const {
         const auto& [k1, k2, p1, p2] = coefficients;
-        return is_fisheye ? lens{} : lens{k1, k2, p1, p2};
+        return model().is_fisheye ? lens{} : lens{k1, k2, p1, p2, k3};
     }
 };
 

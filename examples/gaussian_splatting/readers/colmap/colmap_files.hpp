@@ -27,7 +27,7 @@ void read_text_points(const std::filesystem::path& file, colmap_model& model);
 // Binary and text files share these functions, which check a record and add it to the model.
 // Messages begin with `where`.
 
-using colmap_parameters = std::array<double, 8>;  ///< the first `parameter_count()` are used
+using colmap_parameters = std::array<double, 12>;  ///< the first `parameter_count()` are used
 
 void add_camera(colmap_model& model, std::uint32_t id, const camera_model& kind, std::uint64_t width,
                 std::uint64_t height, const colmap_parameters& parameters, const std::string& where);

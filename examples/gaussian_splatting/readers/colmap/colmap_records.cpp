@@ -25,14 +25,20 @@ void add_camera(colmap_model& model, std::uint32_t id, const camera_model& kind,
     added.id = id;
     added.width = static_cast<int>(width);
     added.height = static_cast<int>(height);
-    added.model = kind.name;
+    added.model_id = kind.id;
     const double* next = parameters.data();
     added.fx = *next++;
     added.fy = kind.two_focal_lengths ? *next++ : added.fx;
     added.cx = *next++;
     added.cy = *next++;
-    added.is_fisheye = kind.is_fisheye;
-    std::copy_n(next, kind.distortion_count, added.coefficients.begin());
+    std::copy_n(next, std::min(kind.distortion_count, added.coefficients.size()), added.coefficients.begin());
+    if (kind.distortion_count > added.coefficients.size()) {
+        added.k3 = next[4];
+        if (next[5] != 0 || next[6] != 0 || next[7] != 0)
+            throw error(name +
+                        " has the coefficients k4 to k6 of FULL_OPENCV, which are not supported: run "
+                        "colmap image_undistorter first");
+    }
     if (!has_valid_intrinsics(added.camera(), added.distortion())) throw error(name + invalid_intrinsics);
     model.cameras.push_back(added);
 }
