@@ -143,6 +143,7 @@ std::vector<view> load_views(const std::vector<image_record>& records, const loa
         photo_source source{records[i], fitted[i], pinholes[i], scaled[i]};
         views[i] = streams ? streamed_view(std::make_shared<const photo_source>(std::move(source)))
                            : resident_view(source);
+        views[i].rig_frame = records[i].rig_frame;
         views[i].removed_distortion = records[i].distortion;
         views[i].camera_of_file = fitted[i].taken_with;
     });

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -48,9 +49,10 @@ inline constexpr reader_option test_every_option{
 /// The description of one image of a scene. It names files, which `load_scene` loads later, or
 /// holds pixels that the reader has made.
 struct image_record {
-    std::string name;       ///< unique within the scene; '/' separates folders
-    gs::camera camera;      ///< calibrated for its own size, which is at least 1×1
-    bool held_out = false;  ///< whether it is held out if `load_options::eval` is set
+    std::string name;                          ///< unique within the scene; '/' separates folders
+    gs::camera camera;                         ///< calibrated for its own size, which is at least 1×1
+    bool held_out = false;                     ///< whether it is held out if `load_options::eval` is set
+    std::optional<std::uint32_t> rig_frame{};  ///< see `view`
 
     std::filesystem::path file;   ///< see `read_image`; may be a scaled or rotated copy
     lens distortion;              ///< distortion of the file, which loading removes

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -29,6 +30,8 @@ struct photo {
 struct view {
     std::string name;  ///< path relative to the images folder, with its ending
     gs::camera camera;
+    /// Views with the same number were taken at once by cameras that are fixed to each other: a rig.
+    std::optional<std::uint32_t> rig_frame{};
     image pixels;               ///< has size and flags, but no values if `is_streamed`
     depth_map depths{};         ///< has the photo's size, or is empty; has no values if `is_streamed`
     lens removed_distortion{};  ///< of the file, which loading has removed from the photo

@@ -121,6 +121,64 @@ TEST_CASE("poses: a motion of the whole scene and a change in camera space are r
     for (const float x : of_one) CHECK(std::abs(x) < 1e-3f);
 }
 
+TEST_CASE("poses: the cameras of a rig move like one body") {
+    gs::scene scene;
+    for (int i = 0; i < 4; ++i) {
+        gs::view v;
+        v.camera = some_pose(i).camera;
+        if (i != 1) v.rig_frame = i == 3 ? 5 : 7;  // views 0 and 2 are of one rig
+        scene.train.push_back(v);
+    }
+    const std::vector<given_pose> given = given_poses(scene);
+    CHECK(given[2].leader == std::size_t{0});
+    for (const std::size_t v : {0, 1, 3}) CHECK(!given[v].leader);
+    for (const given_pose& g : given) {
+        const auto numbers = numbers_of(g);
+        const given_pose same = from_numbers(g.camera, numbers);
+        CHECK(same.leader == g.leader);
+        CHECK(numbers_of(same) == numbers);
+        CHECK(moved(g, {}).rotation == g.camera.rotation);
+        CHECK(glm::length(moved(g, {}).translation - g.camera.translation) < 1e-15);
+    }
+
+    const pose_change change{0.2f, -0.4f, 0.3f, 0.5f, -0.1f, 0.7f};
+    const gs::camera &leader = given[0].camera, &other = given[2].camera;
+    const gs::camera leader_moved = moved(given[0], change), other_moved = moved(given[2], change);
+    CHECK(is_rotation(other_moved.rotation));
+    const glm::dmat3 before = other.rotation * glm::transpose(leader.rotation),
+                     after = other_moved.rotation * glm::transpose(leader_moved.rotation);
+    for (int c = 0; c < 3; ++c) CHECK(glm::length(before[c] - after[c]) < 1e-12);
+    CHECK(glm::length(leader.rotation * (other.center() - leader.center()) -
+                      leader_moved.rotation * (other_moved.center() - leader_moved.center())) < 1e-12);
+    CHECK(glm::length(other_moved.center() - other.center()) > 0.1);
+
+    // The common motion is that of leaders only, and followers have no change of their own.
+    std::vector<float> changes(given.size() * pose_width, 0.0f);
+    changes[at(0, 1)] = 0.1f;
+    remove_common_motion(given, changes);
+    for (unsigned k = 0; k < pose_width; ++k) CHECK(changes[at(2, k)] == 0);
+}
+
+TEST_CASE("poses: training moves the cameras of a rig like one body") {
+    gs::scene scene = small_scene("synthetic:spheres,poses=1", 32);
+    for (std::size_t v = 0; v < scene.train.size(); ++v)
+        scene.train[v].rig_frame = static_cast<std::uint32_t>(v / 2);
+    for (const auto make : engines()) {
+        const auto e = trained(make, scene, true);
+        const auto learned = [&](std::size_t v) {
+            return e->cameras().training_camera(v, scene.train[v].camera);
+        };
+        for (std::size_t v = 0; v + 1 < scene.train.size(); v += 2) {
+            const gs::camera &a = scene.train[v].camera, &b = scene.train[v + 1].camera;
+            const gs::camera c = learned(v), d = learned(v + 1);
+            CHECK(glm::length(a.rotation * (b.center() - a.center()) -
+                              c.rotation * (d.center() - c.center())) < 1e-5);
+            CHECK(glm::length(c.center() - a.center()) > 0);
+            CHECK(c.rotation != a.rotation);
+        }
+    }
+}
+
 TEST_CASE("long: poses: training and refinement correct poses that are wrong") {
     const gs::scene scene = small_scene("synthetic:spheres,poses=2,views=24", 48);
     for (const auto make : engines()) {

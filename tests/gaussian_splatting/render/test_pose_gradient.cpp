@@ -80,7 +80,11 @@ std::vector<given_pose> poses() {
     gs::camera panorama = gs::camera::panorama(64, 32);
     panorama.rotation = pinhole.rotation;
     panorama.translation = {0.1, 0.3, -0.2};
-    return {{pinhole, 3}, {fisheye, 2}, {panorama, std::numeric_limits<double>::infinity()}};
+    given_pose of_rig{pinhole, 3};
+    of_rig.leader = 0;
+    of_rig.from_leader = glm::mat3_cast(glm::normalize(glm::dquat(1, 0.2, 0.5, -0.3)));
+    of_rig.lever = {0.4, -0.3, 0.6};
+    return {{pinhole, 3}, {fisheye, 2}, {panorama, std::numeric_limits<double>::infinity()}, of_rig};
 }
 
 }  // namespace

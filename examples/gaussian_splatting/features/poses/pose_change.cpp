@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -52,6 +54,11 @@ glm::dmat3 turn_by_shift(const given_pose& given) {
 /// Returns the whole turn of a change.
 glm::dvec3 turn_of(const given_pose& given, const pose_change& change) {
     return glm::dvec3(change[0], change[1], change[2]) + turn_by_shift(given) * shift_of(change);
+}
+
+/// Returns the given world-to-camera rotation of the leader.
+glm::dmat3 leader_rotation(const given_pose& given) {
+    return glm::transpose(given.from_leader) * given.camera.rotation;
 }
 
 glm::dmat3 rotation_by(const glm::dvec3& turn) {
@@ -121,6 +128,21 @@ class common_motion {
     row right_{};
 };
 
+/// Lets the cameras of each rig follow the first of them.
+void follow_leaders(const std::vector<view>& views, std::vector<given_pose>& poses) {
+    std::map<std::uint32_t, std::size_t> leaders;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        if (!views[v].rig_frame) continue;
+        const std::size_t leader = leaders.emplace(*views[v].rig_frame, v).first->second;
+        if (leader == v) continue;
+        const camera &own = poses[v].camera, &leading = poses[leader].camera;
+        poses[v].depth = poses[leader].depth;
+        poses[v].from_leader = own.rotation * glm::transpose(leading.rotation);
+        poses[v].lever = leading.rotation * (own.center() - leading.center());
+        poses[v].leader = leader;
+    }
+}
+
 }  // namespace
 
 std::vector<given_pose> given_poses(const scene& scene) {
@@ -140,22 +162,53 @@ std::vector<given_pose> given_poses(const scene& scene) {
                                                             : median(depths);
         poses.push_back({c, std::max(depth, least_depth)});
     }
+    follow_leaders(scene.train, poses);
     return poses;
 }
 
+std::array<float, given_width> numbers_of(const given_pose& given) {
+    std::array<float, given_width> numbers{static_cast<float>(given.depth),
+                                           given.leader ? static_cast<float>(*given.leader) : -1.0f};
+    for (int k = 0; k < 3; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        numbers[2 + at] = static_cast<float>(given.lever[k]);
+        for (int row = 0; row < 3; ++row)
+            numbers[5 + 3 * at + static_cast<std::size_t>(row)] =
+                static_cast<float>(given.from_leader[k][row]);
+    }
+    return numbers;
+}
+
+given_pose from_numbers(const camera& given, std::span<const float, given_width> numbers) {
+    given_pose pose{given, static_cast<double>(numbers[0])};
+    if (numbers[1] >= 0) pose.leader = static_cast<std::size_t>(numbers[1]);
+    for (int k = 0; k < 3; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        pose.lever[k] = static_cast<double>(numbers[2 + at]);
+        for (int row = 0; row < 3; ++row)
+            pose.from_leader[k][row] =
+                static_cast<double>(numbers[5 + 3 * at + static_cast<std::size_t>(row)]);
+    }
+    return pose;
+}
+
 camera moved(const given_pose& given, const pose_change& change) {
+    const glm::dvec3 turn = turn_of(given, change);
+    const glm::dvec3 by_lever = (glm::transpose(rotation_by(turn)) - glm::dmat3(1)) * given.lever;
+    const glm::dvec3 center = given.camera.center() + glm::transpose(leader_rotation(given)) *
+                                                          (shift_unit * shift_of(change) + by_lever);
     camera result = given.camera;
-    const glm::dvec3 center =
-        given.camera.center() + glm::transpose(given.camera.rotation) * (shift_unit * shift_of(change));
-    result.rotation = rotation_by(turn_of(given, change)) * given.camera.rotation;
+    result.rotation = rotation_by(given.from_leader * turn) * given.camera.rotation;
     result.translation = -(result.rotation * center);
     return result;
 }
 
 pose_derivatives derivatives_of(const given_pose& given, const pose_change& change) {
     const glm::dvec3 turn = turn_of(given, change);
-    return {glm::transpose(left_jacobian(turn)) * rotation_by(turn) * given.camera.rotation,
-            shift_unit * given.camera.rotation, glm::transpose(turn_by_shift(given))};
+    const glm::dmat3 leader = leader_rotation(given), turned = rotation_by(turn) * leader,
+                     by_turn = glm::transpose(left_jacobian(turn));
+    return {by_turn * turned, shift_unit * leader, glm::transpose(turn_by_shift(given)),
+            -by_turn * cross_product_by(given.lever) * turned};
 }
 
 void remove_common_motion(const std::vector<given_pose>& given, std::vector<float>& changes) {
@@ -163,12 +216,15 @@ void remove_common_motion(const std::vector<given_pose>& given, std::vector<floa
     const auto value_of = [&](std::size_t view, std::size_t k) {
         return static_cast<double>(changes[view * pose_width + k]);
     };
+    const auto leads = [&](std::size_t v) { return !given[v].leader; };
     for (std::size_t v = 0; v < given.size(); ++v) {
+        if (!leads(v)) continue;
         const common_motion::rows rows = common_motion::rows_of(given[v]);
         for (std::size_t k = 0; k < pose_width; ++k) common.add(rows[k], value_of(v, k));
     }
     const common_motion::row fit = common.fit();
     for (std::size_t v = 0; v < given.size(); ++v) {
+        if (!leads(v)) continue;
         const common_motion::rows rows = common_motion::rows_of(given[v]);
         for (std::size_t k = 0; k < pose_width; ++k)
             changes[v * pose_width + k] = static_cast<float>(

@@ -19,11 +19,11 @@ namespace gs::features {
 /// depend on the position of the camera and not on its rotation. A learned sky has no part in it. Leaves out
 /// Gaussians whose gradients are not finite.
 struct pose_gradient {
-    raster::mat3<float> by_turn, by_shift, turning;  ///< see `pose_derivatives`
-    train::ordered_sums sums;                        ///< `pose_width` sums over all Gaussians
+    raster::mat3<float> by_turn, by_shift, turning, by_lever;  ///< see `pose_derivatives`
+    train::ordered_sums sums;                                  ///< `pose_width` sums over all Gaussians
 
     pose_gradient(const pose_derivatives& d, const train::ordered_sums& to)
-        : by_turn(d.by_turn), by_shift(d.by_shift), turning(d.turning), sums(to) {}
+        : by_turn(d.by_turn), by_shift(d.by_shift), turning(d.turning), by_lever(d.by_lever), sums(to) {}
 
     static constexpr bool takes_zeros = false;
     WARPAGG_HD bool idle() const { return false; }
@@ -47,8 +47,10 @@ struct pose_gradient {
             // A rotation by a small vector v changes the quaternion q by (0, v) q / 2.
             const vec3 axis(q.y, q.z, q.w), by_axis(by_q.y, by_q.z, by_q.w);
             const vec3 orientation = real(0.5f) * (q.x * by_axis - by_q.x * axis + glm::cross(axis, by_axis));
+            // The center of the camera moves by the opposite of the mean's motion.
             const vec3 turn =
-                raster::mat3<real>(of.by_turn) * (glm::cross(offset, by_position) + orientation);
+                raster::mat3<real>(of.by_turn) * (glm::cross(offset, by_position) + orientation) -
+                raster::mat3<real>(of.by_lever) * by_mean;
             const vec3 shift =
                 raster::mat3<real>(of.turning) * turn - raster::mat3<real>(of.by_shift) * by_mean;
             real total[pose_width];

@@ -51,9 +51,12 @@ explanation poses_feature::explain(const scene_statistics&, const finding&) cons
 }
 
 std::vector<float> poses_feature::neutral_values(const scene& scene) const {
-    std::vector<float> depths;
-    for (const given_pose& pose : given_poses(scene)) depths.push_back(static_cast<float>(pose.depth));
-    return depths;
+    std::vector<float> all;
+    for (const given_pose& pose : given_poses(scene)) {
+        const auto numbers = numbers_of(pose);
+        all.insert(all.end(), numbers.begin(), numbers.end());
+    }
+    return all;
 }
 
 std::string poses_feature::obstacle(const scene& scene, const std::vector<float>&) const {

@@ -7,8 +7,9 @@
 
 namespace gs::features {
 
-/// A correction of the pose of each training photo, from the gradient of the loss. Initial values: the
-/// depth of each training view, see `given_pose`. Learned values: `pose_width` per training view.
+/// A correction of the pose of each training photo, from the gradient of the loss. Cameras of a
+/// rig move together. Initial values: `numbers_of` the given pose of each training view. Learned values:
+/// `pose_width` per training view, zero for views that follow another.
 class poses_feature final : public feature {
   public:
     template <class Device>
@@ -21,7 +22,7 @@ class poses_feature final : public feature {
     finding analyze(const scene_statistics& statistics) const override;
     explanation explain(const scene_statistics& statistics, const finding& found) const override;
     std::vector<float> neutral_values(const scene& scene) const override;
-    std::string obstacle(const scene& scene, const std::vector<float>& depths) const override;
+    std::string obstacle(const scene& scene, const std::vector<float>& given) const override;
     void schedule(const selected_feature& selected, train::training& training) const override;
     /// Writes poses.json: the learned pose of each training photo and its difference from the given
     /// one, in world coordinates.

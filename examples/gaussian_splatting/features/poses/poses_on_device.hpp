@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "../../core/median.hpp"
 #include "../device_feature.hpp"
@@ -25,12 +27,16 @@ class poses_on_device final : public device_feature<Renderer> {
         set_views(static_cast<std::size_t>(setup.facts.views));
     }
     void set_views(std::size_t training_views) override {
-        depths_.clear();
-        views_ = training_views;
-        of_training_.set(std::vector<float>(pose_width * views_));
+        given_numbers_.clear();
+        of_training_.set(std::vector<float>(pose_width * training_views));
     }
 
-    void set_values(const std::vector<float>& depths) override { depths_ = depths; }
+    void set_values(const std::vector<float>& given_numbers) override {
+        given_numbers_ = given_numbers;
+        leaders_ = 0;
+        for (std::size_t view = 0; view * given_width < given_numbers_.size(); ++view)
+            leaders_ += from_numbers({}, numbers_of_view(view)).leader ? 0 : 1;
+    }
     void change_values(const std::vector<float>& values) override { of_training_.change(values); }
     std::vector<float> values() const override { return of_training_.get(); }
 
@@ -41,18 +47,22 @@ class poses_on_device final : public device_feature<Renderer> {
     std::size_t memory_key(const step&) const override { return learns() ? 1 : 0; }
     camera seen_by(std::size_t view, const camera& given) override {
         if (!learns()) return given;
-        change_ = of_training_.of(view);
-        given_ = {given, static_cast<double>(depths_[view])};
+        given_ = from_numbers(given, numbers_of_view(view));
+        change_ = of_training_.of(given_.leader.value_or(view));
         return moved(given_, change_);
     }
     void learn_pose(const step& s, const float* sums) override {
         if (learns())
-            of_training_.learn(s.plan.view, given_, change_, s.renderer, sums, rate_at(s.plan.iteration));
+            of_training_.learn(given_.leader.value_or(static_cast<std::size_t>(s.plan.view)), given_, change_,
+                               s.renderer, sums, rate_at(s.plan.iteration));
     }
 
     void begin_refinement() override {
         of_held_out_.set(std::vector<float>(pose_width));
-        std::vector<double> depths(depths_.begin(), depths_.end());
+        std::vector<double> depths;
+        for (std::size_t at = 0; at < given_numbers_.size(); at += given_width)
+            depths.push_back(static_cast<double>(given_numbers_[at]));
+        given_ = {};
         given_.depth = depths.empty() ? std::numeric_limits<double>::infinity() : median(depths);
     }
     camera refined(const camera& given) override {
@@ -66,24 +76,28 @@ class poses_on_device final : public device_feature<Renderer> {
     }
 
   private:
-    bool learns() const { return !depths_.empty(); }
+    bool learns() const { return !given_numbers_.empty(); }
+    std::span<const float, given_width> numbers_of_view(std::size_t view) const {
+        return std::span(given_numbers_).subspan(given_width * view).template first<given_width>();
+    }
 
     /// The largest turn in one step, in radians. About fifty steps can correct an error of two degrees.
     static constexpr double most_rate = 2e-3;
 
-    /// Returns Adam's learning rate, which decays to a fifth. It is lower if more steps use each view.
+    /// Returns Adam's learning rate, which decays to a fifth. It is lower if more steps train each change.
     float rate_at(int iteration) const {
-        const double first =
-            std::min(most_rate, 0.15 * static_cast<double>(views_) / static_cast<double>(iterations_.last()));
+        const double first = std::min(
+            most_rate, 0.15 * static_cast<double>(leaders_) / static_cast<double>(iterations_.last()));
         return static_cast<float>(first * std::pow(0.2, iterations_.progress(iteration)));
     }
 
     learned_poses<typename Renderer::device_type> of_training_, of_held_out_;
-    std::vector<float> depths_;  ///< by training view: see `given_pose`; empty if the feature is off
-    given_pose given_{};         ///< of the camera that was returned last
-    pose_change change_{};       ///< of the same camera
+    std::vector<float>
+        given_numbers_;     ///< of all training views: see `numbers_of`; empty if the feature is off
+    given_pose given_{};    ///< of the camera that was returned last
+    pose_change change_{};  ///< of the same camera
     iteration_plan iterations_;
-    std::size_t views_ = 0;
+    std::size_t leaders_ = 0;  ///< number of views that are trained
 };
 
 }  // namespace gs::features

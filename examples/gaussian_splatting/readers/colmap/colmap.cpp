@@ -52,6 +52,13 @@ const colmap_camera& camera_of(const colmap_image& taken, const colmap_model& mo
     return *found;
 }
 
+std::optional<std::uint32_t> frame_of(const colmap_image& taken, const colmap_model& model) {
+    const auto found =
+        std::ranges::lower_bound(model.frames, std::uint64_t{taken.id}, {}, &colmap_frame_image::image_id);
+    if (found == model.frames.end() || found->image_id != taken.id) return {};
+    return found->frame_id;
+}
+
 std::vector<image_record> image_records(const colmap_model& model, const std::filesystem::path& photos,
                                         const std::filesystem::path& masks,
                                         const std::filesystem::path& depths) {
@@ -69,6 +76,7 @@ std::vector<image_record> image_records(const colmap_model& model, const std::fi
         one.camera = by.camera();
         one.distortion = by.distortion();
         one.camera_model = by.model().name;
+        one.rig_frame = frame_of(taken, model);
         if (!masks.empty()) one.mask = beside_photo(masks, one.name);
         if (!depths.empty()) one.depth = beside_photo(depths, one.name);
         one.camera.rotation = glm::mat3_cast(taken.rotation);
@@ -114,6 +122,10 @@ colmap_model read_colmap_model(const std::filesystem::path& folder) {
     (is_binary(images) ? read_binary_images : read_text_images)(images, model);
     if (model.images.empty()) throw error(images.string() + " lists no images");
     if (!points.empty()) (is_binary(points) ? read_binary_points : read_text_points)(points, model);
+    if (const auto frames = find_part(folder, "frames"); !frames.empty()) {
+        (is_binary(frames) ? read_binary_frames : read_text_frames)(frames, model);
+        std::ranges::sort(model.frames, {}, &colmap_frame_image::image_id);
+    }
     return model;
 }
 

@@ -37,25 +37,33 @@ struct colmap_camera {
 };
 
 struct colmap_image {
-    std::uint32_t camera_id = 0;
+    std::uint32_t id = 0, camera_id = 0;
     std::size_t name_begins = 0;  ///< position of the name in `colmap_model::names`
     glm::dquat rotation{1, 0, 0, 0};
     glm::dvec3 translation{0};
+};
+
+/// An image, and the frame to which it belongs. A frame has the images that the cameras of a rig took at
+/// once.
+struct colmap_frame_image {
+    std::uint64_t image_id = 0;
+    std::uint32_t frame_id = 0;
 };
 
 struct colmap_model {
     std::vector<colmap_camera> cameras;  ///< sorted by id
     std::vector<colmap_image> images;    ///< in the file's order
     std::vector<colored_point> points;
-    std::string names;                  ///< names of the images, each with a terminating zero
-    std::filesystem::path images_file;  ///< the file with the images, for messages
+    std::vector<colmap_frame_image> frames;  ///< sorted by image; empty before COLMAP 3.12
+    std::string names;                       ///< names of the images, each with a terminating zero
+    std::filesystem::path images_file;       ///< the file with the images, for messages
 
     const char* name(const colmap_image& image) const { return names.c_str() + image.name_begins; }
 };
 
-/// Reads cameras, images and points3D from a folder. Each file is a `.bin`, or a `.txt` if the
-/// `.bin` does not exist. The points may be missing. Throws `error` with the file, and the line or
-/// record, that is malformed. Allocates at most four times the size of the files plus 64 KiB, also
+/// Reads cameras, images, points3D and frames from a folder. Each file is a `.bin`, or a `.txt` if the
+/// `.bin` does not exist. The points and the frames may be missing. Throws `error` with the file, and the
+/// line or record, that is malformed. Allocates at most four times the size of the files plus 64 KiB, also
 /// for malformed files.
 colmap_model read_colmap_model(const std::filesystem::path& folder);
 

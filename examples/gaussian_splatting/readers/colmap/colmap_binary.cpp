@@ -101,11 +101,11 @@ void read_binary_images(const std::filesystem::path& file, colmap_model& model) 
     const std::size_t count = reader.take_count(4 + 7 * 8 + 4 + 1 + 8);
     model.images.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
-        reader.take<std::uint32_t>();  // the image's id
+        const auto id = reader.take<std::uint32_t>();
         const auto quaternion = reader.take_doubles<4>();
         const auto translation = reader.take_doubles<3>();
         const auto camera_id = reader.take<std::uint32_t>();
-        add_image(model, quaternion, translation, camera_id, reader.take_name(), reader.file());
+        add_image(model, id, quaternion, translation, camera_id, reader.take_name(), reader.file());
         reader.skip_records(track_point);
     }
     reader.expect_end();
@@ -124,6 +124,25 @@ void read_binary_points(const std::filesystem::path& file, colmap_model& model) 
         reader.take<double>();  // its reprojection error
         reader.skip_records(track_element);
         add_point(model, position, color, reader.file());
+    }
+    reader.expect_end();
+}
+
+void read_binary_frames(const std::filesystem::path& file, colmap_model& model) {
+    constexpr std::int32_t camera = 0;  // the other kinds of sensors have no images
+    binary_reader reader(file);
+    const std::size_t count = reader.take_count(4 + 4 + 7 * 8 + 4);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto id = reader.take<std::uint32_t>();
+        reader.take<std::uint32_t>();  // the rig's id
+        reader.take_doubles<7>();      // the rig's pose; those of images include it
+        const auto sensors = reader.take<std::uint32_t>();
+        for (std::uint32_t k = 0; k < sensors; ++k) {
+            const auto kind = reader.take<std::int32_t>();
+            reader.take<std::uint32_t>();  // the sensor's id
+            const auto data = reader.take<std::uint64_t>();
+            if (kind == camera) model.frames.push_back({data, id});
+        }
     }
     reader.expect_end();
 }

@@ -43,7 +43,7 @@ void add_camera(colmap_model& model, std::uint32_t id, const camera_model& kind,
     model.cameras.push_back(added);
 }
 
-void add_image(colmap_model& model, const std::array<double, 4>& quaternion,
+void add_image(colmap_model& model, std::uint32_t id, const std::array<double, 4>& quaternion,
                const std::array<double, 3>& translation, std::uint32_t camera_id, std::string_view name,
                const std::string& where) {
     const auto& [w, x, y, z] = quaternion;
@@ -52,6 +52,7 @@ void add_image(colmap_model& model, const std::array<double, 4>& quaternion,
         throw error(where + ": the rotation of the image " + sanitize_for_message(name) +
                     " is zero or not finite");
     colmap_image added;
+    added.id = id;
     added.camera_id = camera_id;
     added.name_begins = model.names.size();
     added.rotation = glm::dquat(w / norm, x / norm, y / norm, z / norm);

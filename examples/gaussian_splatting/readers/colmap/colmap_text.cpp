@@ -139,12 +139,12 @@ void read_text_images(const std::filesystem::path& file, colmap_model& model) {
     text_reader reader(file);
     model.images.reserve(reader.count_records<colmap_image>(2, "1 1 0 0 0 0 0 0 1 a\n\n"));
     while (reader.next_record()) {
-        reader.number<std::uint32_t>("the image's id");
+        const auto id = reader.number<std::uint32_t>("the image's id");
         const auto quaternion = reader.doubles<4>("a part of the rotation");
         const auto translation = reader.doubles<3>("a part of the translation");
         const auto camera_id = reader.number<std::uint32_t>("the camera's id");
         const std::string_view name = reader.rest("the image's name");
-        add_image(model, quaternion, translation, camera_id, name, reader.where());
+        add_image(model, id, quaternion, translation, camera_id, name, reader.where());
         if (reader.next_line()) reader.expect_groups_of(3, "the image's 2D points");
     }
 }
@@ -160,6 +160,22 @@ void read_text_points(const std::filesystem::path& file, colmap_model& model) {
         reader.number<double>("the reprojection error");
         reader.expect_groups_of(2, "the point's track");
         add_point(model, position, color, reader.where());
+    }
+}
+
+void read_text_frames(const std::filesystem::path& file, colmap_model& model) {
+    text_reader reader(file);
+    while (reader.next_record()) {
+        const auto id = reader.number<std::uint32_t>("the frame's id");
+        reader.number<std::uint32_t>("the rig's id");
+        reader.doubles<7>("a part of the rig's pose");
+        for (auto left = reader.number<std::uint32_t>("the number of images"); left > 0; --left) {
+            const bool is_camera = reader.word("the kind of sensor") == "CAMERA";
+            reader.number<std::uint32_t>("the sensor's id");
+            const auto data = reader.number<std::uint64_t>("the image's id");
+            if (is_camera) model.frames.push_back({data, id});
+        }
+        if (!reader.at_line_end()) reader.malformed("the frame has more images than it promises");
     }
 }
 
