@@ -62,8 +62,8 @@ TEST_CASE("a written COLMAP model has the cameras, poses and points of the model
         REQUIRE(is.images.size() == 4);
         for (const auto& image : was.images) {
             const auto& same = image_named(is, was.name(image));
-            CHECK(glm::length(same.rotation * glm::conjugate(image.rotation) - glm::dquat(1, 0, 0, 0)) <
-                  rounding);
+            const glm::dquat turn = same.rotation * glm::conjugate(image.rotation);  // or its negative
+            CHECK(glm::length(glm::dvec3(turn.x, turn.y, turn.z)) < rounding);
             CHECK(glm::distance(same.translation, image.translation) < rounding);
             const auto find_camera = [](const gs::colmap_model& of, std::uint32_t id) {
                 return *std::ranges::find(of.cameras, id, &gs::colmap_camera::id);
@@ -112,7 +112,7 @@ TEST_CASE("a written COLMAP model has the learned poses, and the given ones of h
 
 TEST_CASE("COLMAP models: photos by one lens share a camera") {
     const temporary_folder folder;
-    const model_record model = photos_by({5, 1, "PINHOLE", 40, 30, {50, 35, 19, 16}}, {"a.png", "b.png"});
+    const model_record model = photos_by({1, 1, "PINHOLE", 40, 30, {50, 35, 19, 16}}, {"a.png", "b.png"});
     write_binary(folder / "sparse/0", model);
     write_photos(folder / "images", model, 40, 30);
     const gs::scene scene = load_normalized(folder.path(), false);
