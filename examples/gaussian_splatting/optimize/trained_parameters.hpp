@@ -56,9 +56,10 @@ struct trained_parameters {
         for (auto* moments : {&first, &second}) moments->move_to_host_from(device, how.first_degree_on_host);
         packed.move_to_host_from(device, how.first_degree_on_host);
     }
-    /// Sets all moments to zero.
-    void clear_moments(Device& device, std::size_t count, int sh_degree) {
-        free_moments();
+    /// Sets all moments to zero if they were freed. They have no memory until a step needs them, because
+    /// the storage of a new model is known only then.
+    void require_moments(Device& device, std::size_t count, int sh_degree) {
+        if (last_step.size() == count) return;
         for_each_moment([&](auto& moments) {
             moments.resize(count, values.gaussians_with_sh(), sh_degree);
             moments.zero(device);
@@ -66,8 +67,6 @@ struct trained_parameters {
         last_step.resize(count);
         device.zero(last_step.data(), count);
     }
-    /// Returns whether there are moments.
-    bool has_moments() const { return last_step.size() > 0; }
     /// Returns whether all arrays have the sizes for this number of Gaussians and this SH degree.
     bool fits(std::size_t count, int sh_degree) {
         bool fits = last_step.size() == count;

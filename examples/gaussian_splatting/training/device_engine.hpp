@@ -75,7 +75,6 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         features_.set_model(model);
         trained_.set_values(device_, model);
         begin_generation(model.count());
-        if (runs_ > 0) trained_.clear_moments(device_, count_, sh_degree_);
         lists_.reset(views_.count());
         device_.wait();
         is_complete_ = true;
@@ -102,6 +101,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     }
 
     void step(const step_plan& plan) override {
+        trained_.require_moments(device_, count_, sh_degree_);
         const photo& shot = views_.train(level_)[plan.view];
         const camera seen = features_.seen_by(plan.view, shot.camera);
         const auto loaded = views_.load(shot);
@@ -193,6 +193,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         std::size_t prune(double change) override {
             on_.complete_parameters();
             if (on_.count_ > 0 && on_.sh_degree_ > 0) {
+                on_.trained_.require_moments(on_.device_, on_.count_, on_.sh_degree_);
                 drawn_views views(on_, on_.views_.smallest());
                 sh_pruner<Device>(on_.device_, on_.gather_)
                     .run(on_.trained_, on_.count_, on_.sh_degree_, views, change);
@@ -300,6 +301,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         archive.exchange("gaussians", count_);
         archive.exchange("sh_degree", sh_degree_);
         archive.exchange("steps", steps_);
+        if (!archive.loads()) trained_.require_moments(device_, count_, sh_degree_);
         trained_.exchange(archive, device_);
         is_complete_ = true;
         exchange_buffer(archive, device_, "statistics", seen_);
@@ -353,7 +355,6 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         first_degree_on_host_ = setup.storage.first_degree_on_host;
         ++runs_;
         trained_.set_storage(device_, setup.storage);
-        if (!trained_.has_moments()) trained_.clear_moments(device_, count_, sh_degree_);
     }
 
     void set_level(std::size_t level) {
@@ -377,19 +378,18 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     }
 
     trained_gaussians<Device> in_training() {
+        trained_.require_moments(device_, count_, sh_degree_);
         return {device_, trained_, count_, sh_degree_, views_.centers(), views_.count()};
     }
 
-    /// Sets the number of Gaussians and clears their statistics, after `trained_` has new
-    /// Gaussians.
+    /// Sets the number of Gaussians and clears their statistics. Precondition: `trained_` has them.
     void begin_generation(std::size_t count) {
         count_ = count;
         seen_.resize(count);
         device_.zero(seen_.data(), count);
     }
 
-    /// Returns the graph key: all values that determine the launches of `iterate`, their ranges and
-    /// memory.
+    /// Returns the graph key: what determines the launches of `iterate`, their ranges and memory.
     device::graph_key key_of(const step_type& s, const target_image& target) const {
         device::graph_key key{runs_,
                               count_,

@@ -78,15 +78,36 @@ TEST_CASE("storage: parameters keep their values when they move, and lose moment
     gs::train::trained_parameters<gs::device::cpu> all;
     all.set_values(device, model);
     all.set_storage(device, {full, 4});
-    all.clear_moments(device, model.count(), 3);
+    all.require_moments(device, model.count(), 3);
     all.first[7].data()[5] = 42;
     all.set_storage(device, {full, 2});
     CHECK(all.first[7].data()[5] == 42);
     CHECK(all.values.download(device, model.count(), 3).sh_rest == model.sh_rest);
     CHECK(all.fits(model.count(), 3));
     all.set_storage(device, {compact, 3});
-    CHECK_FALSE(all.has_moments());
+    CHECK(all.last_step.size() == 0);
     CHECK(all.values.download(device, model.count(), 3).sh_rest == model.sh_rest);
+}
+
+TEST_CASE("storage: a new model has no moments until a step, so that their memory follows the storage") {
+    const gs::scene scene = small_scene();
+    for (const auto make : engines()) {
+        const auto bytes_after = [&](gs::train::parameter_storage how) {
+            const auto e = make();
+            e->set_views(scene.train, {});
+            const std::size_t before = e->profile().used_device_bytes();
+            e->set_model(gs::from_points(scene.points, 3, 3000, 1));
+            const std::size_t of_values = e->profile().used_device_bytes() - before;
+            CHECK(of_values < 3000 * 59 * sizeof(float) * 3 / 2);
+            gs::train::training_setup setup;
+            setup.storage = how;
+            e->begin(setup);
+            e->reserve();
+            e->step({});
+            return e->profile().peak_device_bytes();
+        };
+        CHECK(bytes_after({compact, 4}) < bytes_after({full, 4}));
+    }
 }
 
 TEST_CASE("storage: the forecast counts parameters in host memory apart") {
