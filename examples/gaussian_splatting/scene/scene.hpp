@@ -30,14 +30,14 @@ struct photo {
 struct view {
     std::string name;  ///< path relative to the images folder, with its ending
     gs::camera camera;
-    /// Views with the same number were taken at once by cameras that are fixed to each other: a rig.
-    std::optional<std::uint32_t> rig_frame{};
     image pixels;               ///< has size and flags, but no values if `is_streamed`
     depth_map depths{};         ///< has the photo's size, or is empty; has no values if `is_streamed`
     lens removed_distortion{};  ///< of the file, which loading has removed from the photo
     /// The camera of the photo's file, with its size and without this distortion. Its pose has no meaning.
     /// Empty if the photo comes from no file.
     std::optional<gs::camera> camera_of_file{};
+    /// Views with the same number were taken at once by cameras that are fixed to each other: a rig.
+    std::optional<std::uint32_t> rig_frame{};
 
     /// Decodes the photo, and replaces the argument, whose memory it reuses. Empty if the view holds
     /// the photo. Threads may call it. Throws `error`, for example if the file has changed since the
