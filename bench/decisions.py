@@ -10,6 +10,7 @@
 Pure scenes have one effect or noise; mixtures have each effect or not, by the seed, and each mixture comes with each noise.
 """
 import argparse
+import concurrent.futures
 import json
 import pathlib
 import random
@@ -86,10 +87,14 @@ def run(arguments):
     for folder in [output.parent, *real]:
         if not folder.is_dir():
             raise SystemExit(f"there is no folder '{folder}'")
+    if arguments.jobs < 1:
+        raise SystemExit(f"--jobs is a number of processes, not {arguments.jobs}")
     runs = []
-    for case in [*pure(), *mixtures(arguments.mixtures, arguments.seed, arguments.noises)]:
-        runs.append({**case, **inspect(arguments.program, case["scene"])})
-        print(case["scene"], "wrong: " + (", ".join(wrong(runs[-1])) or "none"), flush=True)
+    cases = [*pure(), *mixtures(arguments.mixtures, arguments.seed, arguments.noises)]
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        for case, found in zip(cases, pool.map(lambda case: inspect(arguments.program, case["scene"]), cases)):
+            runs.append({**case, **found})
+            print(case["scene"], "wrong: " + (", ".join(wrong(runs[-1])) or "none"), flush=True)
     for folder in real:
         runs.append({"kind": "real", "scene": folder.name, **inspect(arguments.program, str(folder))})
         print(folder.name, f"{runs[-1]['seconds']:.2f} s", flush=True)
@@ -174,6 +179,7 @@ def main():
     runner.add_argument("--mixtures", type=int, default=20)
     runner.add_argument("--noises", nargs="+", type=float, default=[0, 0.01, 0.03])
     runner.add_argument("--seed", type=int, default=0)
+    runner.add_argument("--jobs", type=int, default=1, help="synthetic scenes that are inspected at once, which then take longer")
     runner.add_argument("--commit", help="where the sources are no git checkout")
     runner.add_argument("--output", required=True)
     runner.set_defaults(action=run)
