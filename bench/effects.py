@@ -24,6 +24,7 @@ from scenes import by, where
 
 # For each effect, a scene that calls for it and one that does not.
 SCENES = {"direction": ("spheres,gloss=1,noise=0.01", "spheres,noise=0.03"),
+          "vignetting": ("spheres,vignetting=0.4", "spheres"),
           "exposure": ("spheres,exposure=0.3", "spheres"),
           "antialiasing": ("spheres,scales=4", "spheres"),
           "sky": ("spheres,sky=0.8", "spheres"),
@@ -34,7 +35,7 @@ LITTLE = ["spheres,noise=0.03", "alpha,noise=0.03"]
 MUCH = ["spheres,gloss=0.7,exposure=0.3,scales=4,sky=0.7", "alpha,gloss=0.7,exposure=0.3,scales=4"]
 SELECTIONS = ["none", "auto", "all"]
 DISTANCES = [1, 0.5, 4]
-TAKEN = {"exposure", "scales", "passers", "moving", "depths", "points", "views", "noise"}  # parameters of the photos, not of the world
+TAKEN = {"vignetting", "exposure", "scales", "passers", "moving", "depths", "points", "views", "noise"}  # parameters of the photos, not of the world
 SIDE = "256"
 
 

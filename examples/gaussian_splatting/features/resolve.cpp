@@ -126,8 +126,8 @@ show_function feature_set::show_on_host(train::engine& engine, const scene& scen
     for (const auto& f : all_features())
         if (is_on(f->name()))
             if (show_function step = f->show_on_host(engine, scene)) steps.push_back(std::move(step));
-    return [steps = std::move(steps)](std::size_t view, std::vector<float>& render) {
-        for (const show_function& step : steps) step(view, render);
+    return [steps = std::move(steps)](std::size_t view, int width, std::vector<float>& render) {
+        for (const show_function& step : steps) step(view, width, render);
     };
 }
 

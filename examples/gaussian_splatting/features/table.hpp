@@ -14,6 +14,7 @@
 #include "poses/poses_feature.hpp"
 #include "sh_degree/sh_degree_feature.hpp"
 #include "sky/sky_feature.hpp"
+#include "vignetting/vignetting_feature.hpp"
 
 namespace gs::features {
 
@@ -21,7 +22,7 @@ namespace gs::features {
 /// feature with a device part has a member template `on_device<Renderer>`, which derives from
 /// `device_feature<Renderer>`.
 using table =
-    std::tuple<sh_degree_feature, exposure_feature, antialiasing_feature, sky_feature, poses_feature,
-               moving_feature, masks_feature, depth_feature, lens_feature, background_feature>;
+    std::tuple<sh_degree_feature, vignetting_feature, exposure_feature, antialiasing_feature, sky_feature,
+               poses_feature, moving_feature, masks_feature, depth_feature, lens_feature, background_feature>;
 
 }  // namespace gs::features

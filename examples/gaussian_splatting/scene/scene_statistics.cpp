@@ -38,10 +38,28 @@ const observed_points& scene_statistics::smooth_points() const {
 }
 
 const photo_brightness& scene_statistics::brightness() const {
-    if (!brightness_)
-        brightness_ = smooth_points().empty() ? photo_brightness{}
-                                              : estimate_brightness(smooth_points(), scene_.train.size());
+    if (brightness_) return *brightness_;
+    observed_points points = smooth_points();
+    if (!points.empty()) remove_clear_falloff(points);
+    brightness_ = points.empty() ? photo_brightness{} : estimate_brightness(points, scene_.train.size());
     return *brightness_;
+}
+
+const lens_falloff& scene_statistics::falloff() const {
+    if (falloff_) return *falloff_;
+    constexpr std::size_t few = 100;
+    constexpr float slightly_rough = 0.3f;
+    falloff_ = estimate_falloff(scene_, smooth_points());
+    if (falloff_->points >= few) return *falloff_;
+    observed_points more = points();
+    for (auto& seen : more)
+        std::erase_if(seen, [&](const observation& o) { return o.roughness > slightly_rough; });
+    falloff_ = estimate_falloff(scene_, std::move(more));
+    return *falloff_;
+}
+
+void scene_statistics::remove_clear_falloff(observed_points& points) const {
+    if (falloff().is_clear()) remove_falloff(scene_, falloff(), points);
 }
 
 }  // namespace gs

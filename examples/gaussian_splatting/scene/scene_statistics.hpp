@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lens_falloff.hpp"
 #include "photo_brightness.hpp"
 #include "scene.hpp"
 
@@ -34,11 +35,17 @@ class scene_statistics {
     /// Returns the relative brightness of the photos. The lists are empty if there are no smooth
     /// points.
     const photo_brightness& brightness() const;
+    /// Returns the falloff of lenses, measured at the smooth points, and if these are few, at points in
+    /// slightly rough parts, too.
+    const lens_falloff& falloff() const;
+    /// Removes the falloff from the colors of observations if it is clear.
+    void remove_clear_falloff(observed_points& points) const;
 
   private:
     const gs::scene& scene_;
     mutable std::optional<observed_points> points_, smooth_;
     mutable std::optional<photo_brightness> brightness_;
+    mutable std::optional<lens_falloff> falloff_;
 };
 
 }  // namespace gs

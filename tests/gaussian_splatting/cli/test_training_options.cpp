@@ -177,6 +177,7 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
     using set = std::map<std::string, bool>;
     const std::string varied = "synthetic:spheres,exposure=0.5,scales=4";
     CHECK(effects("auto", varied, {}) == set{{"direction", false},
+                                             {"vignetting", false},
                                              {"exposure", true},
                                              {"antialiasing", true},
                                              {"sky", false},
@@ -197,6 +198,7 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
     CHECK(says(read_file(model).substr(0, 100), {"comment SplatRenderMode: mip\n"}));
 
     CHECK(effects("some", varied, {"--effects=-exposure,+direction"}) == set{{"direction", true},
+                                                                             {"vignetting", false},
                                                                              {"exposure", false},
                                                                              {"antialiasing", true},
                                                                              {"sky", false},
@@ -207,6 +209,7 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
                                                                              {"background", false}});
     CHECK(!fs::exists(folder / "some/exposures.json"));
     CHECK(!fs::exists(folder / "some/poses.json"));
+    CHECK(!fs::exists(folder / "some/vignetting.json"));
     CHECK(!read_json(folder / "some/metrics.json").contains("fitted_psnr"));
 
     CHECK(effects("poses", "synthetic:spheres,poses=1", {"--effects", "poses"}).at("poses"));

@@ -63,6 +63,8 @@ TEST_CASE("long: detection recommends the effects that a scene was made with, an
         {"spheres,noise=0.03", {}},
         {"spheres,gloss=0.6", {"direction"}},
         {"spheres,exposure=0.3,noise=0.01", {"exposure"}},
+        {"spheres,vignetting=0.4,noise=0.03", {"vignetting"}},
+        {"spheres,vignetting=0.3,exposure=0.3,sky=0.7", {"vignetting", "exposure", "sky"}},
         {"spheres,scales=4", {"antialiasing"}},
         {"spheres,sky=0.4,noise=0.03", {"sky"}},
         {"spheres,sky=1,exposure=0.3,scales=4", {"sky", "exposure", "antialiasing"}},
@@ -80,7 +82,7 @@ TEST_CASE("long: detection recommends the effects that a scene was made with, an
         INFO(c.scene);
         const gs::scene scene = made(c.scene);
         const gs::scene_statistics statistics(scene);
-        REQUIRE(all_features().size() == 10);
+        REQUIRE(all_features().size() == 11);
         for (const auto& f : all_features()) {
             INFO(f->name());
             const finding found = f->analyze(statistics);
@@ -192,7 +194,7 @@ TEST_CASE("a scene without points is not told what it needs") {
     const gs::scene_statistics statistics(scene);
     for (const auto& f : all_features()) {
         INFO(f->name());
-        const std::set<std::string_view> of_files = {"background", "masks", "depth", "lens"};
+        const std::set<std::string_view> of_files = {"background", "vignetting", "masks", "depth", "lens"};
         CHECK(f->analyze(statistics).recommended.has_value() == of_files.contains(f->name()));
     }
     CHECK(measure_direction(statistics).degree() == 3);
@@ -351,12 +353,12 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
     CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
     CHECK(refusal("spheres,glos=0.5") ==
           "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
-          "moving, sky, walls, fisheye, panorama, depths, points, views, poses, noise");
+          "moving, vignetting, sky, walls, fisheye, panorama, depths, points, views, poses, noise");
     CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
     CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
     CHECK(refusal("spheres,") ==
           "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
-          "moving, sky, walls, fisheye, panorama, depths, points, views, poses, noise");
+          "moving, vignetting, sky, walls, fisheye, panorama, depths, points, views, poses, noise");
     CHECK(refusal("spheres,gloss=nan") ==
           "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
     CHECK(refusal("spheres,views=4,depths=0") == "");
@@ -366,6 +368,10 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
         "a synthetic scene has either a 'fisheye' or a 'panorama', not both: spheres,panorama=1,fisheye=90");
     CHECK(refusal("spheres,sky=1,walls=1") ==
           "a synthetic scene has either a 'sky' or 'walls', not both: spheres,sky=1,walls=1");
+    CHECK(refusal("spheres,vignetting=0.3,panorama=1") ==
+          "a synthetic scene has either 'vignetting' or a 'panorama', not both: "
+          "spheres,vignetting=0.3,panorama=1");
+    CHECK_THROWS_WITH_AS(made("alpha,vignetting=0.4"), doctest::Contains("it has no vignetting"), gs::error);
     CHECK(refusal("spheres,views=4.5") ==
           "the 'views' of a synthetic scene is a whole number from 1 to 48, not '4.5'");
     CHECK(refusal("spheres,depths=-1") ==

@@ -15,6 +15,7 @@
 #include "features/exposure/exposure_feature.hpp"
 #include "features/poses/poses_feature.hpp"
 #include "features/sh_degree/sh_degree_feature.hpp"
+#include "features/vignetting/vignetting_feature.hpp"
 #include "training/initialize.hpp"
 #include "training/training.hpp"
 
@@ -38,6 +39,7 @@ gs::train::train_options options_for(const gs::scene& scene, const std::string& 
     o.background.random = true;
     o.features = gs::features::feature_set(
         {{"direction", true, "", {1, 1}},  // revises the SH degree
+         {"vignetting", true, "", gs::features::vignetting_feature().neutral_values(scene)},
          {"exposure", true, "", gs::features::exposure_feature().neutral_values(scene)},
          {"poses", true, "", gs::features::poses_feature().neutral_values(scene)},
          {"moving", true, "", {}},
@@ -64,7 +66,7 @@ gs::gaussians trained(make_engine make, const gs::scene& scene, gs::train::train
 }  // namespace
 
 TEST_CASE("resume: a run that continues from any checkpoint gives the same model bit for bit") {
-    const gs::scene scene = small_scene("synthetic:spheres,depths=0.02", 24);
+    const gs::scene scene = small_scene("synthetic:spheres,depths=0.02,vignetting=0.4", 24);
     using iterations = std::vector<int>;
     using enum gs::train::moment_precision;
     for (const auto make : engines())

@@ -41,12 +41,14 @@ class exposure_on_device final : public device_feature<Renderer> {
 
     std::size_t memory_key(const step&) const override { return learns_ ? 1 : 0; }
     const float* show(const step& s, const float* render) override {
-        return learns_ ? of_training_.show(s.plan.view, render, s.pixels()) : render;
+        if (!learns_) return render;
+        input_ = render;
+        return of_training_.show(s.plan.view, render, s.pixels());
     }
     const float* backward(const step& s, const float* gradient) override {
         if (!learns_) return gradient;
         const image_part part{s.camera.width, s.camera.height, s.renderer.own_rows()};
-        return of_training_.learn(s.plan.view, s.renderer.render(), gradient, part, rate_at(s.plan.iteration),
+        return of_training_.learn(s.plan.view, input_, gradient, part, rate_at(s.plan.iteration),
                                   s.renderer.capacity());
     }
     const float* show_held_out(std::size_t view, const float* render, std::size_t pixels) override {
@@ -68,6 +70,7 @@ class exposure_on_device final : public device_feature<Renderer> {
     }
 
     exposures<typename Renderer::device_type> of_training_, of_held_out_;
+    const float* input_ = nullptr;  ///< of `show` in this step
     iteration_plan iterations_;
     std::size_t views_ = 0;
     bool learns_ = false;

@@ -62,6 +62,7 @@ observed_points comparable_observations(const scene_statistics& statistics) {
     for (auto& seen : points) keep_one_size(seen, one_size);
     std::erase_if(points,
                   [](const auto& seen) { return seen.size() < scene_statistics::least_photos_of_point; });
+    statistics.remove_clear_falloff(points);
     // Not `statistics.brightness()`, for which far photos have too few smooth points.
     const photo_brightness brightness = estimate_brightness(points, statistics.scene().train.size());
     for (auto& seen : points)

@@ -147,6 +147,7 @@ std::vector<double> explained_by_direction(const observed_points& points, int de
 observed_points comparable_points(const scene_statistics& statistics) {
     observed_points points = statistics.smooth_points();
     if (points.empty()) return points;
+    statistics.remove_clear_falloff(points);
     const photo_brightness& brightness = statistics.brightness();
     for (auto& seen : points) {
         std::erase_if(seen, [&](const observation& o) { return brightness.error[o.view] == 0; });

@@ -40,7 +40,7 @@ observed_points observe_residuals(const scene& of, train::engine& engine, const 
         for (std::size_t i = 0; i < count; ++i)
             renders[i] = engine.render(of.train[first + i].camera, background);
         for_each_in_parallel(count, [&](std::size_t i) {
-            show(first + i, renders[i]);
+            show(first + i, of.train[first + i].camera.width, renders[i]);
             image residual = view_photo(of.train[first + i]).pixels();
             leave_residual(residual, renders[i], background);
             observer.observe(first + i, residual);

@@ -63,9 +63,14 @@ photo_cells cells_of(const camera& c, const image& photo, const std::vector<colo
 
 }  // namespace
 
-glm::dvec3 photo_cells::ray(const camera& taken_with, std::size_t cell) const {
+glm::dvec2 photo_cells::middle(std::size_t cell) const {
     const int column = static_cast<int>(cell) % across, row = static_cast<int>(cell) / across;
-    return taken_with.ray((column + 0.5) * side, (row + 0.5) * side);
+    return {(column + 0.5) * side, (row + 0.5) * side};
+}
+
+glm::dvec3 photo_cells::ray(const camera& taken_with, std::size_t cell) const {
+    const glm::dvec2 place = middle(cell);
+    return taken_with.ray(place.x, place.y);
 }
 
 std::vector<photo_cells> divide_photos(const scene& of) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct photo_cells {
     int across = 0, down = 0;
     std::vector<photo_cell> cells;
 
+    /// Returns the pixel coordinates of the middle of a square.
+    glm::dvec2 middle(std::size_t cell) const;
     /// Returns the direction of the ray through the middle of a square, of length one.
     glm::dvec3 ray(const camera& taken_with, std::size_t cell) const;
 };

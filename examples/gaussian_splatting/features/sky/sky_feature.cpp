@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "../../scene/image_radius.hpp"
 #include "../text.hpp"
 #include "sky_distance.hpp"
 #include "sky_fit.hpp"
@@ -28,13 +29,28 @@ struct measured_sky {
     sky_distance distance;
 };
 
-/// Fits the sky to the photos as they are and, if their brightness is known, to photos of equalized
-/// brightness. Returns the fit with the larger share, because an overexposed sky is white in every
-/// photo.
+/// Removes a falloff from the colors of squares. A linear falloff in a square changes their mean little.
+void remove_falloff(const scene& of, const lens_falloff& falloff, std::vector<photo_cells>& photos) {
+    for (std::size_t v = 0; v < photos.size(); ++v) {
+        const camera& c = of.train[v].camera;
+        if (c.is_panorama) continue;
+        for (std::size_t i = 0; i < photos[v].cells.size(); ++i) {
+            const glm::dvec2 middle = photos[v].middle(i);
+            const auto factors = falloff.at(square_radius(c, middle.x, middle.y));
+            for (int k = 0; k < 3; ++k)
+                photos[v].cells[i].color[k] /= static_cast<float>(factors[static_cast<std::size_t>(k)]);
+        }
+    }
+}
+
+/// Fits the sky to the photos as they are, except for a clear falloff, and, if their brightness is known, to
+/// photos of equalized brightness. Returns the fit with the larger share, because an overexposed sky is white
+/// in every photo.
 measured_sky measure_sky(const scene_statistics& statistics) {
     const scene& photos = statistics.scene();
     if (photos.points.empty()) return {};
     std::vector<photo_cells> cells = divide_photos(photos);
+    if (statistics.falloff().is_clear()) remove_falloff(photos, statistics.falloff(), cells);
     const std::vector<double>& brightness = statistics.brightness().log2;
     sky_fit found = fit_sky(photos, cells, {}), evened;
     if (!brightness.empty()) evened = fit_sky(photos, cells, brightness);

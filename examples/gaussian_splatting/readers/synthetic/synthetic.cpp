@@ -3,6 +3,7 @@
 #include "synthetic.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -23,6 +24,7 @@
 #include "synthetic_parameters.hpp"
 #include "synthetic_passers.hpp"
 #include "synthetic_random.hpp"
+#include "synthetic_vignetting.hpp"
 #include "synthetic_walls.hpp"
 
 namespace gs {
@@ -123,10 +125,12 @@ world world_of(const std::string& text) {
         if (how.world == candidate.name) {
             world made = candidate.make();
             made.how = how;
-            if ((how.sky > 0 || how.walls > 0) && made.transparent)
+            if ((how.sky > 0 || how.walls > 0 || how.vignetting > 0) && made.transparent)
                 throw error("the synthetic scene '" + how.world +
                             "' is transparent where it has nothing: it has no " +
-                            (how.sky > 0 ? "sky" : "walls"));
+                            (how.sky > 0     ? "sky"
+                             : how.walls > 0 ? "walls"
+                                             : "vignetting"));
             return made;
         }
         known += (known.empty() ? "" : ", ") + std::string(candidate.name);
@@ -280,8 +284,10 @@ void render_row(const world& w, const camera& c, std::size_t photo, int row, std
         }
         constexpr double weight = 1.0 / (samples_per_side * samples_per_side);
         rgba[3] = w.transparent ? to_byte(weight * hits) : std::uint8_t{255};
+        std::array<double, 3> falloff{1, 1, 1};
+        if (w.how.vignetting > 0) falloff = synthetic_falloff(w.how, c, column + 0.5, row + 0.5);
         for (int channel = 0; channel < 3; ++channel) {
-            double shown = exposure * weight * color[channel];
+            double shown = exposure * falloff[static_cast<std::size_t>(channel)] * weight * color[channel];
             if (w.how.noise > 0 && hits > 0) shown += w.how.noise * normal(random);
             const double most = rgba[3] / 255.0;  // colors are premultiplied
             rgba[channel] = to_byte(std::clamp(shown, 0.0, most));
