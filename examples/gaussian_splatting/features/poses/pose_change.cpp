@@ -232,10 +232,4 @@ void remove_common_motion(const std::vector<given_pose>& given, std::vector<floa
     }
 }
 
-pose_change change_of(std::span<const float> all, std::size_t view) {
-    pose_change change;
-    std::ranges::copy(all.subspan(view * pose_width, pose_width), change.begin());
-    return change;
-}
-
 }  // namespace gs::features

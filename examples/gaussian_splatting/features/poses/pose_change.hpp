@@ -72,7 +72,4 @@ pose_derivatives derivatives_of(const given_pose& given, const pose_change& chan
 /// least squares.
 void remove_common_motion(const std::vector<given_pose>& given, std::vector<float>& changes);
 
-/// Returns the change of one of the views whose changes are in a row.
-pose_change change_of(std::span<const float> all, std::size_t view);
-
 }  // namespace gs::features

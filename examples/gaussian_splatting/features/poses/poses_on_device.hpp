@@ -10,7 +10,8 @@
 
 #include "../../core/median.hpp"
 #include "../device_feature.hpp"
-#include "learned_poses.hpp"
+#include "../learned_rows.hpp"
+#include "pose_gradient.hpp"
 
 namespace gs::features {
 
@@ -53,8 +54,8 @@ class poses_on_device final : public device_feature<Renderer> {
     }
     void learn_pose(const step& s, const float* sums) override {
         if (learns())
-            of_training_.learn(given_.leader.value_or(static_cast<std::size_t>(s.plan.view)), given_, change_,
-                               s.renderer, sums, rate_at(s.plan.iteration));
+            of_training_.learn(given_.leader.value_or(static_cast<std::size_t>(s.plan.view)), s.renderer,
+                               sums, rate_at(s.plan.iteration), sink());
     }
 
     void begin_refinement() override {
@@ -71,12 +72,17 @@ class poses_on_device final : public device_feature<Renderer> {
         return moved(given_, change_);
     }
     void refine_pose(const step& s, const float* sums, double progress) override {
-        of_held_out_.learn(0, given_, change_, s.renderer, sums,
-                           static_cast<float>(most_rate * std::pow(0.01, progress)));
+        of_held_out_.learn(0, s.renderer, sums, static_cast<float>(most_rate * std::pow(0.01, progress)),
+                           sink());
     }
 
   private:
     bool learns() const { return !given_numbers_.empty(); }
+    auto sink() const {
+        return [this](const train::ordered_sums& parts) {
+            return pose_gradient(derivatives_of(given_, change_), parts);
+        };
+    }
     std::span<const float, given_width> numbers_of_view(std::size_t view) const {
         return std::span(given_numbers_).subspan(given_width * view).template first<given_width>();
     }
@@ -91,7 +97,7 @@ class poses_on_device final : public device_feature<Renderer> {
         return static_cast<float>(first * std::pow(0.2, iterations_.progress(iteration)));
     }
 
-    learned_poses<typename Renderer::device_type> of_training_, of_held_out_;
+    learned_rows<typename Renderer::device_type, pose_width> of_training_, of_held_out_;
     std::vector<float>
         given_numbers_;     ///< of all training views: see `numbers_of`; empty if the feature is off
     given_pose given_{};    ///< of the camera that was returned last
