@@ -28,6 +28,7 @@ SCENES = {"direction": ("spheres,gloss=1,noise=0.01", "spheres,noise=0.03"),
           "exposure": ("spheres,exposure=0.3", "spheres"),
           "antialiasing": ("spheres,scales=4", "spheres"),
           "sky": ("spheres,sky=0.8", "spheres"),
+          "motion": ("spheres,blur=6", "spheres"),
           "moving": ("spheres,moving=0.5", "spheres"),
           "masks": ("spheres,passers=0.1", "spheres"),
           "depth": ("spheres,views=4,points=300,depths=0.02", "spheres,depths=0.02")}
@@ -35,7 +36,8 @@ LITTLE = ["spheres,noise=0.03", "alpha,noise=0.03"]
 MUCH = ["spheres,gloss=0.7,exposure=0.3,scales=4,sky=0.7", "alpha,gloss=0.7,exposure=0.3,scales=4"]
 SELECTIONS = ["none", "auto", "all"]
 DISTANCES = [1, 0.5, 4]
-TAKEN = {"vignetting", "exposure", "scales", "passers", "moving", "depths", "points", "views", "noise"}  # parameters of the photos, not of the world
+TAKEN = {"vignetting", "exposure", "scales", "passers", "moving", "blur", "shutter", "depths", "points", "views",
+         "noise"}  # parameters of the photos, not of the world
 SIDE = "256"
 
 

@@ -111,7 +111,7 @@ std::string optional_measures(const evaluate::held_out_report& report) {
     if (const auto fitted = report.mean_of("fitted_psnr"))
         text += ", " + number("%.2f", *fitted) + " dB after fitting exposures";
     if (const auto refined = report.mean_of("refined_psnr"))
-        text += ", " + number("%.2f", *refined) + " dB after refining poses";
+        text += ", " + number("%.2f", *refined) + " dB after refining cameras";
     return text;
 }
 

@@ -346,7 +346,7 @@ void training_run::measure() {
         *engine_, scene_, options_.background.color,
         {.folder = renders_folder(),
          .fits_exposure = s_.fit_exposure || options_.features.is_on("exposure"),
-         .refines_poses = options_.features.is_on("poses"),
+         .refines_poses = options_.features.is_on("poses") || options_.features.is_on("motion"),
          .network = lpips_.get()});
     measures_.evaluate_seconds = evaluating.seconds();
     measures_.peak_device_bytes = engine_->profile().peak_device_bytes();

@@ -43,7 +43,7 @@ inline constexpr std::array<view_measure, 7> view_measures{{
     {"lpips", "LPIPS", "%.4f", false, [](const view_quality& v) { return v.lpips; }},
     {"fitted_psnr", "PSNR, exposure fitted (dB)", "%.2f", false,
      [](const view_quality& v) { return v.fitted_psnr; }},
-    {"refined_psnr", "PSNR, pose refined (dB)", "%.2f", false,
+    {"refined_psnr", "PSNR, camera refined (dB)", "%.2f", false,
      [](const view_quality& v) { return v.refined_psnr; }},
 }};
 

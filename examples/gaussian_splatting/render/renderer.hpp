@@ -186,7 +186,7 @@ class renderer {
             device_.template for_each_warp<narrow>(
                 own_warps<narrow>(),
                 project_backward<narrow, Real, Sink, Effects>{
-                    gaussians_, count_, for_device<value_t<narrow, Real>>(camera_), sh_degree_,
+                    gaussians_, count_, camera_for<value_t<narrow, Real>, Effects>(camera_), sh_degree_,
                     learned_sh_degree, splats_.data(), tiles_.data(), sums, sink, seen, capacity()});
         });
     }
@@ -285,6 +285,7 @@ class renderer {
     effect_set effects_of(const camera& view) const {
         effect_set effects = effects_;
         effects.lens = view.lens();
+        effects.motion = view.motion.has_value();
         return effects;
     }
 
@@ -365,11 +366,11 @@ class renderer {
         tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
         using narrow = typename Device::narrow_warp;
         with_effects(effects_of(view), [&]<effect_set Effects> {
-            constexpr effect_set seen{Effects.antialiasing, Effects.lens};
+            constexpr effect_set seen{Effects.antialiasing, Effects.lens, false, Effects.motion};
             using projection = project<narrow, Real, seen>;
             device_.template for_each_warp<narrow>(
                 own_warps<narrow>(),
-                projection{gaussians, count, for_device<value_t<narrow, Real>>(view), sh_degree,
+                projection{gaussians, count, camera_for<value_t<narrow, Real>, seen>(view), sh_degree,
                            tiles_across_, tiles_down_, reserve(splats_, count).data(),
                            reserve(boxes_, count).data(), reserve(depths_, count).data(),
                            reserve(order_, count).data(), reserve(tiles_, count).data(), dropped});

@@ -38,6 +38,16 @@ class fisheye {
     double end_;
 };
 
+/// The motion of the scene in camera space while a photo is taken. A point q has the velocity
+/// cross(turn, q) + shift per unit of time. The pose of the camera belongs to the middle of the
+/// exposure of the middle row.
+struct camera_motion {
+    glm::dvec3 turn{0};   ///< in radians
+    glm::dvec3 shift{0};  ///< in the unit of the scene
+    double exposure = 1;  ///< the time for which each row is exposed
+    double readout = 0;   ///< the time from the first row to the last row; negative if the last is first
+};
+
 /// How a camera maps directions to its image: see `camera`.
 enum class lens_model { pinhole, fisheye, panorama };
 
@@ -57,6 +67,8 @@ struct camera {
     glm::dvec3 translation{0};
     std::optional<gs::fisheye> fisheye{};  ///< the lens of a fisheye camera
     bool is_panorama = false;              ///< if true, `fisheye` is empty
+    /// The motion that renders simulate. Only renders of pinhole cameras do.
+    std::optional<camera_motion> motion{};
 
     /// Returns the camera of a panorama of this size at the origin.
     static camera panorama(int width, int height);

@@ -60,9 +60,9 @@ class Arithmetic(unittest.TestCase):
     def test_misses_have_their_evidence(self):
         glossy = decisions.synthetic("mixture", "spheres", {"gloss": 0.4})
         self.row([told(glossy, recommended=None, evidence="cannot decide: 9 points")])
-        self.assertIn("| `alpha` | right: undecided |" + " right: no |" * 8 + " right: yes |", self.text)
+        self.assertIn("| `alpha` | right: undecided |" + " right: no |" * 9 + " right: yes |", self.text)
         self.assertIn(f"| `spheres,gloss=0.4` | {COLOUR} | undecided | 9 points |", self.text)
-        self.assertIn("| lego | undecided: 7 points |" + " no: seen |" * 8 + " yes: seen | 0.50 |", self.text)
+        self.assertIn("| lego | undecided: 7 points |" + " no: seen |" * 9 + " yes: seen | 0.50 |", self.text)
 
 
 class Mixtures(unittest.TestCase):
@@ -91,12 +91,12 @@ class Program(unittest.TestCase):
             self.assertEqual(os.listdir(folder), ["decisions.json"])
             result = json.loads(file.read_text())
             text = subprocess.run([*SCRIPT, "table", file], check=True, capture_output=True, text=True).stdout
-        self.assertEqual([r["kind"] for r in result["runs"]], ["pure"] * 23 + ["mixture"])
+        self.assertEqual([r["kind"] for r in result["runs"]], ["pure"] * 25 + ["mixture"])
         for one in result["runs"]:
             judged = [name for name in one["effects"] if name != "poses"]  # photos do not tell whether poses are right
             self.assertEqual(judged, list(one["truth"]))
-        self.assertIn("| `alpha,exposure=0.3` | right: no | right: no | right: yes |" + " right: no |" * 6 + " right: yes |", text)
-        self.assertIn("| `spheres,walls=0.8` |" + " right: no |" * 10, text)
+        self.assertIn("| `alpha,exposure=0.3` | right: no | right: no | right: yes |" + " right: no |" * 7 + " right: yes |", text)
+        self.assertIn("| `spheres,walls=0.8` |" + " right: no |" * 11, text)
         self.assertNotIn("Photos", text)
 
     def test_what_is_wrong_is_said_in_a_sentence(self):

@@ -66,6 +66,7 @@ TEST_CASE("long: detection recommends the effects that a scene was made with, an
         {"spheres,vignetting=0.4,noise=0.03", {"vignetting"}},
         {"spheres,vignetting=0.3,exposure=0.3,sky=0.7", {"vignetting", "exposure", "sky"}},
         {"spheres,scales=4", {"antialiasing"}},
+        {"spheres,blur=8", {"motion"}},
         {"spheres,sky=0.4,noise=0.03", {"sky"}},
         {"spheres,sky=1,exposure=0.3,scales=4", {"sky", "exposure", "antialiasing"}},
         {"spheres,walls=0.8", {}},
@@ -82,7 +83,7 @@ TEST_CASE("long: detection recommends the effects that a scene was made with, an
         INFO(c.scene);
         const gs::scene scene = made(c.scene);
         const gs::scene_statistics statistics(scene);
-        REQUIRE(all_features().size() == 11);
+        REQUIRE(all_features().size() == 12);
         for (const auto& f : all_features()) {
             INFO(f->name());
             const finding found = f->analyze(statistics);
@@ -353,12 +354,14 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
     CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
     CHECK(refusal("spheres,glos=0.5") ==
           "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
-          "moving, vignetting, sky, walls, fisheye, panorama, depths, points, views, poses, noise");
+          "moving, blur, shutter, vignetting, sky, walls, fisheye, panorama, depths, points, views, poses, "
+          "noise");
     CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
     CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
     CHECK(refusal("spheres,") ==
           "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
-          "moving, vignetting, sky, walls, fisheye, panorama, depths, points, views, poses, noise");
+          "moving, blur, shutter, vignetting, sky, walls, fisheye, panorama, depths, points, views, poses, "
+          "noise");
     CHECK(refusal("spheres,gloss=nan") ==
           "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
     CHECK(refusal("spheres,views=4,depths=0") == "");

@@ -78,9 +78,9 @@ TEST_CASE("long: training simulates the recommended effects, or those that --eff
     CHECK(revises_sh_degree(matte));
     CHECK(gains_of(matte).empty());
     CHECK_FALSE(matte.is_on("antialiasing"));
-    REQUIRE(matte.all().size() == 9);
+    REQUIRE(matte.all().size() == 10);
     for (std::size_t i = 0; const char* name : {"direction", "vignetting", "exposure", "antialiasing", "sky",
-                                                "poses", "moving", "masks", "depth"}) {
+                                                "poses", "motion", "moving", "masks", "depth"}) {
         CHECK(matte.all()[i].name == name);
         CHECK_FALSE(matte.all()[i++].on);
     }
@@ -123,25 +123,25 @@ TEST_CASE("long: training simulates the recommended effects, or those that --eff
     CHECK(simulated(spheres, "all").values_if_on("sky") == std::vector<float>(gs::sky_width, 0.0f));
     CHECK(simulated(made("alpha"), "all").values_if_on("sky").empty());
     CHECK(outcome(simulated(made("alpha"), "all"), 4).reason == "photos have transparent parts");
-    CHECK(outcome(simulated(spheres, "all"), 7).reason == "no training photo has masked pixels");
+    CHECK(outcome(simulated(spheres, "all"), 8).reason == "no training photo has masked pixels");
     const feature_set masked = simulated(made("spheres,passers=0.1"), "auto");
-    CHECK(outcome(masked, 7).on);
-    CHECK(outcome(masked, 7).reason.starts_with("48 of 48 photos have masks, which exclude "));
+    CHECK(outcome(masked, 8).on);
+    CHECK(outcome(masked, 8).reason.starts_with("48 of 48 photos have masks, which exclude "));
 
-    CHECK(outcome(simulated(spheres, "all"), 8).reason == "no training photo has a depth map");
+    CHECK(outcome(simulated(spheres, "all"), 9).reason == "no training photo has a depth map");
     CHECK(simulated(spheres, "all").values_if_on("depth").empty());
     const gs::scene estimated = made("spheres,views=4,points=1000,depths=0.02");
     CHECK(simulated(estimated, "none").values_if_on("depth").empty());
     for (const char* text : {"auto", "depth"}) {
         const feature_set deep = simulated(estimated, text);
-        CHECK(outcome(deep, 8).on);
+        CHECK(outcome(deep, 9).on);
         const std::vector<float> fits = deep.values_if_on("depth");
         REQUIRE(fits.size() == 8);
         for (std::size_t i = 0; i < 8; i += 2) CHECK(fits[i] > 0);
     }
     const feature_set wrong = simulated(made("spheres,views=4,depths=10"), "all");
-    CHECK_FALSE(outcome(wrong, 8).on);
-    CHECK(outcome(wrong, 8).reason.starts_with(
+    CHECK_FALSE(outcome(wrong, 9).on);
+    CHECK(outcome(wrong, 9).reason.starts_with(
         "4 of 4 photos have depth maps, of which 0 agree with the points; the median correlation is "));
 }
 
@@ -153,7 +153,7 @@ TEST_CASE("a selection of effects that is none is refused") {
     }
     CHECK(refusal("glare") ==
           "--effects: there is no effect 'glare'; the effects are direction, vignetting, exposure, "
-          "antialiasing, sky, poses, moving, masks, depth");
+          "antialiasing, sky, poses, motion, moving, masks, depth");
     CHECK(parse_selection("auto").allows("masks"));
     CHECK(parse_selection("masks").allows("masks"));
     CHECK_FALSE(parse_selection("none").allows("masks"));

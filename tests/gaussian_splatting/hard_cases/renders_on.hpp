@@ -147,12 +147,14 @@ class renders_on {
         const gs::camera& camera = q.view.camera;
         gs::effect_set effects = q.effects;
         effects.lens = camera.lens();
+        effects.motion = camera.motion.has_value();
         using narrow = typename Device::narrow_warp;
         gs::raster::with_effects(effects, [&]<gs::effect_set Effects> {
             using projection = gs::raster::project<narrow, Real, Effects>;
             device.template for_each_warp<narrow>(
                 projection::warps(n),
-                projection{read(values), n, gs::raster::for_device<warpagg::value_t<narrow, Real>>(camera),
+                projection{read(values), n,
+                           gs::raster::camera_for<warpagg::value_t<narrow, Real>, Effects>(camera),
                            q.sh_degree, tiles_along(camera.width), tiles_along(camera.height), splats.data(),
                            boxes.data(), depths.data(), identities.data(), tiles.data()});
         });

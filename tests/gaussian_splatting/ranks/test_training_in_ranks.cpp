@@ -110,7 +110,7 @@ words small_run(const fs::path& output, int ranks) {
 TEST_CASE("ranks: any number of them writes the same model, with exposures and SH coefficients") {
     check_equal_models(
         "synthetic:spheres,exposure=0.4,gloss=0.7,vignetting=0.4,views=8",
-        density_control + words{"--effects", "auto,+exposure,+direction,+poses,+moving,+vignetting"});
+        density_control + words{"--effects", "auto,+exposure,+direction,+poses,+motion,+moving,+vignetting"});
 }
 
 TEST_CASE("ranks: any number of them learns the same poses, and the first refines those of held-out photos") {

@@ -6,8 +6,8 @@
     compare.py CXX [NVCC]
 
 What stands behind `if constexpr (Effects...` or `(Masked)` is cut out of a copy of the sources, and of the projections that
-`std::conditional_t<Effects.lens...` chooses from, all but the pinhole camera's. With the effects off both
-must come to the same assembly (and, with NVCC, PTX), and with them on to another.
+`std::conditional_t<Effects.lens...` chooses from, all but the pinhole camera's, and likewise what `Effects.motion` chooses. With
+the effects off both must come to the same assembly (and, with NVCC, PTX), and with them on to another.
 """
 import pathlib
 import platform
@@ -19,10 +19,10 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCES = HERE.parent.parent.parent / "examples" / "gaussian_splatting"
-EFFECT_STATEMENTS = 15
+EFFECT_STATEMENTS = 23
 STATEMENT = re.compile(r"^ *if constexpr \((?:Effects\.\w+(?: == [\w:]+)?|Masked)\)\s[^;]*;\n", re.MULTILINE)
 
-CHOICE = re.compile(r"std::conditional_t<Effects\.lens != lens_model::pinhole,[^;]*, ([^,]*)>;")
+CHOICE = re.compile(r"std::conditional_t<Effects\.(?:lens != lens_model::pinhole|motion),[^;]*, ([^,]*)>;")
 
 
 def compiled(command, sources, effects):

@@ -30,7 +30,6 @@
 namespace gs {
 namespace {
 
-constexpr int native_size = 128;
 constexpr int largest_size = 2048;  // 48 images of this size take 0.8 GB
 constexpr int views_per_test_view = 6;
 constexpr int samples_per_side = 4;
@@ -266,23 +265,38 @@ double exposure_of(const world& w, std::size_t photo) {
     return std::exp2(w.how.exposure * normal(random));
 }
 
+/// Returns the cameras of a row, one after another in time: a single one, or several of a camera that
+/// moves.
+std::vector<camera> cameras_of_row(const camera& c, int row) {
+    if (!c.motion) return {c};
+    constexpr int times = 32;
+    std::vector<camera> cameras;
+    const double read = c.motion->readout * ((row + 0.5) / c.height - 0.5);
+    for (int i = 0; i < times; ++i)
+        cameras.push_back(at_time(c, read + c.motion->exposure * ((i + 0.5) / times - 0.5)));
+    return cameras;
+}
+
 void render_row(const world& w, const camera& c, std::size_t photo, int row, std::uint8_t* rgba) {
-    const vec origin = c.center();
+    const std::vector<camera> cameras = cameras_of_row(c, row);
+    const int samples = std::max(samples_per_side * samples_per_side, static_cast<int>(cameras.size()));
+    const double weight = 1.0 / samples;
     const double exposure = w.how.exposure > 0 ? exposure_of(w, photo) : 1;
     std::mt19937_64 random((photo << 32) + static_cast<std::size_t>(row));
     for (int column = 0; column < c.width; ++column, rgba += 4) {
         vec color{0};
         int hits = 0;
-        for (int sample = 0; sample < samples_per_side * samples_per_side; ++sample) {
+        for (int sample = 0; sample < samples; ++sample) {
+            // Places in the pixel and times are combined so that neither determines the other.
+            const camera& c_now = cameras[static_cast<std::size_t>(sample * 11) % cameras.size()];
             const double x = column + (sample % samples_per_side + 0.5) / samples_per_side;
-            const double y = row + (sample / samples_per_side + 0.5) / samples_per_side;
-            const vec direction = c.ray(x, y);
+            const double y = row + (sample / samples_per_side % samples_per_side + 0.5) / samples_per_side;
+            const vec origin = c_now.center(), direction = c_now.ray(x, y);
             const std::optional<surface_point> hit = first_hit(w, origin, direction);
             if (!hit && w.how.sky == 0 && w.how.walls == 0) continue;
             color += hit ? shade(w, *hit, -direction) : color_behind(w, origin, direction);
             ++hits;
         }
-        constexpr double weight = 1.0 / (samples_per_side * samples_per_side);
         rgba[3] = w.transparent ? to_byte(weight * hits) : std::uint8_t{255};
         std::array<double, 3> falloff{1, 1, 1};
         if (w.how.vignetting > 0) falloff = synthetic_falloff(w.how, c, column + 0.5, row + 0.5);
@@ -379,7 +393,7 @@ int size_at(int resolution, const synthetic_parameters& how) {
     if (resolution > largest_size)
         throw error("a synthetic scene is drawn at up to " + std::to_string(largest_size) + " pixels, not " +
                     std::to_string(resolution));
-    const int native = how.panorama > 0 ? 2 * native_size : native_size;
+    const int native = how.panorama > 0 ? 2 * synthetic_size : synthetic_size;
     return divides_size(resolution) ? native / resolution : resolution;
 }
 
@@ -400,7 +414,15 @@ scene_description describe(const load_options& options, const log_function& log)
     const world w = world_of(name);
     const int size = size_at(options.resolution, w.how);
     std::vector<view> views = synthetic_views(size, w.how);
+    const auto is_held_out = [&](std::size_t i) {
+        // The middle of each group, because the first and the last camera have fewer neighbors.
+        return options.eval && i % views_per_test_view == views_per_test_view / 2;
+    };
+    shake_cameras(views, w.how);
+    for (std::size_t i = 0; i < views.size(); ++i)
+        if (is_held_out(i)) views[i].camera.motion.reset();
     take_photos(w, views, options.masks);
+    for (view& v : views) v.camera.motion.reset();
     if (w.how.depths >= 0 && options.depths)
         for_each_in_parallel(views.size(), [&](std::size_t i) {
             views[i].depths = estimated_depths(w, views[i].camera, i);
@@ -410,10 +432,7 @@ scene_description describe(const load_options& options, const log_function& log)
     const camera first = views.front().camera;
     std::vector<view> train, test;
     for (std::size_t i = 0; i < views.size(); ++i) {
-        // Holds out the middle of each group, because the first and the last camera have fewer
-        // neighbors.
-        const bool held_out = options.eval && i % views_per_test_view == views_per_test_view / 2;
-        (held_out ? test : train).push_back(std::move(views[i]));
+        (is_held_out(i) ? test : train).push_back(std::move(views[i]));
     }
     const std::size_t most = std::min(train.size(), static_cast<std::size_t>(w.how.views));
     train = spread(std::move(train), most);

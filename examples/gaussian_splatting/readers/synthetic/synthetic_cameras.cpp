@@ -83,6 +83,30 @@ void disturb_poses(std::vector<view>& views, std::size_t first, const synthetic_
     }
 }
 
+void shake_cameras(std::vector<view>& views, const synthetic_parameters& how) {
+    if (how.blur == 0 && how.shutter == 0) return;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        train::counter_random random(1, 0, i);
+        const double heading = 2 * std::numbers::pi * random.uniform(), length = random.uniform();
+        camera& c = views[i].camera;
+        if (i % 4 == 0) continue;
+        const double pixel = length * c.width / synthetic_size / c.fx;
+        const vec more(random.normal3());
+        c.motion = {pixel * vec{std::cos(heading), std::sin(heading), 0.5 * more.z},
+                    0.1 * pixel * glm::length(c.translation) * vec{more.x, more.y, 0}, how.blur, how.shutter};
+    }
+}
+
+camera at_time(const camera& moving, double time) {
+    camera c = moving;
+    const vec turn = time * moving.motion->turn;
+    const double angle = glm::length(turn);
+    const auto by = angle > 0 ? glm::angleAxis(angle, turn / angle) : glm::dquat(1, 0, 0, 0);
+    c.rotation = glm::mat3_cast(by) * moving.rotation;
+    c.translation = by * moving.translation + time * moving.motion->shift;
+    return c;
+}
+
 double farthest_camera(const synthetic_parameters& how) {
     return camera_distance * how.distance * how.scales;
 }

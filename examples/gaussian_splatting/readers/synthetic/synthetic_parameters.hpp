@@ -16,6 +16,8 @@ struct synthetic_parameters {
     double distance = 1;    ///< factor of all camera distances, 0.25 to 16
     double passers = 0;     ///< share of each photo that a masked disc hides, 0 to 0.5
     double moving = 0;      ///< share of the training photos in which a moving thing hides a part, 0 to 1
+    double blur = 0;        ///< largest motion blur of the training photos, as if 128 pixels wide, 0 to 32
+    double shutter = 0;     ///< largest rolling-shutter shift, from the first row to the last, -32 to 32
     double vignetting = 0;  ///< share of the light that is lost in the corners, as displayed, 0 to 0.8
     double depths = -1;     ///< relative noise of depth maps, 0 to 10; negative for no depth maps
     double sky = 0;         ///< brightness of the sky, which depends only on direction, 0 to 1
@@ -29,8 +31,8 @@ struct synthetic_parameters {
 };
 
 /// Parses "WORLD", "WORLD,gloss=0.5,noise=0.02" and so on. Throws `error` for a parameter that is
-/// unknown, repeated or out of range, for panoramas together with a fisheye lens or vignetting, and for a
-/// sky together with walls. Does not check `world`.
+/// unknown, repeated or out of range, for panoramas together with a fisheye lens or vignetting, for a sky
+/// together with walls, and for moving cameras without a pinhole. Does not check `world`.
 synthetic_parameters parse_synthetic(const std::string& text);
 
 }  // namespace gs

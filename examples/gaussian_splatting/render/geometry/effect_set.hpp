@@ -13,6 +13,7 @@ struct effect_set {
     bool antialiasing = false;              ///< 2D Mip filter: see `opacity_left`
     lens_model lens = lens_model::pinhole;  ///< the lens of the camera
     bool depth = false;                     ///< the gradient includes inverse depths
+    bool motion = false;                    ///< blur and rolling shutter: see `splat_motion`
 };
 
 namespace raster {
@@ -35,13 +36,23 @@ decltype(auto) with_lens(lens_model lens, const F& f) {
             return f.template operator()<lens_model::pinhole>();
     }
 }
+/// Calls `f.template operator()<motion>()`. Only pinhole cameras have motion.
+template <lens_model Lens, class F>
+decltype(auto) with_motion(bool motion, const F& f) {
+    if constexpr (Lens == lens_model::pinhole)
+        return with_flag(motion, f);
+    else
+        return f.template operator()<false>();
+}
 /// Calls `f.template operator()<set>()`: turns a run-time set into a template argument.
 template <class F>
 decltype(auto) with_effects(const effect_set& set, const F& f) {
     return with_flag(set.antialiasing, [&]<bool Antialiasing>() -> decltype(auto) {
         return with_lens(set.lens, [&]<lens_model Lens>() -> decltype(auto) {
             return with_flag(set.depth, [&]<bool Depth>() -> decltype(auto) {
-                return f.template operator()<effect_set{Antialiasing, Lens, Depth}>();
+                return with_motion<Lens>(set.motion, [&]<bool Motion>() -> decltype(auto) {
+                    return f.template operator()<effect_set{Antialiasing, Lens, Depth, Motion}>();
+                });
             });
         });
     });

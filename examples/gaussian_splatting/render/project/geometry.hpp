@@ -7,6 +7,7 @@
 #include "../geometry/device_camera.hpp"
 #include "../geometry/ellipse.hpp"
 #include "projection.hpp"
+#include "splat_motion.hpp"
 
 namespace gs::raster {
 
@@ -52,10 +53,11 @@ struct footprint {
     vec3<Real> ax, ay;
     ellipse<Real> shape;
     flag_of<Real> drawable;  ///< whether all values are finite
+    [[no_unique_address]] motion_of_splat<Real, Effects> motion;
 
     /// `at`: the mean in camera space. Values are valid only if `projection_of::is_drawn`.
     WARPAGG_HD footprint(const vec3<Real>& at, const vec3<Real>& log_scale, const vec4<Real>& quaternion,
-                         const device_camera<Real>& camera)
+                         const camera_type<Real, Effects>& camera)
         : seen(at, camera) {
         const unit<4, Real> unit_turn(quaternion);
         turn = unit_turn.direction;
@@ -66,8 +68,17 @@ struct footprint {
         ax = (seen.px * rotation) * scale;
         ay = (seen.py * rotation) * scale;
         shape = ellipse<Real>(ax, ay);
+        if constexpr (Effects.motion) move(camera);
         drawable = is_finite(at) && is_finite(seen.x) && is_finite(seen.y) && is_finite(log_scale) &&
                    shape.is_sound();
+    }
+
+  private:
+    WARPAGG_HD void move(const moving_camera<Real>& camera) {
+        motion = splat_motion<Real>(seen, camera);
+        shape = motion.blurred(ax, ay);
+        seen.x += motion.moved.x;
+        seen.y += motion.moved.y;
     }
 };
 

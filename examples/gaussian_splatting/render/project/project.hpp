@@ -25,7 +25,7 @@ struct project {
 
     parameter_arrays<const Real> gaussians;
     std::size_t count;
-    device_camera<real> camera;
+    camera_type<real, Effects> camera;
     int sh_degree;
     unsigned tiles_across, tiles_down;
 
@@ -83,6 +83,7 @@ struct project {
         const footprint<real, Effects> f(at, log_scale, quaternion, camera);
         real opacity = sigmoid(logit);
         if constexpr (Effects.antialiasing) opacity *= opacity_left(whitened_axes<real>(f.shape, f.ax, f.ay));
+        if constexpr (Effects.motion) opacity *= f.motion.template opacity_left<Effects>(f.shape, f.ax, f.ay);
         opacity *= real(Real(dropout.gain));
         splat<real>& s = d.shape;
         s.log2_opacity = warpagg::math::log2(opacity);

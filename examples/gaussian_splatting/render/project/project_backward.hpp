@@ -71,14 +71,15 @@ struct store_gradients {
 /// `Sink::idle`, the kernel does nothing. If the object that `Sink::for_row` returns has a member
 /// `by_camera`, it gets what determines the gradient of the camera's pose: the offset of the mean from
 /// the camera's center, the gradients of the mean without and with the one through its color, and the
-/// quaternion with its gradient.
+/// quaternion with its gradient. If it has a member `by_motion`, it gets the position of the mean in
+/// camera space, the gradient of its velocity there, and the one of the time for reading a photo.
 template <class W, class Real, class Sink, effect_set Effects>
 struct project_backward {
     using real = value_t<W, Real>;
 
     parameter_arrays<const Real> gaussians;
     std::size_t count;
-    device_camera<real> camera;
+    camera_type<real, Effects> camera;
     int sh_degree;
     int learned_sh_degree;  ///< largest SH degree with gradients
     const splat<Real>* splats;
@@ -137,11 +138,14 @@ struct project_backward {
         vec3<real> nx = k * (s[sum_suu] * axes.x + s[sum_suv] * axes.y),
                    ny = k * (s[sum_suv] * axes.x + s[sum_svv] * axes.y);
         if constexpr (Effects.antialiasing) add_opacity_left_gradient(axes, s[sum_s], nx, ny);
+        if constexpr (Effects.motion)
+            f.motion.template add_opacity_left_gradient<Effects>(f.shape, f.ax, f.ay, axes, s[sum_s], nx, ny);
         const vec3<real> dax = p * nx + r * ny, day = q * ny;
 
         // The mean affects the center, the Jacobian, the depth and the direction for the color.
         vec3<real> by_position = f.seen.position_gradient(center, f.rotation * (dax * f.scale),
                                                           f.rotation * (day * f.scale), camera);
+        if constexpr (Effects.motion) by_position += through_motion(put, f, center, s);
         if constexpr (Effects.depth)
             by_position += f.seen.inverse_depth_gradient(s[sum_inverse_depth], camera);
         put(parameter::log_scale, 0, 3, log_scale, nx * axes.x + ny * axes.y);
@@ -154,6 +158,20 @@ struct project_backward {
         if constexpr (requires { &decltype(put)::by_camera; })
             put.by_camera(mean - camera.center, by_position, by_mean, quaternion, by_quaternion);
         return center;
+    }
+
+    /// Returns the gradient of the mean through the motion of its splat. `center`: gradient of the
+    /// center.
+    template <class Put>
+    WARPAGG_HD vec3<real> through_motion(const Put& put, const footprint<real, Effects>& f,
+                                         const vec2<real>& center, const real* s) const {
+        const vec2<real> by_blur =
+            f.motion.blur_gradient(f.shape, s[sum_s], s[sum_suu], s[sum_suv], s[sum_svv]);
+        const auto g = f.motion.gradient(center, by_blur, f.seen, camera);
+        if constexpr (requires { &Put::by_motion; }) put.by_motion(f.seen.at, g.by_velocity, g.by_readout);
+        return f.seen.position_gradient(g.by_center, g.by_pixels.x * f.motion.velocity,
+                                        g.by_pixels.y * f.motion.velocity, camera) +
+               glm::cross(g.by_velocity, camera.turn) * camera.rotation;
     }
 
     /// Returns the gradient with respect to the quaternion, through the rotation R in
