@@ -124,7 +124,7 @@ TEST_CASE("motion: gradients of the Gaussians of a moving camera are those of ce
             double most = 0;
             for (const double g : gradient.values[p]) most = std::max(most, std::abs(g));
             for (std::size_t i = 0;
-                 i < model<double>::count * static_cast<std::size_t>(gs::parameter_width[p]); i += 3) {
+                 i < model<double>::count * static_cast<std::size_t>(gs::parameter_width[p]); i += 4) {
                 CAPTURE(i);
                 double& value = stepped.gaussians.values[p][i];
                 const double before = value;
