@@ -161,7 +161,12 @@ rows pose_options(settings& s) {
           .help = "Number of frames that --poses auto takes from a video: the sharpest of each part of it",
           .unit = "frames",
           .default_text = std::to_string(poses::default_video_frames),
-          .needs = {"--poses"}}});
+          .needs = {"--poses"}},
+         {.names = "--save-cameras",
+          .commands = {train},
+          .value = flag(s.save_cameras),
+          .help = "Writes a COLMAP model with the learned poses to cameras/sparse/0",
+          .is_rare = true}});
 }
 
 rows output_options(settings& s) {
@@ -190,11 +195,6 @@ rows output_options(settings& s) {
                                .value = iterations(s.save_iterations),
                                .help = "Iterations after which the model is saved, besides the last one",
                                .default_text = "none"},
-                              {.names = "--save-cameras",
-                               .commands = {train},
-                               .value = flag(s.save_cameras),
-                               .help = "Writes a COLMAP model with the learned poses to cameras/sparse/0",
-                               .is_rare = true},
                               {.names = "--overwrite",
                                .commands = {train},
                                .value = flag(s.overwrite),

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -46,8 +45,7 @@ inline constexpr reader_option images_option{
 inline constexpr reader_option test_every_option{
     "--test-every", [](const load_options& o) { return o.test_every != load_options().test_every; }};
 
-/// The description of one image of a scene. It names files, which `load_scene` loads later, or
-/// holds pixels that the reader has made.
+/// One image of a scene. Names files, which `load_scene` loads later, or holds pixels.
 struct image_record {
     std::string name;                          ///< unique within the scene; '/' separates folders
     gs::camera camera;                         ///< calibrated for its own size, which is at least 1×1
