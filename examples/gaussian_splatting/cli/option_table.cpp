@@ -329,10 +329,8 @@ rows effect_options(settings& s) {
             {.names = "--effects",
              .commands = {train},
              .value = effect_list(s.effects),
-             .help =
-                 "Effects to simulate: auto (those that the scene needs, see inspect), all, none, or a list "
-                 "of their names (" +
-                 names + "); auto,+exposure,-sky adds one effect and leaves out another"},
+             .help = "Effects to simulate: auto (see inspect), all, none, or names (" + names +
+                     "); auto,+exposure,-sky adds one and leaves out another"},
             {.names = "--sh-degree",
              .commands = {train},
              .value = whole(s.sh_degree, 0, 3),

@@ -195,7 +195,8 @@ TEST_CASE("a scene without points is not told what it needs") {
     const gs::scene_statistics statistics(scene);
     for (const auto& f : all_features()) {
         INFO(f->name());
-        const std::set<std::string_view> of_files = {"background", "vignetting", "masks", "depth", "lens"};
+        const std::set<std::string_view> of_files = {"background", "vignetting", "motion",
+                                                     "masks",      "depth",      "lens"};
         CHECK(f->analyze(statistics).recommended.has_value() == of_files.contains(f->name()));
     }
     CHECK(measure_direction(statistics).degree() == 3);

@@ -32,7 +32,7 @@ double by_comparison(const std::vector<gs::colored_point>& points, std::size_t o
 }  // namespace
 
 TEST_CASE("neighbor distances: many points, in clusters, give what comparing all of them gives") {
-    constexpr std::size_t count = 250000, clusters = 50;
+    constexpr std::size_t count = 210000, clusters = 50;
     gs::train::counter_random random(1, 0, 0);
     const auto uniform = [&] { return static_cast<double>(random.below(1U << 30)) * 0x1p-30; };
     std::vector<glm::dvec3> centers(clusters);
@@ -45,7 +45,7 @@ TEST_CASE("neighbor distances: many points, in clusters, give what comparing all
     points[7].position = {50, 50, 50};  // its neighbors are in other parts
 
     const std::vector<double> found = gs::neighbor_distances(points, 3);
-    for (std::size_t i = 7; i < count; i += 500) {
+    for (std::size_t i = 7; i < count; i += 1500) {
         CAPTURE(i);
         REQUIRE(found[i] == doctest::Approx(by_comparison(points, i)).epsilon(1e-12));
     }
