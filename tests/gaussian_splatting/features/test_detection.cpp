@@ -189,6 +189,13 @@ TEST_CASE("synthetic walls are behind the spheres, at a finite distance") {
     CHECK_THROWS_WITH_AS(made("alpha,walls=1"), doctest::Contains("it has no walls"), gs::error);
 }
 
+TEST_CASE("moving things do not pass for exposures, or for colors that depend on the direction") {
+    const gs::scene glossy = made("alpha,gloss=0.44,scales=3.19,moving=0.2");
+    CHECK(analyzed("exposure", glossy).recommended == false);
+    CHECK(analyzed("direction", glossy).recommended == true);
+    CHECK(analyzed("direction", made("spheres,moving=0.14,passers=0.07")).recommended == false);
+}
+
 TEST_CASE("a scene without points is not told what it needs") {
     gs::scene scene = made("alpha,gloss=0.6");
     scene.points.clear();

@@ -108,6 +108,11 @@ bool moving_evidence::is_clear() const {
            });
 }
 
+bool moving_evidence::is_likely_in(std::size_t photo) const {
+    constexpr std::size_t least_likely = 2;
+    return is_clear() && photos[photo].hidden.size() >= least_likely;
+}
+
 moving_evidence find_moving_things(const scene_statistics& statistics) {
     const scene& scene = statistics.scene();
     moving_evidence found;

@@ -10,6 +10,7 @@
 #include "../../core/median.hpp"
 #include "../../core/parallel.hpp"
 #include "../../model/spherical_harmonics.hpp"
+#include "../moving/moving_evidence.hpp"
 #include "../text.hpp"
 
 namespace gs::features {
@@ -147,6 +148,9 @@ std::vector<double> explained_by_direction(const observed_points& points, int de
 observed_points comparable_points(const scene_statistics& statistics) {
     observed_points points = statistics.smooth_points();
     if (points.empty()) return points;
+    const moving_evidence moving = find_moving_things(statistics);
+    for (auto& seen : points)
+        std::erase_if(seen, [&](const observation& o) { return moving.is_likely_in(o.view); });
     statistics.remove_clear_falloff(points);
     const photo_brightness& brightness = statistics.brightness();
     for (auto& seen : points) {
