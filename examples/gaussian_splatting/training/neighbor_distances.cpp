@@ -101,10 +101,10 @@ double mean_squared_distance(const std::vector<std::unique_ptr<part>>& parts, st
 
 /// Returns the number of parts: a power of 2.
 std::size_t parts_for(std::size_t points) {
-    constexpr std::size_t least_points = 100000;
+    constexpr std::size_t most_points = 100000;
     constexpr std::size_t most_parts = 64;  // each search compares its place with the boxes of all parts
     std::size_t parts = 1;
-    while (parts < most_parts && points / parts > least_points) parts *= 2;
+    while (parts < most_parts && points / parts > most_points) parts *= 2;
     return parts;
 }
 

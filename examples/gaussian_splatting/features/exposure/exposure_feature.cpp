@@ -48,11 +48,11 @@ finding exposure_feature::analyze(const scene_statistics& statistics) const {
     std::vector<float> values = values_of(brightness, photos);
     if (points < enough_points)
         return {{}, too_few_points(points, "in smooth areas"), "off", std::move(values)};
-    const moving_evidence moving = find_moving_things(statistics);
+    const std::vector<bool> left_out = find_moving_things(statistics).contributing_photos();
     std::vector<double> errors;
     double square = 0;
     for (std::size_t v = 0; v < photos; ++v) {
-        if (brightness.error[v] == 0 || moving.is_likely_in(v)) continue;
+        if (brightness.error[v] == 0 || left_out[v]) continue;
         errors.push_back(brightness.error[v]);
         square += brightness.log2[v] * brightness.log2[v];
     }

@@ -108,9 +108,12 @@ bool moving_evidence::is_clear() const {
            });
 }
 
-bool moving_evidence::is_likely_in(std::size_t photo) const {
-    constexpr std::size_t least_likely = 2;
-    return is_clear() && photos[photo].hidden.size() >= least_likely;
+std::vector<bool> moving_evidence::contributing_photos() const {
+    constexpr std::size_t least_points = 2;
+    std::vector<bool> contributes(photos.size(), false);
+    if (!is_clear()) return contributes;
+    for (std::size_t v = 0; v < photos.size(); ++v) contributes[v] = photos[v].hidden.size() >= least_points;
+    return contributes;
 }
 
 moving_evidence find_moving_things(const scene_statistics& statistics) {

@@ -30,9 +30,9 @@ struct moving_evidence {
     std::size_t count() const;
     /// Returns whether two photos show a moving thing, or one photo with twice as many hidden points.
     bool is_clear() const;
-    /// Returns whether the evidence is clear, and a photo has a part in it. Other evidence leaves out such
-    /// photos: what hides points in them would pass for another effect.
-    bool is_likely_in(std::size_t photo) const;
+    /// Returns for each photo whether it has a part in clear evidence. The evidence for other effects leaves
+    /// out such photos, because hidden points would pass for another effect.
+    std::vector<bool> contributing_photos() const;
 };
 
 /// Compares the color of each point in a photo with its median color over all photos in which it has a

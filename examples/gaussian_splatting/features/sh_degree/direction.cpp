@@ -148,9 +148,8 @@ std::vector<double> explained_by_direction(const observed_points& points, int de
 observed_points comparable_points(const scene_statistics& statistics) {
     observed_points points = statistics.smooth_points();
     if (points.empty()) return points;
-    const moving_evidence moving = find_moving_things(statistics);
-    for (auto& seen : points)
-        std::erase_if(seen, [&](const observation& o) { return moving.is_likely_in(o.view); });
+    const std::vector<bool> left_out = find_moving_things(statistics).contributing_photos();
+    for (auto& seen : points) std::erase_if(seen, [&](const observation& o) { return left_out[o.view]; });
     statistics.remove_clear_falloff(points);
     const photo_brightness& brightness = statistics.brightness();
     for (auto& seen : points) {
