@@ -10,6 +10,7 @@
 #include <random>
 #include <utility>
 
+#include "../model/morton_order.hpp"
 #include "../model/spherical_harmonics.hpp"
 #include "neighbor_distances.hpp"
 
@@ -44,6 +45,18 @@ void keep_at_random(std::vector<colored_point>& points, std::size_t most, std::u
     points.resize(most);
 }
 
+/// Orders points along a Morton curve, so that a warp has Gaussians which the same views show.
+void sort_by_place(std::vector<colored_point>& points) {
+    std::vector<float> positions;
+    positions.reserve(3 * points.size());
+    for (const colored_point& p : points)
+        for (glm::length_t axis = 0; axis < 3; ++axis) positions.push_back(static_cast<float>(p.position[axis]));
+    std::vector<colored_point> sorted;
+    sorted.reserve(points.size());
+    for (const std::uint32_t i : morton_order(positions)) sorted.push_back(points[i]);
+    points = std::move(sorted);
+}
+
 std::pair<glm::dvec3, double> box_looked_at(const scene& s) {
     const auto object = s.object_centered ? s.looked_at() : std::nullopt;
     if (object) {
@@ -63,6 +76,7 @@ std::pair<glm::dvec3, double> box_looked_at(const scene& s) {
 gaussians from_points(std::vector<colored_point> points, int sh_degree, std::size_t most,
                       std::uint64_t seed) {
     keep_at_random(points, most, seed);
+    sort_by_place(points);
     const std::vector<double> squared_distance = neighbor_distances(points, neighbors);
     const std::size_t count = points.size();
 

@@ -88,7 +88,7 @@ TEST_CASE("from_points: all parameters of a Gaussian") {
     const std::vector<gs::colored_point> points = {{{1, 2, 3}, {0, 128, 255}},
                                                    {{4, 5, 6}, {10, 20, 30}},
                                                    {{7, 8, 9}, {1, 2, 3}},
-                                                   {{0, 0, 0}, {4, 5, 6}}};
+                                                   {{9, 11, 12}, {4, 5, 6}}};
     for (int degree = 0; degree <= 3; ++degree) {
         const gs::gaussians model = gs::from_points(points, degree, all, 0);
         CHECK(model.sh_degree == degree);
@@ -133,6 +133,23 @@ TEST_CASE("from_points: points that coincide, and too few of them, still get a s
         CHECK(model.log_scale[0] == doctest::Approx(0.5 * std::log((0.0 + 1.0 + 4.0) / 3)));
         CHECK(model.log_scale[3] == doctest::Approx(model.log_scale[0]));
     }
+}
+
+TEST_CASE("from_points: neighbors in the order of the Gaussians are close in space") {
+    std::vector<gs::colored_point> points = regular_grid(16, 1);
+    std::ranges::reverse(points);
+    for (std::size_t i = 0; i < points.size(); ++i) std::swap(points[i], points[i * 2654435761u % points.size()]);
+    const gs::gaussians model = gs::from_points(points, 0, all, 0);
+    constexpr std::size_t block = 64;  // a cube of 4 points on each side
+    for (std::size_t first = 0; first < model.count(); first += block)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            float low = model.mean[3 * first + axis], high = low;
+            for (std::size_t i = first; i < first + block; ++i) {
+                low = std::min(low, model.mean[3 * i + axis]);
+                high = std::max(high, model.mean[3 * i + axis]);
+            }
+            REQUIRE(high - low <= 4);
+        }
 }
 
 TEST_CASE("from_points: `most` draws without replacement, by seed, and sizes what it drew") {

@@ -13,7 +13,7 @@
 
 #include "../../support/temporary_folder.hpp"
 #include "round_trip.hpp"
-#include "writers/morton_order.hpp"
+#include "model/morton_order.hpp"
 #include "writers/sog/sog.hpp"
 #include "writers/sog/sog_images.hpp"
 #include "writers/sog/zip_bundle.hpp"

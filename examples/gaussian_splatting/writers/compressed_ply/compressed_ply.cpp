@@ -15,7 +15,7 @@
 #include "../../core/error.hpp"
 #include "../../core/file_bytes.hpp"
 #include "../../model/spherical_harmonics.hpp"
-#include "../morton_order.hpp"
+#include "../../model/morton_order.hpp"
 #include "../ply_comments.hpp"
 #include "../ply_header.hpp"
 #include "../quantize.hpp"

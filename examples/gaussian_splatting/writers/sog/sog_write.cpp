@@ -14,7 +14,7 @@
 #include "../../core/atomic_file_write.hpp"
 #include "../../core/error.hpp"
 #include "../../core/parallel.hpp"
-#include "../morton_order.hpp"
+#include "../../model/morton_order.hpp"
 #include "../quantize.hpp"
 #include "../require_writable.hpp"
 #include "../smallest_three.hpp"
