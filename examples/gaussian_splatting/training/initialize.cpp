@@ -50,7 +50,8 @@ void sort_by_place(std::vector<colored_point>& points) {
     std::vector<float> positions;
     positions.reserve(3 * points.size());
     for (const colored_point& p : points)
-        for (glm::length_t axis = 0; axis < 3; ++axis) positions.push_back(static_cast<float>(p.position[axis]));
+        for (glm::length_t axis = 0; axis < 3; ++axis)
+            positions.push_back(static_cast<float>(p.position[axis]));
     std::vector<colored_point> sorted;
     sorted.reserve(points.size());
     for (const std::uint32_t i : morton_order(positions)) sorted.push_back(points[i]);

@@ -392,8 +392,8 @@ TEST_CASE("adaptive: hides exactly the Gaussians closer to a training camera tha
     std::vector<float> expected = model.opacity;
     for (std::size_t i = 0; i < model.count(); ++i) {
         double least = 1e30;
-        for (const gs::view& v : scene.train)
-            least = std::min(least, glm::distance(v.camera.center(), points[i].position));
+        const glm::dvec3 at{model.mean[3 * i], model.mean[3 * i + 1], model.mean[3 * i + 2]};
+        for (const gs::view& v : scene.train) least = std::min(least, glm::distance(v.camera.center(), at));
         if (least >= double{near}) continue;
         ++near_ones;
         expected[i] = std::min(expected[i], hidden);

@@ -138,7 +138,8 @@ TEST_CASE("from_points: points that coincide, and too few of them, still get a s
 TEST_CASE("from_points: neighbors in the order of the Gaussians are close in space") {
     std::vector<gs::colored_point> points = regular_grid(16, 1);
     std::ranges::reverse(points);
-    for (std::size_t i = 0; i < points.size(); ++i) std::swap(points[i], points[i * 2654435761u % points.size()]);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        std::swap(points[i], points[i * 2654435761u % points.size()]);
     const gs::gaussians model = gs::from_points(points, 0, all, 0);
     constexpr std::size_t block = 64;  // a cube of 4 points on each side
     for (std::size_t first = 0; first < model.count(); first += block)

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "../../support/temporary_folder.hpp"
-#include "round_trip.hpp"
 #include "model/morton_order.hpp"
+#include "round_trip.hpp"
 #include "writers/sog/sog.hpp"
 #include "writers/sog/sog_images.hpp"
 #include "writers/sog/zip_bundle.hpp"
