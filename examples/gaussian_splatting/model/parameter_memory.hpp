@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -50,6 +51,29 @@ class parameter_memory {
             arrays_[p] = std::move(moved);
             places_[p] = place;
         }
+    }
+    /// Reserves device memory for copies of this number of blocks of each array in host memory, or frees
+    /// it. `place`: see `parameter_arrays::kept_place`.
+    void keep_blocks(std::size_t blocks, const std::uint32_t* place) {
+        for (std::size_t p = 0; p < parameter_count; ++p) {
+            const bool is_on_host = places_[p] == device::memory_place::host && arrays_[p].size() > 0;
+            const std::size_t n = is_on_host ? blocks * block_length * width(p) : 0;
+            if (n < kept_[p].size()) kept_[p] = {};
+            kept_[p].resize(n);
+        }
+        kept_place_ = blocks > 0 ? place : nullptr;
+    }
+    /// Returns whether an array lies in host memory.
+    bool is_on_host() const {
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            if (places_[p] == device::memory_place::host && arrays_[p].size() > 0) return true;
+        return false;
+    }
+    /// Calls f(array, copies, width) for each array with copies of its blocks.
+    template <class F>
+    void for_each_kept(const F& f) const {
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            if (kept_[p].size() > 0) f(arrays_[p].data(), kept_[p].data(), width(p));
     }
     /// Frees the memory of one array, or of all.
     /// @{
@@ -162,16 +186,19 @@ class parameter_memory {
 
     template <class Real>
     parameter_arrays<Real> pointers() const {
-        const auto& a = arrays_;
+        const auto &a = arrays_, &k = kept_;
         return {a[0].data(),
                 a[1].data(),
                 a[2].data(),
                 a[3].data(),
                 {a[4].data(), a[5].data(), a[6].data(), a[7].data()},
-                gaussians_with_sh_};
+                gaussians_with_sh_,
+                {nullptr, k[5].data(), k[6].data(), k[7].data()},
+                kept_place_};
     }
 
-    std::array<buffer, parameter_count> arrays_;
+    std::array<buffer, parameter_count> arrays_, kept_;
+    const std::uint32_t* kept_place_ = nullptr;
     std::array<device::memory_place, parameter_count> places_{};
     std::size_t gaussians_with_sh_ = 0;
 };

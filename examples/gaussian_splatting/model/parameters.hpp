@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <warpagg/core/compiler.hpp>
 
@@ -26,6 +27,10 @@ constexpr std::size_t width_of(parameter p) {
 WARPAGG_HD constexpr parameter sh_band(int band) {
     return static_cast<parameter>(static_cast<int>(parameter::sh0) + band);
 }
+/// Returns the SH degree of a parameter that has one.
+WARPAGG_HD constexpr int degree_of(parameter p) {
+    return static_cast<int>(p) - static_cast<int>(parameter::sh0);
+}
 
 /// Returns whether a model of this SH degree has the parameter.
 constexpr bool has_parameter(std::size_t p, int sh_degree) {
@@ -47,6 +52,10 @@ struct parameter_arrays {
     /// The number of Gaussians with SH coefficients above degree 0, which precede all others. It is
     /// a multiple of the block length, or all. The others have the same color in all directions.
     std::size_t gaussians_with_sh = std::numeric_limits<std::size_t>::max();
+    /// Copies of some blocks of `sh`, which replace these blocks. Null without copies.
+    Real* kept[4] = {};
+    /// For each block, 1 plus its index in `kept`, or 0 if `kept` lacks it. Null without copies.
+    const std::uint32_t* kept_place = nullptr;
 
     WARPAGG_HD constexpr Real* operator[](parameter p) const {
         switch (p) {
@@ -59,9 +68,10 @@ struct parameter_arrays {
             case parameter::opacity:
                 return opacity;
             default:
-                return sh[static_cast<int>(p) - static_cast<int>(parameter::sh0)];
+                return sh[degree_of(p)];
         }
     }
+    WARPAGG_HD constexpr Real* kept_of(parameter p) const { return kept[degree_of(p)]; }
 };
 
 }  // namespace gs

@@ -56,6 +56,7 @@ struct adam {
         const raster::gaussian_row<W>& row;
         real first_left, second_left;  ///< decay during the missed steps: beta1^k, beta2^k
         real drift;                    ///< movement in these steps, in units of rate m / sqrt(v)
+        std::uint32_t kept_place;      ///< see `parameter_arrays::kept_place`
         /// The compact second moment of all SH coefficients, before and after SH degree 0 is updated.
         mutable real color_before, color_after;
 
@@ -108,15 +109,17 @@ struct adam {
 
         template <int N>
         WARPAGG_HD void step_with_floats(change<N>& by, parameter p, std::size_t k, std::size_t width) const {
-            const auto m = row.template load<N>(w, of.moments.first[p], k, width);
-            const auto v = row.template load<N>(w, of.moments.second[p], k, width);
+            const place at = place_of(p);
+            float *const first = at.array(of.moments.first), *const second = at.array(of.moments.second);
+            const auto m = at.row.template load<N>(w, first, k, width);
+            const auto v = at.row.template load<N>(w, second, k, width);
             WARPAGG_UNROLL
             for (int n = 0; n < N; ++n) {
                 const real next_v = next_second(v[n], weighted_square(by.gradient[n]));
                 by.compute(n, m[n], v[n], next_v);
-                row.store(w, of.moments.first[p], k, n, width, by.next_first[n], m[n], by.valid[n]);
-                row.store(w, of.moments.second[p], k, n, width, next_v, v[n], by.valid[n]);
-                row.store(w, of.values[p], k, n, width, by.next[n], by.value[n], by.valid[n]);
+                at.row.store(w, first, k, n, width, by.next_first[n], m[n], by.valid[n]);
+                at.row.store(w, second, k, n, width, next_v, v[n], by.valid[n]);
+                at.row.store(w, at.array(of.values), k, n, width, by.next[n], by.value[n], by.valid[n]);
             }
         }
 
@@ -139,9 +142,10 @@ struct adam {
         /// For the three channels of an SH coefficient. SH degree 0 comes before the others.
         WARPAGG_HD void step_with_colors(change<3>& by, parameter p, std::size_t k, std::size_t width) const {
             using moments = color_moments<real, word>;
-            std::uint32_t* const packed = of.moments.packed[p];
-            const std::size_t at = k / 3, words = p == parameter::sh0 ? 2 : width / 3;
-            const word before = row.template load<1>(w, packed, at, words)[0];
+            const place at = place_of(p);
+            std::uint32_t* const packed = at.array(of.moments.packed);
+            const std::size_t slot = k / 3, words = p == parameter::sh0 ? 2 : width / 3;
+            const word before = at.row.template load<1>(w, packed, slot, words)[0];
             word variance(0u);
             if (p == parameter::sh0) {
                 variance = row.template load<1>(w, packed, 1, words)[0];
@@ -158,15 +162,18 @@ struct adam {
                 after.relative[n] = by.next_first[n] * inverse;
             }
             const mask_t<W> valid = by.all_valid;
-            row.store(w, packed, at, 0, words, after.pack(random(p, at)), before, valid);
+            at.row.store(w, packed, slot, 0, words, after.pack(random(p, slot)), before, valid);
             if (p == parameter::sh0) {
                 row.store(w, packed, 1, 0, words, raster::bits_of<word>(color_after), variance, valid);
                 color_after = select(valid, color_after, color_before);
             }
             WARPAGG_UNROLL
             for (int n = 0; n < 3; ++n)
-                row.store(w, of.values[p], k, n, width, by.next[n], by.value[n], valid);
+                at.row.store(w, at.array(of.values), k, n, width, by.next[n], by.value[n], valid);
         }
+
+        using place = raster::row_place<W>;
+        WARPAGG_HD place place_of(parameter p) const { return {row, of.values, p, kept_place}; }
 
         /// Returns 1 / sqrt(v), where v may be zero.
         static WARPAGG_HD real inverse_root(const real& v) {
@@ -207,9 +214,15 @@ struct adam {
         const real first_left = warpagg::math::exp2(constant<real>(-0.15200309344504995) * missed);
         const real second_left = warpagg::math::exp2(constant<real>(-0.0014434168696687186) * missed);
         const real r_left = warpagg::math::exp2(constant<real>(-0.15128138501021560) * missed);
-        return {*this,      w,           row,
-                first_left, second_left, constant<real>(9.0452374997021932) * (1 - r_left),
-                real(0),    real(0)};
+        return {*this,
+                w,
+                row,
+                first_left,
+                second_left,
+                constant<real>(9.0452374997021932) * (1 - r_left),
+                row.kept_place(values),
+                real(0),
+                real(0)};
     }
 
   private:

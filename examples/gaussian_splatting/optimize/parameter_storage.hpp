@@ -20,12 +20,16 @@ struct parameter_storage {
     bool operator==(const parameter_storage&) const = default;
 };
 
+/// The device has memory for copies of one of this number of blocks in host memory: see `kept_rows`.
+inline constexpr std::size_t kept_share = 8;
+
 /// The memory of a Gaussian's parameters, with their moments, in bytes.
 struct parameter_bytes {
     std::size_t on_device = 0, on_host = 0;
 };
 
-/// Returns the memory of a Gaussian of an SH degree, without the step that updated it last.
+/// Returns the memory of a Gaussian of an SH degree, with its share of the copies, and without the step
+/// that updated it last.
 constexpr parameter_bytes bytes_per_gaussian(int sh_degree, const parameter_storage& how) {
     parameter_bytes bytes;
     for (std::size_t p = 0; p < parameter_count; ++p) {
@@ -36,6 +40,7 @@ constexpr parameter_bytes bytes_per_gaussian(int sh_degree, const parameter_stor
         (is_on_host ? bytes.on_host : bytes.on_device) +=
             static_cast<std::size_t>(values + moments) * sizeof(float);
     }
+    bytes.on_device += (bytes.on_host + kept_share - 1) / kept_share;
     return bytes;
 }
 

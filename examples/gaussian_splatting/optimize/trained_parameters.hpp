@@ -9,7 +9,9 @@
 
 #include "../device/device.hpp"
 #include "../model/parameter_memory.hpp"
+#include "../render/project/shown_blocks.hpp"
 #include "adam.hpp"
+#include "kept_rows.hpp"
 #include "parameter_storage.hpp"
 
 namespace gs::train {
@@ -26,6 +28,7 @@ struct trained_parameters {
     /// @}
     /// The last step that updated each Gaussian.
     typename Device::template buffer<std::uint32_t> last_step;
+    kept_rows<Device> kept;
 
     /// Calls f(array) for `values` and each array of moments that is in use.
     template <class F>
@@ -44,29 +47,66 @@ struct trained_parameters {
     }
     /// Replaces the values, and frees the moments. Waits for the device.
     void set_values(Device& device, const gaussians& model) {
+        stop_keeping();
         free_moments();
         values.upload(device, model);
+    }
+    /// Returns the values of the first `count` Gaussians. Waits for the device.
+    gaussians get_values(Device& device, std::size_t count, int sh_degree) {
+        settle(device);
+        return values.download(device, count, sh_degree);
+    }
+    /// See `parameter_memory::change_sh_degree`.
+    void change_sh_degree(Device& device, int from, int to) {
+        settle(device);
+        for_each([&](auto& memory) { memory.change_sh_degree(device, from, to); });
     }
     /// Moves the values to the places of this storage. Moments follow, unless their precision changes: then
     /// they are freed.
     void set_storage(Device& device, const parameter_storage& how) {
+        settle(device);
         if (how.precision != precision) free_moments();
         precision = how.precision;
         values.move_to_host_from(device, how.first_degree_on_host);
         for (auto* moments : {&first, &second}) moments->move_to_host_from(device, how.first_degree_on_host);
         packed.move_to_host_from(device, how.first_degree_on_host);
     }
-    /// Sets all moments to zero if they were freed. They have no memory until a step needs them, because
-    /// the storage of a new model is known only then.
-    void require_moments(Device& device, std::size_t count, int sh_degree) {
-        if (last_step.size() == count) return;
-        for_each_moment([&](auto& moments) {
-            moments.resize(count, values.gaussians_with_sh(), sh_degree);
-            moments.zero(device);
-        });
-        last_step.resize(count);
-        device.zero(last_step.data(), count);
+    /// Copies the blocks in host memory that the view shows: see `kept_rows`.
+    void fetch(Device& device, const camera& view) {
+        if (kept.blocks() == 0) return;
+        raster::find_shown_blocks(device, values.read().mean, values.gaussians_with_sh(), view,
+                                  kept.needed());
+        kept.fetch(device);
     }
+    /// Writes copies back and frees them. Must precede all accesses to arrays except by kernels that heed
+    /// `parameter_arrays::kept_place`.
+    void settle(Device& device) {
+        kept.write_back(device);
+        stop_keeping();
+    }
+    /// Allocates what only steps need, because the storage of a new model is known only then: moments,
+    /// which are zero at first, and memory for the copies of `fetch`.
+    void require_memory(Device& device, std::size_t count, int sh_degree) {
+        if (last_step.size() != count) {
+            settle(device);
+            for_each_moment([&](auto& moments) {
+                moments.resize(count, values.gaussians_with_sh(), sh_degree);
+                moments.zero(device);
+            });
+            last_step.resize(count);
+            device.zero(last_step.data(), count);
+        }
+        const std::size_t blocks =
+            values.is_on_host() ? in_whole_blocks(values.gaussians_with_sh()) / block_length : 0;
+        if (kept.blocks() == blocks) return;
+        const std::size_t places = kept.reset(device, blocks);
+        for_each([&](auto& memory) {
+            memory.keep_blocks(places, kept.place_of());
+            kept.add(memory);
+        });
+    }
+    /// Returns a number that determines the memory and the launches of a step, for graph keys.
+    std::size_t memory_key() const { return 2 * values.gaussians_with_sh() + (kept.blocks() > 0 ? 1 : 0); }
     /// Returns whether all arrays have the sizes for this number of Gaussians and this SH degree.
     bool fits(std::size_t count, int sh_degree) {
         bool fits = last_step.size() == count;
@@ -93,12 +133,14 @@ struct trained_parameters {
         return step;
     }
     /// Appends all arrays, for `device::gather`.
-    void share(std::vector<ranks::shared_array>& arrays) {
+    void share(Device& device, std::vector<ranks::shared_array>& arrays) {
+        settle(device);
         for_each([&](auto& memory) { memory.share(arrays); });
         arrays.push_back(ranks::shared_array::of(last_step.data(), block_length, last_step.size()));
     }
     /// Saves or loads all parameters. Loading takes over the precision. Waits for the device.
     void exchange(state_archive& archive, Device& device) {
+        settle(device);
         const auto exchange_memory = [&](const char* name, auto& memory) {
             const state_archive::scope scope(archive, name);
             memory.exchange(archive, device);
@@ -119,6 +161,10 @@ struct trained_parameters {
     }
 
   private:
+    void stop_keeping() {
+        kept.stop();
+        for_each([](auto& memory) { memory.keep_blocks(0, nullptr); });
+    }
     void free_moments() {
         for (auto* moments : {&first, &second}) moments->free();
         packed.free();

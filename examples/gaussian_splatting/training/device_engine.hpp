@@ -82,7 +82,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     }
 
     gaussians get_model() override {
-        gaussians model = trained_.values.download(device_, count_, sh_degree_);
+        gaussians model = trained_.get_values(device_, count_, sh_degree_);
         model.antialiased = effects_.antialiasing;
         features_.get_model(model);
         return model;
@@ -101,7 +101,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     }
 
     void step(const step_plan& plan) override {
-        trained_.require_moments(device_, count_, sh_degree_);
+        trained_.require_memory(device_, count_, sh_degree_);
         const photo& shot = views_.train(level_)[plan.view];
         const camera seen = features_.seen_by(plan.view, shot.camera);
         const auto loaded = views_.load(shot);
@@ -186,14 +186,13 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
       public:
         explicit sh_state(device_engine& on) : on_(on) {}
         void set_degree(int degree) override {
-            on_.trained_.for_each(
-                [&](auto& memory) { memory.change_sh_degree(on_.device_, on_.sh_degree_, degree); });
+            on_.trained_.change_sh_degree(on_.device_, on_.sh_degree_, degree);
             on_.sh_degree_ = degree;
         }
         std::size_t prune(double change) override {
             on_.complete_parameters();
             if (on_.count_ > 0 && on_.sh_degree_ > 0) {
-                on_.trained_.require_moments(on_.device_, on_.count_, on_.sh_degree_);
+                on_.trained_.require_memory(on_.device_, on_.count_, on_.sh_degree_);
                 drawn_views views(on_, on_.views_.smallest());
                 sh_pruner<Device>(on_.device_, on_.gather_)
                     .run(on_.trained_, on_.count_, on_.sh_degree_, views, change);
@@ -301,7 +300,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         archive.exchange("gaussians", count_);
         archive.exchange("sh_degree", sh_degree_);
         archive.exchange("steps", steps_);
-        if (!archive.loads()) trained_.require_moments(device_, count_, sh_degree_);
+        if (!archive.loads()) trained_.require_memory(device_, count_, sh_degree_);
         trained_.exchange(archive, device_);
         is_complete_ = true;
         exchange_buffer(archive, device_, "statistics", seen_);
@@ -371,14 +370,14 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     void complete_parameters() {
         if (is_complete_) return;
         std::vector<ranks::shared_array> arrays;
-        trained_.share(arrays);
+        trained_.share(device_, arrays);
         arrays.push_back(ranks::shared_array::of(seen_.data(), block_length, count_));
         device_.gather(shares_of(count_, device_.ranks()), arrays);
         is_complete_ = true;
     }
 
     trained_gaussians<Device> in_training() {
-        trained_.require_moments(device_, count_, sh_degree_);
+        trained_.require_memory(device_, count_, sh_degree_);
         return {device_, trained_, count_, sh_degree_, views_.centers(), views_.count()};
     }
 
@@ -399,7 +398,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
                               static_cast<std::size_t>(s.camera.lens()),
                               target.masked ? std::size_t{1} : 0,
                               effects_.antialiasing ? std::size_t{1} : 0,
-                              trained_.values.gaussians_with_sh(),
+                              trained_.memory_key(),
                               strategy_->memory_key(s.plan.iteration)};
         features_.add_memory_keys(s, key);
         return key;
@@ -407,6 +406,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
 
     void iterate(const step_type& s) {
         const step_plan& plan = s.plan;
+        trained_.fetch(device_, s.camera);
         renderer_.list(trained_.values.read(), count_, s.camera, plan.sh_degree, dropout_of(plan));
         features_.before_blend(s);
         renderer_.blend(plan.background, features_.background(s.camera));

@@ -161,14 +161,17 @@ struct project {
         const vec3<real> direction = unit(mean - camera.center).direction;
         real basis[16]{};
         sh_basis(degree, direction, basis);
+        const std::uint32_t kept_place = degree > 0 ? row.kept_place(gaussians) : 0;
         vec3<real> sum(constant<real>(0.5));
         WARPAGG_UNROLL
         for (unsigned band = 0; band < 4; ++band) {
             if (static_cast<int>(band) > degree) break;
             const unsigned size = 2 * band + 1;
+            const row_place<W> at(row, gaussians, sh_band(static_cast<int>(band)), kept_place);
             WARPAGG_UNROLL
             for (unsigned m = 0; m < size; ++m)
-                sum += basis[band * band + m] * row.template load<3>(w, gaussians.sh[band], 3 * m, 3 * size);
+                sum +=
+                    basis[band * band + m] * at.row.template load<3>(w, at.array(gaussians), 3 * m, 3 * size);
         }
         return sum;
     }

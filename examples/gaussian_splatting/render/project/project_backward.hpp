@@ -204,16 +204,18 @@ struct project_backward {
         const vec3<real> direction = sight.direction;
         real basis[16]{}, weight[16]{};
         sh_basis(degree, direction, basis);
+        const std::uint32_t kept_place = degree > 0 ? row.kept_place(gaussians) : 0;
         WARPAGG_UNROLL
         for (int band = 0; band < 4; ++band) {
             if (band > degree) break;
             const int size = 2 * band + 1;
+            const row_place<W> at(row, gaussians, sh_band(band), kept_place);
             WARPAGG_UNROLL
             for (int m = 0; m < size; ++m) {
                 const int k = band * band + m;
                 const std::size_t component = static_cast<std::size_t>(3 * m),
                                   width = static_cast<std::size_t>(3 * size);
-                const auto value = row.template load<3>(w, gaussians.sh[band], component, width);
+                const auto value = at.row.template load<3>(w, at.array(gaussians), component, width);
                 weight[k] = glm::dot(g, value);
                 if (band <= learned_sh_degree) put(sh_band(band), component, width, value, basis[k] * g);
             }
