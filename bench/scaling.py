@@ -10,8 +10,8 @@
     bench/scaling.py predict scaling.json --picture prediction.svg
 
 `measure` trains on scenes of bench/large_photos.py with each size of photos, number of Gaussians and number of
-GPUs (--device cuda), or of processes with one thread (--device cpu). It leaves out numbers of GPUs that the machine does
-not have. The model does not grow, so that each step works on about the same number of Gaussians. The file is written
+GPUs (--device cuda), or of processes with one thread (--device cpu). Numbers of GPUs that the machine does not
+have are left out. The model does not grow, so that each step works on about the same number of Gaussians. The file is written
 after each training, and the same command goes on where it was stopped. Options after -- go to all trainings.
 
 `traffic` compares the measured bytes of a step with the formula in docs/explanation/when_several_gpus_help.md.
@@ -46,6 +46,7 @@ SPLAT, COUNT, LENGTH, SUMS = 60, 8, 8, 12  # bytes of a splat, of a number of sp
 SUM_BYTES = {"native": 4, "fixed": 8}
 CALLS = 5  # exchanges of a step: numbers of splats, splats, lists, gradients, and the agreement to go on
 GAUSSIAN = 4 * 59  # bytes of a Gaussian's gradients with SH degree 3
+GATHERED = 7.2  # bytes of a Gaussian that a step gathers with SH degree 3: 720 for each report, after 100 steps
 TILE = 16
 # Colors of Okabe and Ito, which color-blind readers can tell apart.
 COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
@@ -177,20 +178,27 @@ class Model:
 
     NAMES = ["a", "b", "c", "1 / bandwidth", "latency"]
 
-    def __init__(self, terms, visible, sum_bytes, largest_error):
-        self.terms, self.visible, self.sum_bytes, self.largest_error = terms, visible, sum_bytes, largest_error
+    def __init__(self, visible, gathered, sum_bytes):
+        """`visible`: the share of the Gaussians that a view shows. `gathered`: the bytes of a Gaussian, per step, that
+        the devices gather for reports."""
+        self.visible, self.gathered, self.sum_bytes = visible, gathered, sum_bytes
+        self.terms, self.largest_error = [0.0] * len(self.NAMES), 0.0
 
     @classmethod
     def fit(cls, runs, bandwidth=None, latency=None, visible=None):
         """`visible`: the share of the Gaussians that a view shows, if no run has measured it. A bandwidth and a
         latency that are given are not fitted."""
         import numpy as np
-        shares = [run["exchange"]["visible_splats"] / run["gaussians"] for run in runs if run["exchange"]]
-        if not shares and None in (bandwidth, latency, visible):
+        shared = [run for run in runs if run["exchange"]]
+        if not shared and None in (bandwidth, latency, visible):
             raise SystemExit("error: the file has no training with several ranks, which show the cost of exchanges: "
                              "measure with --ranks 1 2, or give --bandwidth, --latency and --visible")
-        visible = statistics.mean(shares) if shares else visible
-        model = cls(None, visible, SUM_BYTES[runs[0]["accumulator"]], None)
+        gathered = GATHERED
+        if shared:
+            visible = statistics.mean(run["exchange"]["visible_splats"] / run["gaussians"] for run in shared)
+            gathered = statistics.mean(run["exchange"]["bytes"]["gaussians"] / run["gaussians"] * run["ranks"] /
+                                       (run["ranks"] - 1) for run in shared)
+        model = cls(visible, gathered, SUM_BYTES[runs[0]["accumulator"]])
         rows = np.array([model.parts(r["pixels"], r["height"], r["gaussians"], r["ranks"], r["exchange"]) for r in runs])
         times = np.array([r["seconds"] for r in runs])
         given = {3: None if bandwidth is None else 1 / bandwidth, 4: latency}
@@ -206,7 +214,8 @@ class Model:
     def parts(self, pixels, height, gaussians, ranks, exchange=None):
         """The factors of the terms."""
         splats = exchange["visible_splats"] if exchange else self.visible * gaussians
-        sent = sum(bytes_of_step(splats, height, ranks, self.sum_bytes).values())
+        sent = sum(bytes_of_step(splats, height, ranks, self.sum_bytes).values()) + (
+            self.gathered * gaussians * (ranks - 1) / ranks)
         return [1, pixels / ranks, gaussians / ranks, sent, CALLS if ranks > 1 else 0]
 
     def seconds(self, *of):
