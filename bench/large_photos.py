@@ -76,10 +76,14 @@ def write_photo(job):
     Image.fromarray(pixels).save(file, quality=90)
 
 
+def size_of(megapixels):
+    """Returns the width and the height of the photos."""
+    width = round(math.sqrt(megapixels * 1e6 * 4 / 3))
+    return width, round(width * 3 / 4)
+
+
 def make(args):
-    import numpy as np
-    width = round(math.sqrt(args.megapixels * 1e6 * 4 / 3))
-    height = round(width * 3 / 4)
+    width, height = size_of(args.megapixels)
     images, sparse = args.scene / "images", args.scene / "sparse" / "0"
     for folder in (images, sparse):
         folder.mkdir(parents=True, exist_ok=True)

@@ -334,6 +334,7 @@ void training_run::train() {
     measures_.stages = engine_->profile().times();
     measures_.pairs_per_iteration = static_cast<double>(engine_->profile().pairs()) / result.iterations;
     measures_.gaussians = engine_->count();
+    measures_.traffic = ranks_.traffic();
 }
 
 void training_run::measure() {

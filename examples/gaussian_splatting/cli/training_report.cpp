@@ -30,6 +30,23 @@ ordered_json stages_json(const device::stage_times& times, double pairs_per_iter
     return stages;
 }
 
+/// Returns the traffic as means per step, and the bytes as those that a rank sends in the mean.
+ordered_json exchange_json(const ranks::traffic_counter& traffic) {
+    const auto steps = static_cast<double>(traffic.steps());
+    ordered_json bytes, calls;
+    for (std::size_t p = 0; p < ranks::purpose_names.size(); ++p) {
+        const auto& amount = traffic.of(static_cast<ranks::purpose>(p));
+        bytes[ranks::purpose_names[p]] = static_cast<double>(amount.bytes) / (steps * traffic.ranks());
+        calls[ranks::purpose_names[p]] = static_cast<double>(amount.calls) / steps;
+    }
+    return {{"ranks", traffic.ranks()},
+            {"steps", traffic.steps()},
+            {"visible_splats", static_cast<double>(traffic.splats()) / steps},
+            {"largest_share", static_cast<double>(traffic.largest_shares()) / steps},
+            {"bytes", bytes},
+            {"calls", calls}};
+}
+
 std::size_t peak_host_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -120,6 +137,7 @@ ordered_json metrics_json(const settings& s, const training_measures& measures) 
          {"accumulator", s.deterministic ? "fixed" : "native"},
          {"deterministic", s.deterministic},
          {"seed", s.seed}});
+    if (measures.traffic.steps() > 0) metrics["exchange"] = exchange_json(measures.traffic);
     return metrics;
 }
 

@@ -8,6 +8,7 @@
 #include "../checkpoint/state_archive.hpp"
 #include "../device/stages.hpp"
 #include "../evaluation/held_out_views.hpp"
+#include "../ranks/traffic.hpp"
 #include "../training/training.hpp"
 #include "settings.hpp"
 
@@ -26,6 +27,7 @@ struct training_measures {
     std::size_t peak_device_bytes = 0;
     std::string device;
     evaluate::held_out_report held_out;
+    ranks::traffic_counter traffic{1};  ///< between the ranks, until the end of training
 };
 
 /// Returns the settings with the values of dependent defaults. `views` is the number of training

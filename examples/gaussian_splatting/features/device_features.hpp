@@ -24,7 +24,7 @@ class device_features {
     using step = features::step<Renderer>;
     using part = device_feature<Renderer>;
 
-    explicit device_features(typename Renderer::device_type& device) {
+    explicit device_features(typename Renderer::device_type& device) : device_(device) {
         [&]<class... Features>(std::tuple<Features...>*) {
             (add<Features>(device), ...);
         }(static_cast<table*>(nullptr));
@@ -74,6 +74,7 @@ class device_features {
         return given;
     }
     void before_blend(const step& s) {
+        const auto scope = exchanging();
         for (auto& [name, f] : parts_) f->before_blend(s);
     }
     /// Returns the background of the first feature that has one, or null.
@@ -83,17 +84,21 @@ class device_features {
         return nullptr;
     }
     const float* show(const step& s, const float* render) {
+        const auto scope = exchanging();
         for (auto& [name, f] : parts_) render = f->show(s, render);
         return render;
     }
     const float* backward(const step& s, const float* gradient) {
+        const auto scope = exchanging();
         for (auto f = parts_.rbegin(); f != parts_.rend(); ++f) gradient = f->second->backward(s, gradient);
         return gradient;
     }
     void learn(const step& s, const float* render_gradient) {
+        const auto scope = exchanging();
         for (auto& [name, f] : parts_) f->learn(s, render_gradient);
     }
     void learn_pose(const step& s, const float* sums) {
+        const auto scope = exchanging();
         for (auto& [name, f] : parts_) f->learn_pose(s, sums);
     }
     void begin_refinement() {
@@ -121,6 +126,12 @@ class device_features {
                                 std::make_unique<typename Feature::template on_device<Renderer>>(device));
     }
 
+    /// Values that features exchange in the hooks of a step count for this purpose.
+    ranks::traffic_counter::scope exchanging() {
+        return {device_.ranks().traffic(), ranks::purpose::effects};
+    }
+
+    typename Renderer::device_type& device_;
     std::vector<named_part> parts_;
 };
 

@@ -92,8 +92,13 @@ void communicator::reduce(std::uint32_t operation, T* values, std::size_t n, con
     }
 }
 
-void communicator::gather(const shares& all, const shared_array& array) {
+void communicator::gather(const shares& all, std::span<const shared_array> arrays) {
     if (count_ == 1) return;
+    traffic_.count_gather(all, arrays);
+    for (const shared_array& array : arrays) gather(all, array);
+}
+
+void communicator::gather(const shares& all, const shared_array& array) {
     constexpr std::size_t at_once = shared_memory::slot_bytes;
     std::size_t longest = 0;
     for (int r = 0; r < count_; ++r) longest = std::max(longest, array.part(all, r).size());
@@ -112,15 +117,27 @@ void communicator::gather(const shares& all, const shared_array& array) {
 }
 
 template <class T>
-void communicator::sum(T* values, std::size_t n) {
+void communicator::add(T* values, std::size_t n) {
     reduce(sum_of, values, n, [](T a, T b) { return a + b; });
 }
 template <class T>
+void communicator::sum(T* values, std::size_t n) {
+    traffic_.count_sum(n * sizeof(T));
+    add(values, n);
+}
+template <class T>
+void communicator::sum_for_owners(const shares& all, T* values, std::size_t block_size, std::size_t n) {
+    traffic_.count_sum_for_owners(all, shared_array::of(values, block_size, n));
+    add(values, n);
+}
+template <class T>
 void communicator::minimum(T* values, std::size_t n) {
+    traffic_.count_sum(n * sizeof(T));
     reduce(minimum_of, values, n, [](T a, T b) { return std::min(a, b); });
 }
 template <class T>
 void communicator::maximum(T* values, std::size_t n) {
+    traffic_.count_sum(n * sizeof(T));
     reduce(maximum_of, values, n, [](T a, T b) { return std::max(a, b); });
 }
 
@@ -140,6 +157,9 @@ template void communicator::sum(float*, std::size_t);
 template void communicator::sum(double*, std::size_t);
 template void communicator::sum(std::int64_t*, std::size_t);
 template void communicator::sum(std::uint64_t*, std::size_t);
+template void communicator::sum_for_owners(const shares&, float*, std::size_t, std::size_t);
+template void communicator::sum_for_owners(const shares&, double*, std::size_t, std::size_t);
+template void communicator::sum_for_owners(const shares&, std::int64_t*, std::size_t, std::size_t);
 template void communicator::minimum(std::uint64_t*, std::size_t);
 template void communicator::minimum(unsigned long long*, std::size_t);
 template void communicator::maximum(std::uint64_t*, std::size_t);

@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "shares.hpp"
+#include "traffic.hpp"
 
 namespace gs::ranks {
 
@@ -27,7 +29,8 @@ class communicator {
   public:
     /// The only rank of a training in one process.
     communicator() = default;
-    communicator(shared_memory& memory, int rank, int count) : memory_(&memory), rank_(rank), count_(count) {}
+    communicator(shared_memory& memory, int rank, int count)
+        : memory_(&memory), rank_(rank), count_(count), traffic_(count) {}
     communicator(const communicator&) = delete;
     communicator& operator=(const communicator&) = delete;
 
@@ -35,6 +38,9 @@ class communicator {
     int count() const { return count_; }
     /// Whether this is rank 0, the only one that prints and writes files.
     bool is_first() const { return rank_ == 0; }
+    /// The bytes that the ranks exchange. Devices that have other connections count theirs here, too.
+    traffic_counter& traffic() { return traffic_; }
+    const traffic_counter& traffic() const { return traffic_; }
 
     /// @name Collective functions
     /// @{
@@ -43,6 +49,9 @@ class communicator {
     /// bits. T: float, double, or an integer of 64 bits.
     template <class T>
     void sum(T* values, std::size_t n);
+    /// Gives each rank the sums of its own share of n values, `block_size` for each block. T: see `sum`.
+    template <class T>
+    void sum_for_owners(const shares& all, T* values, std::size_t block_size, std::size_t n);
     /// Gives all ranks the smallest or the largest values. T: an integer of 64 bits.
     /// @{
     template <class T>
@@ -50,8 +59,8 @@ class communicator {
     template <class T>
     void maximum(T* values, std::size_t n);
     /// @}
-    /// Gives all ranks the parts of the others. Each rank has its own part of the array.
-    void gather(const shares& all, const shared_array& array);
+    /// Gives all ranks the parts of the others. Each rank has its own part of each array.
+    void gather(const shares& all, std::span<const shared_array> arrays);
     /// Returns the value of rank 0.
     double from_first(double value);
     /// Returns whether any rank passes true.
@@ -61,6 +70,9 @@ class communicator {
   private:
     template <class T, class Combine>
     void reduce(std::uint32_t operation, T* values, std::size_t n, const Combine& combine);
+    template <class T>
+    void add(T* values, std::size_t n);
+    void gather(const shares& all, const shared_array& array);
     /// Shows some bytes to the other ranks, and calls `take(rank, theirs)` for each rank, in order.
     /// `operation` and `size` identify the whole exchange, which all ranks must agree on.
     template <class Take>
@@ -71,6 +83,7 @@ class communicator {
     int rank_ = 0, count_ = 1;
     std::uint64_t barriers_ = 0;   ///< number of barriers so far
     std::uint64_t exchanges_ = 0;  ///< number of times that values were exchanged
+    traffic_counter traffic_{1};
 };
 
 }  // namespace gs::ranks

@@ -144,7 +144,10 @@ class renderer {
                                                         gaussians_.mean, for_device<Real>(camera_),
                                                         splats_.data(), reserve(near_, count_).data()});
         });
-        if (shares_gaussians()) visible_.collect(near_.data(), near_visible_);
+        if (shares_gaussians()) {
+            const auto scope = exchanging(ranks::purpose::splats);
+            visible_.collect(near_.data(), near_visible_);
+        }
         background_ = {};
         with_cut(
             [&]<class Shape> { blend_forward_by<Shape>(background_, depth_lists(), pairs_.data() + 1); });
@@ -259,6 +262,9 @@ class renderer {
         return sums;
     }
 
+    ranks::traffic_counter::scope exchanging(ranks::purpose purpose) const {
+        return {device_.ranks().traffic(), purpose};
+    }
     bool shares_gaussians() const { return strip_ && strip_->shares_gaussians; }
     const ranks::shares* owners() const { return shares_gaussians() ? &visible_.shares() : nullptr; }
     /// Returns the warps that project this rank's Gaussians.
@@ -375,8 +381,11 @@ class renderer {
                            reserve(boxes_, count).data(), reserve(depths_, count).data(),
                            reserve(order_, count).data(), reserve(tiles_, count).data(), dropped});
         });
-        if (shares_gaussians())
+        if (shares_gaussians()) {
+            const auto scope = exchanging(ranks::purpose::splats);
             visible_.collect(own_gaussians(), splats_.data(), boxes_.data(), depths_.data(), tiles_.data());
+            device_.ranks().traffic().count_step(visible_.shares());
+        }
     }
 
     /// Makes the list of Gaussians of each tile, front to back. Equal depths keep the order of the
@@ -435,7 +444,11 @@ class renderer {
             device_.for_each_index(listed_count(), count_unlisted<Items>{items, first, last, capacity(),
                                                                          lengths_.data() + tiles_down_});
         });
-        device_.sum_over_ranks(lengths_.data(), lengths_.size());
+        {
+            const auto scope =
+                exchanging(shares_gaussians() ? ranks::purpose::lists : ranks::purpose::scores);
+            device_.sum_over_ranks(lengths_.data(), lengths_.size());
+        }
         device_.zero(reserve(place_, 1).data(), 1);
         device_.for_each_index(
             lengths_.size(),

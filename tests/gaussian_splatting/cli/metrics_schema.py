@@ -51,6 +51,8 @@ class Schema(unittest.TestCase):
         self.assertIsNone(self.run_program("train", "-i", "20", *SCENE)["psnr"])
         further = ["--eval", "--fit-exposure", "--lpips", weights]
         poses = ["--effects", "auto,+poses"]
+        shared = self.run_program("train", "--overwrite", "-i", "20", "--ranks", "2", *SCENE)
+        self.assertFalse(self.validator.is_valid({**shared, "exchange": {**shared["exchange"], "bytes": {}}}))
         trained = self.run_program("train", "--overwrite", "-i", "60", "--test-iterations", "20", "--deterministic", *poses, *further, *SCENE)
         model = self.folder / "point_cloud/iteration_60/point_cloud.ply"
         evaluated = self.run_program("evaluate", model, *further, *SCENE)

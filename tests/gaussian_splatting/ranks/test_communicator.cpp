@@ -108,7 +108,9 @@ TEST_CASE("communicator: all ranks get the parts of the others") {
                 for (int round = 1; round < 3; ++round) {
                     for (std::size_t i = own.first; i < own.last; ++i)
                         values[i] = i * static_cast<std::size_t>(round);
-                    all.gather(shares, gs::ranks::shared_array::of(values.data(), 32, items));
+                    const gs::ranks::shared_array array[] = {
+                        gs::ranks::shared_array::of(values.data(), 32, items)};
+                    all.gather(shares, array);
                     for (std::size_t i = 0; i < items; ++i)
                         if (values[i] != i * static_cast<std::size_t>(round)) return false;
                     all.barrier();

@@ -252,11 +252,11 @@ class basic_cpu {
         ranks_->sum(p, n);
     }
     template <class T>
-    void sum_for_owners(const gs::ranks::shares&, T* p, std::size_t, std::size_t n) {
-        ranks_->sum(p, n);
+    void sum_for_owners(const gs::ranks::shares& shares, T* p, std::size_t block_size, std::size_t n) {
+        ranks_->sum_for_owners(shares, p, block_size, n);
     }
     void gather(const gs::ranks::shares& shares, std::span<const gs::ranks::shared_array> arrays) {
-        for (const auto& array : arrays) ranks_->gather(shares, array);
+        ranks_->gather(shares, arrays);
     }
 
     void sample_times(int every) {

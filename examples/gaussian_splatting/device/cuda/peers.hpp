@@ -37,7 +37,10 @@ struct add_parts {
 /// after all ranks of the machine have asked for it.
 class cuda_peers {
   public:
-    explicit cuda_peers(ranks::communicator& all) : rank_(all.rank()), count_(all.count()) {
+    /// `all` counts the traffic, and must exist as long as this object.
+    explicit cuda_peers(ranks::communicator& all)
+        : rank_(all.rank()), count_(all.count()), traffic_(all.traffic()) {
+        const ranks::traffic_counter::scope scope(traffic_, ranks::purpose::connection);
         ncclUniqueId id{};
         if (all.is_first()) nccl_.check(nccl_.unique_id(&id));
         std::array<std::uint64_t, sizeof(id) / sizeof(std::uint64_t)> words{};
@@ -53,6 +56,7 @@ class cuda_peers {
     /// Gives all ranks the sums of n values. All ranks get the same bits.
     template <class T>
     void sum(T* values, std::size_t n, cudaStream_t stream) {
+        traffic_.count_sum(n * sizeof(T));
         nccl_.check(nccl_.all_reduce(values, values, n, nccl_type<T>(), ncclSum, group_, stream));
     }
     /// Sends each rank its part of the values. Returns the parts that this rank got: see `add_parts`.
@@ -60,6 +64,7 @@ class cuda_peers {
     const T* exchange_parts(const ranks::shares& shares, T* values, std::size_t block_size, std::size_t n,
                             cudaStream_t stream) {
         const auto array = ranks::shared_array::of(values, block_size, n);
+        traffic_.count_sum_for_owners(shares, array);
         const std::size_t bytes = array.part(shares, rank_).size();
         received_.resize(bytes * static_cast<std::size_t>(count_));
         for_each_other([&](int other) {
@@ -71,6 +76,7 @@ class cuda_peers {
     /// Gives all ranks the parts of the others.
     void gather(const ranks::shares& shares, std::span<const ranks::shared_array> arrays,
                 cudaStream_t stream) {
+        traffic_.count_gather(shares, arrays);
         for_each_other([&](int other) {
             for (const auto& array : arrays) {
                 send(array.part(shares, rank_), other, stream);
@@ -111,6 +117,7 @@ class cuda_peers {
     nccl nccl_;
     ncclComm_t group_ = nullptr;
     int rank_, count_;
+    ranks::traffic_counter& traffic_;
     cuda_buffer<std::byte> received_;
 };
 

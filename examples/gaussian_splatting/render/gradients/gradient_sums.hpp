@@ -110,6 +110,9 @@ class gradient_sums {
     /// Precondition: there is one value per sum.
     template <class T>
     void add_ranks(T* values, const ranks::shares* owners) {
+        using enum ranks::purpose;
+        const ranks::traffic_counter::scope scope(device_.ranks().traffic(),
+                                                  owners == nullptr ? scores : gradients);
         owners == nullptr ? device_.sum_over_ranks(values, sums_.size())
                           : device_.sum_for_owners(*owners, values, record_stride, sums_.size());
     }
