@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "../geometry/effect_set.hpp"
+#include "../geometry/splat.hpp"
 #include "gaussian_row.hpp"
 #include "geometry.hpp"
 
@@ -36,6 +37,8 @@ struct shown_blocks {
     }
 
   private:
+    static constexpr int beside = static_cast<int>(tile_size);
+
     WARPAGG_HD mask_t<W> is_shown(const vec3<real>& center) const {
         using projection = projection_of<real, effects>;
         const vec3<real> at = in_camera(center, camera);
@@ -44,14 +47,13 @@ struct shown_blocks {
                is_near(seen.y, camera.height);
     }
     static WARPAGG_HD mask_t<W> is_near(const real& pixel, int pixels) {
-        const real margin(Real(pixels) / 8);
-        return pixel > -margin && pixel < real(Real(pixels)) + margin;
+        return pixel > -constant<real>(beside) && pixel < real(Real(pixels + beside));
     }
 };
 
 /// Sets `shown` to 1 for each AoSoA block of `count` Gaussians that a view shows, and to 0 for the others.
-/// The view shows a block if the center of a Gaussian is in the picture, or beside it by at most an
-/// eighth of its size. Large Gaussians farther away may be drawn, too.
+/// The view shows a block if the center of a Gaussian is in the picture, or beside it by less than a tile.
+/// Large Gaussians farther away may be drawn, too.
 template <class Device, class Real>
 void find_shown_blocks(Device& device, const Real* mean, std::size_t count, const camera& view,
                        std::uint32_t* shown) {
