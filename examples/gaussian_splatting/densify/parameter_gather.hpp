@@ -91,7 +91,11 @@ class parameter_gather {
     /// Returns the array with the index of each new Gaussian's origin. Fill it before `run`.
     std::uint32_t* origins() const { return origin_.data(); }
     /// Returns the array with the birth of each new Gaussian. Fill it before `run`.
-    birth* births() const { return births_.data(); }
+    birth* births() const { return reinterpret_cast<birth*>(births_.data()); }
+
+    /// Orders the first `count` new Gaussians by their origins. Copies then lie beside each other, so that
+    /// a warp has Gaussians which the same views show.
+    void order_by_origin(std::size_t count) { device_.sort_pairs(origin_, births_, count); }
 
     /// Replaces the Gaussians with `count` new ones. The first `with_sh` of them, a multiple of the
     /// block length or all, have SH coefficients of degrees 1 to `sh_degree`, which are zero if the
@@ -130,8 +134,8 @@ class parameter_gather {
         const std::size_t width = memory.width(p), n = in_whole_blocks(count) * width;
         auto& spare = this->spare(T{});
         spare.resize(n);
-        device_.for_each_index(n, gather_array<T>{count, before, origin_.data(), births_.data(), width,
-                                                  are_moments, array.data(), spare.data()});
+        device_.for_each_index(n, gather_array<T>{count, before, origin_.data(), births(), width, are_moments,
+                                                  array.data(), spare.data()});
         if (n < array.size()) memory.free(p);
         array.resize(n);
         device_.copy(array.data(), spare.data(), n);
@@ -141,8 +145,8 @@ class parameter_gather {
 
     Device& device_;
     buffer<std::uint32_t> origin_;
-    buffer<birth> births_;
-    buffer<float> spare_;  ///< for an array of floats
+    buffer<std::uint32_t> births_;  ///< each a `birth`
+    buffer<float> spare_;           ///< for an array of floats
     buffer<std::uint32_t> spare_words_;
     buffer<std::uint32_t> spare_steps_;
 };

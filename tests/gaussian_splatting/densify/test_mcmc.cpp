@@ -75,6 +75,17 @@ gaussians hidden_crowd(std::size_t count, float opacity) {
     return model;
 }
 
+std::vector<float> place(const gaussians& g, std::size_t i) {
+    const auto first = g.mean.begin() + static_cast<std::ptrdiff_t>(3 * i);
+    return {first, first + 3};
+}
+/// Returns the number of Gaussians at each place.
+std::map<std::vector<float>, std::uint32_t> copies_in(const gaussians& g) {
+    std::map<std::vector<float>, std::uint32_t> copies;
+    for (std::size_t i = 0; i < g.count(); ++i) ++copies[place(g, i)];
+    return copies;
+}
+
 }  // namespace
 
 TEST_CASE("mcmc: the opacity and scale of copies are those of equation 9") {
@@ -130,13 +141,8 @@ TEST_CASE("mcmc: dead Gaussians move to live ones, which share their appearance"
         const auto e = make();
         const gaussians moved = run_once(*e, model, 400);
         REQUIRE(moved.count() == 400);
-        std::map<std::vector<float>, std::uint32_t> copies;
-        const auto place = [](const gaussians& g, std::size_t i) {
-            return std::vector(g.mean.begin() + static_cast<std::ptrdiff_t>(3 * i),
-                               g.mean.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
-        };
-        for (std::size_t i = 0; i < 400; ++i) ++copies[place(moved, i)];
-        std::size_t moved_here = 0;
+        auto copies = copies_in(moved);
+        std::size_t moved_here = 0, at = 0;  // copies lie beside each other, in the order of their origins
         for (std::size_t i = 0; i < 400; ++i) {
             const std::uint32_t n = copies[place(model, i)];
             if (i % 4 == 0) {
@@ -144,17 +150,19 @@ TEST_CASE("mcmc: dead Gaussians move to live ones, which share their appearance"
                 continue;
             }
             REQUIRE(n >= 1);
-            CHECK(place(moved, i) == place(model, i));
             moved_here += n - 1;
             const gs::train::relocated each = gs::train::relocate(0.3, n);
-            CHECK(gs::sigmoid(moved.opacity[i]) == doctest::Approx(each.opacity).epsilon(1e-4));
-            CHECK(std::exp(moved.log_scale[3 * i] - model.log_scale[3 * i]) ==
-                  doctest::Approx(each.scale).epsilon(1e-4));
-            if (n == 1) {
-                CHECK(moved.opacity[i] == model.opacity[i]);
-                CHECK(moved.log_scale[3 * i] == model.log_scale[3 * i]);
+            for (const std::size_t end = at + n; at < end; ++at) {
+                CHECK(place(moved, at) == place(model, i));
+                CHECK(gs::sigmoid(moved.opacity[at]) == doctest::Approx(each.opacity).epsilon(1e-4));
+                CHECK(std::exp(moved.log_scale[3 * at] - model.log_scale[3 * i]) ==
+                      doctest::Approx(each.scale).epsilon(1e-4));
+                if (n > 1) continue;
+                CHECK(moved.opacity[at] == model.opacity[i]);
+                CHECK(moved.log_scale[3 * at] == model.log_scale[3 * i]);
             }
         }
+        REQUIRE(at == 400);
         CHECK(moved_here == 100);
     }
 }
@@ -172,10 +180,10 @@ TEST_CASE("mcmc: opaque Gaussians receive more copies") {
         e->densify(700);
         const gaussians grown = e->get_model();
         REQUIRE(grown.count() == 2000);
-        std::size_t opaque = 0;
-        for (std::size_t i = 0; i < 1000; i += 2) opaque += grown.opacity[i] != model.opacity[i] ? 1 : 0;
-        std::size_t faint = 0;
-        for (std::size_t i = 1; i < 1000; i += 2) faint += grown.opacity[i] != model.opacity[i] ? 1 : 0;
+        auto copies = copies_in(grown);
+        std::size_t opaque = 0, faint = 0;
+        for (std::size_t i = 0; i < 1000; ++i)
+            if (copies[place(model, i)] > 1) ++(i % 2 == 0 ? opaque : faint);
         // 1000 draws: each opaque one is hit 1.8 times in the mean, each faint one 0.2 times.
         CHECK(opaque > 380);
         CHECK(opaque < 450);
@@ -349,9 +357,10 @@ TEST_CASE("mcmc: Gaussians with copies and the copies have no moments, and other
         // Without moments, Adam's second step moves by the rate times 0.1 / (1 - 0.81) over
         // sqrt(0.001 / (1 - 0.998)).
         const double alone = 0.01 * 0.1 / (1 - 0.81) / std::sqrt(0.001 / (1 - 0.999 * 0.999));
+        auto copies = copies_in(before);
         std::size_t fresh = 0, others = 0;
         for (std::size_t i = 0; i < 300; ++i) {
-            const bool has_copies = before.opacity[i] != model.opacity[i];
+            const bool has_copies = copies[place(before, i)] > 1;
             const double moved =
                 std::abs(static_cast<double>(after.sh_constant[3 * i] - before.sh_constant[3 * i]));
             if (moved == 0) continue;

@@ -34,7 +34,7 @@ struct weigh_by_opacity {
 };
 
 /// Draws an origin for each dead and each new Gaussian, with probabilities proportional to opacity.
-/// The other Gaussians stay. One index per Gaussian of the new generation; the new ones come last.
+/// The other Gaussians stay. One index per Gaussian of the new generation.
 struct draw_origins {
     std::size_t count;  ///< number of old Gaussians
     const std::uint32_t* dead;
