@@ -52,12 +52,12 @@ class parameter_memory {
             places_[p] = place;
         }
     }
-    /// Reserves device memory for copies of this number of blocks of each array in host memory, or frees
-    /// it. `place`: see `parameter_arrays::kept_place`.
+    /// Reserves device memory for copies of this number of blocks of all SH coefficients above degree 0, or
+    /// frees it. `place`: see `parameter_arrays::kept_place`.
     void keep_blocks(std::size_t blocks, const std::uint32_t* place) {
         for (std::size_t p = 0; p < parameter_count; ++p) {
-            const bool is_on_host = places_[p] == device::memory_place::host && arrays_[p].size() > 0;
-            const std::size_t n = is_on_host ? blocks * block_length * width(p) : 0;
+            const bool has_copies = is_view_dependent(p) && arrays_[p].size() > 0;
+            const std::size_t n = has_copies ? blocks * block_length * width(p) : 0;
             if (n < kept_[p].size()) kept_[p] = {};
             kept_[p].resize(n);
         }
@@ -191,9 +191,9 @@ class parameter_memory {
                 a[1].data(),
                 a[2].data(),
                 a[3].data(),
-                {a[4].data(), a[5].data(), a[6].data(), a[7].data()},
+                {a[4].data(), a[5].data(), a[6].data(), a[7].data(), nullptr, k[5].data(), k[6].data(),
+                 k[7].data()},
                 gaussians_with_sh_,
-                {nullptr, k[5].data(), k[6].data(), k[7].data()},
                 kept_place_};
     }
 

@@ -48,13 +48,12 @@ struct parameter_arrays {
     Real* log_scale = nullptr;
     Real* quaternion = nullptr;  ///< w x y z
     Real* opacity = nullptr;     ///< logit
-    Real* sh[4] = {};            ///< by SH degree: RGB of each coefficient
+    Real* sh[8] = {};            ///< by SH degree: RGB of each coefficient; copies of degree d at 4 + d
     /// The number of Gaussians with SH coefficients above degree 0, which precede all others. It is
     /// a multiple of the block length, or all. The others have the same color in all directions.
     std::size_t gaussians_with_sh = std::numeric_limits<std::size_t>::max();
-    /// Copies of some blocks of `sh`, which replace these blocks. Null without copies.
-    Real* kept[4] = {};
-    /// For each block, 1 plus its index in `kept`, or 0 if `kept` lacks it. Null without copies.
+    /// The place of each block in the copies, which replace those blocks of degrees 1 to 3 that they have:
+    /// 1 plus its index, or 0 if they lack it. Null without copies.
     const std::uint32_t* kept_place = nullptr;
 
     WARPAGG_HD constexpr Real* operator[](parameter p) const {
@@ -71,7 +70,6 @@ struct parameter_arrays {
                 return sh[degree_of(p)];
         }
     }
-    WARPAGG_HD constexpr Real* kept_of(parameter p) const { return kept[degree_of(p)]; }
 };
 
 }  // namespace gs

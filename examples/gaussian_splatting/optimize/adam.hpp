@@ -173,7 +173,7 @@ struct adam {
         }
 
         using place = raster::row_place<W>;
-        WARPAGG_HD place place_of(parameter p) const { return {row, of.values, p, kept_place}; }
+        WARPAGG_HD place place_of(parameter p) const { return {row, p, kept_place}; }
 
         /// Returns 1 / sqrt(v), where v may be zero.
         static WARPAGG_HD real inverse_root(const real& v) {

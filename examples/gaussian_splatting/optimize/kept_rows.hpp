@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "../device/atomic.hpp"
 #include "../device/device.hpp"
 #include "../model/parameter_memory.hpp"
 #include "parameter_storage.hpp"
@@ -26,49 +25,62 @@ struct kept_tables {
     std::uint32_t* block_at;  ///< by place: the block
 };
 
-/// The blocks and places of one fetch.
-struct kept_exchange {
-    std::uint32_t missing, free;  ///< number of missing blocks, and of places that are free for them
-    std::uint32_t first;          ///< the place from which free places are searched
+/// The choice of blocks to fetch, and of places for them. Index i stands for block i, and then for place
+/// i - blocks in the order in which places are taken. All arrays are in device memory.
+struct kept_choice {
+    const std::uint32_t* needed;  ///< by block: 1 or 0
+    kept_tables tables;
+    std::uint32_t blocks, places;
+    std::uint32_t* first;       ///< the place to take first, so that all are taken in turn
+    std::uint32_t* chosen;      ///< 1 for needed blocks without copies, and for places without needed blocks
+    const std::uint64_t* rank;  ///< number of chosen ones before each index, and of all
+    std::uint32_t* listed;      ///< the chosen blocks, and from index `blocks` on the chosen places
 
-    WARPAGG_HD std::uint32_t count() const { return warpagg::math::min(missing, free); }
-};
-
-/// Begins a fetch. It takes other places than the last one, so that all places are used. One index.
-struct begin_fetch {
-    kept_exchange* exchange;
-    std::uint32_t places;
-
-    WARPAGG_HD void operator()(std::size_t) const {
-        *exchange = {0, 0, (exchange->first + exchange->count()) % places};
+    WARPAGG_HD std::uint32_t place(std::size_t i) const {
+        return (*first + static_cast<std::uint32_t>(i) - blocks) % places;
+    }
+    /// Returns the number of blocks to fetch.
+    WARPAGG_HD std::uint32_t count() const {
+        return static_cast<std::uint32_t>(
+            warpagg::math::min(rank[blocks], rank[blocks + places] - rank[blocks]));
     }
 };
 
-/// Lists the needed blocks without copies. One index per block.
-struct list_missing {
-    const std::uint32_t* needed;
-    kept_tables tables;
-    std::uint32_t* listed;
-    kept_exchange* exchange;
-
-    WARPAGG_HD void operator()(std::size_t block) const {
-        if (needed[block] != 0 && tables.place_of[block] == 0)
-            listed[device::atomic_add(&exchange->missing, 1u)] = static_cast<std::uint32_t>(block) + 1;
-    }
-};
-
-/// Lists the places that are empty, or whose blocks are not needed. One index per place.
-struct list_free {
-    const std::uint32_t* needed;
-    kept_tables tables;
-    std::uint32_t places;
-    std::uint32_t* listed;
-    kept_exchange* exchange;
+/// Sets `chosen`. One index per block and place.
+struct choose_kept {
+    kept_choice choice;
 
     WARPAGG_HD void operator()(std::size_t i) const {
-        const std::uint32_t place = (exchange->first + static_cast<std::uint32_t>(i)) % places;
-        const std::uint32_t block = tables.block_at[place];
-        if (block == 0 || needed[block - 1] == 0) listed[device::atomic_add(&exchange->free, 1u)] = place + 1;
+        const kept_choice& c = choice;
+        if (i < c.blocks) {
+            c.chosen[i] = c.needed[i] != 0 && c.tables.place_of[i] == 0 ? 1 : 0;
+        } else {
+            const std::uint32_t block = c.tables.block_at[c.place(i)];
+            c.chosen[i] = block == 0 || c.needed[block - 1] == 0 ? 1 : 0;
+        }
+    }
+};
+
+/// Lists the chosen ones. One index per block and place.
+struct list_chosen {
+    kept_choice choice;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        const kept_choice& c = choice;
+        if (c.chosen[i] == 0) return;
+        if (i < c.blocks)
+            c.listed[c.rank[i]] = static_cast<std::uint32_t>(i) + 1;
+        else
+            c.listed[c.blocks + c.rank[i] - c.rank[c.blocks]] = c.place(i) + 1;
+    }
+};
+
+/// Lets the next fetch begin with other places. One index.
+struct turn_places {
+    kept_choice choice;
+
+    WARPAGG_HD void operator()(std::size_t) const {
+        *choice.first = (*choice.first + choice.count()) % choice.places;
     }
 };
 
@@ -122,19 +134,19 @@ struct kept_copies {
     }
 };
 
-/// Gives missing blocks free places: writes the old block of the place back, and fetches the new one.
+/// Writes the old blocks of the chosen places back, and fetches the chosen blocks to them.
 template <class W>
 struct exchange_blocks {
     kept_copies copies;
-    kept_tables tables;
-    const std::uint32_t *missing, *free;
-    const kept_exchange* exchange;
+    kept_choice choice;
     std::uint32_t warps;  ///< number of warps, which share the blocks
 
     WARPAGG_HD void operator()(const W& w, unsigned warp) const {
-        const std::uint32_t n = exchange->count();
+        const kept_tables& tables = choice.tables;
+        const std::uint32_t n = choice.count();
         for (std::uint32_t i = warp; i < n; i += warps) {
-            const std::uint32_t block = missing[i], place = free[i], old = tables.block_at[place - 1];
+            const std::uint32_t block = choice.listed[i], place = choice.listed[choice.blocks + i],
+                                old = tables.block_at[place - 1];
             if (old != 0) copies.write_back(w, old, place);
             copies.fetch(w, block, place);
             w.sync();
@@ -176,11 +188,12 @@ class kept_rows {
         places_ = (blocks + kept_share - 1) / kept_share;
         place_of_.resize(blocks);
         needed_.resize(blocks);
-        missing_.resize(blocks);
         block_at_.resize(places_);
-        free_.resize(places_);
-        exchange_.resize(1);
-        device.zero(exchange_.data(), 1);
+        chosen_.resize(blocks + places_);
+        listed_.resize(blocks + places_);
+        rank_.resize(blocks + places_ + 1);
+        first_.resize(1);
+        device.zero(first_.data(), 1);
         device.zero(place_of_.data(), blocks);
         device.zero(block_at_.data(), places_);
         copies_ = {};
@@ -201,17 +214,23 @@ class kept_rows {
     /// Fetches the needed blocks, as many as there are places.
     void fetch(Device& device) {
         if (blocks_ == 0) return;
-        const kept_tables tables = this->tables();
-        const auto places = static_cast<std::uint32_t>(places_);
-        kept_exchange* const exchange = exchange_.data();
-        device.for_each_index(1, begin_fetch{exchange, places});
-        device.for_each_index(blocks_, list_missing{needed_.data(), tables, missing_.data(), exchange});
-        device.for_each_index(places_, list_free{needed_.data(), tables, places, free_.data(), exchange});
+        const std::size_t n = blocks_ + places_;
+        const kept_choice choice{needed_.data(),
+                                 tables(),
+                                 static_cast<std::uint32_t>(blocks_),
+                                 static_cast<std::uint32_t>(places_),
+                                 first_.data(),
+                                 chosen_.data(),
+                                 rank_.data(),
+                                 listed_.data()};
+        device.for_each_index(n, choose_kept{choice});
+        device.prefix_sum(chosen_, rank_, n);
+        device.for_each_index(n, list_chosen{choice});
         using warp = typename Device::narrow_warp;
         const std::size_t warps = std::min(places_, device.resident_warps());
         device.template for_each_warp<warp>(
-            warps, exchange_blocks<warp>{copies_, tables, missing_.data(), free_.data(), exchange,
-                                         static_cast<std::uint32_t>(warps)});
+            warps, exchange_blocks<warp>{copies_, choice, static_cast<std::uint32_t>(warps)});
+        device.for_each_index(1, turn_places{choice});
     }
     /// Writes all copies back, and keeps none.
     void write_back(Device& device) {
@@ -226,8 +245,8 @@ class kept_rows {
     kept_tables tables() const { return {place_of_.data(), block_at_.data()}; }
 
     std::size_t blocks_ = 0, places_ = 0;
-    typename Device::template buffer<std::uint32_t> place_of_, needed_, missing_, block_at_, free_;
-    typename Device::template buffer<kept_exchange> exchange_;
+    typename Device::template buffer<std::uint32_t> place_of_, needed_, block_at_, chosen_, listed_, first_;
+    typename Device::template buffer<std::uint64_t> rank_;
     kept_copies copies_;
 };
 

@@ -20,7 +20,7 @@ struct parameter_storage {
     bool operator==(const parameter_storage&) const = default;
 };
 
-/// The device has memory for copies of one of this number of blocks in host memory: see `kept_rows`.
+/// The device has memory for copies of one of this number of blocks: see `kept_rows`.
 inline constexpr std::size_t kept_share = 8;
 
 /// The memory of a Gaussian's parameters, with their moments, in bytes.
@@ -32,15 +32,17 @@ struct parameter_bytes {
 /// that updated it last.
 constexpr parameter_bytes bytes_per_gaussian(int sh_degree, const parameter_storage& how) {
     parameter_bytes bytes;
+    std::size_t view_dependent = 0;
     for (std::size_t p = 0; p < parameter_count; ++p) {
         if (!has_parameter(p, sh_degree)) continue;
         const int values = parameter_width[p];
         const int moments = how.precision == moment_precision::full ? 2 * values : packed_width[p];
         const bool is_on_host = is_view_dependent(p) && !has_parameter(p, how.first_degree_on_host - 1);
-        (is_on_host ? bytes.on_host : bytes.on_device) +=
-            static_cast<std::size_t>(values + moments) * sizeof(float);
+        const std::size_t all = static_cast<std::size_t>(values + moments) * sizeof(float);
+        (is_on_host ? bytes.on_host : bytes.on_device) += all;
+        if (is_view_dependent(p)) view_dependent += all;
     }
-    bytes.on_device += (bytes.on_host + kept_share - 1) / kept_share;
+    if (bytes.on_host > 0) bytes.on_device += (view_dependent + kept_share - 1) / kept_share;
     return bytes;
 }
 

@@ -43,7 +43,7 @@ float& first_of(parameters& rows, std::size_t block) {
     const auto values = rows.values.write();
     const std::uint32_t place = values.kept_place[block];
     const std::size_t stride = gs::block_length * gs::width_of(sh3);
-    return place == 0 ? values[sh3][block * stride] : values.kept_of(sh3)[(place - 1) * stride];
+    return place == 0 ? values[sh3][block * stride] : values.sh[7][(place - 1) * stride];
 }
 
 }  // namespace
@@ -109,8 +109,8 @@ TEST_CASE("kept rows: moments move with their block") {
     const auto packed = rows.packed.write();
     const std::uint32_t place = rows.values.read().kept_place[20];
     REQUIRE(place != 0);
-    CHECK(packed.kept_of(sh3)[(place - 1) * stride] == 20);
-    packed.kept_of(sh3)[(place - 1) * stride] = 99;
+    CHECK(packed.sh[7][(place - 1) * stride] == 20);
+    packed.sh[7][(place - 1) * stride] = 99;
     rows.settle(device);
     CHECK(rows.packed.write()[sh3][20 * stride] == 99);
     CHECK(rows.packed.write()[sh3][21 * stride] == 21);

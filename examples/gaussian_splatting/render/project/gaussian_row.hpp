@@ -27,7 +27,7 @@ struct gaussian_row {
     WARPAGG_HD int degree_of(const parameter_arrays<Real>& gaussians, int sh_degree) const {
         return first < gaussians.gaussians_with_sh ? sh_degree : 0;
     }
-    /// Returns the place of the row's block in `parameter_arrays::kept`.
+    /// Returns the place of the row's block in the copies, or 0: see `parameter_arrays::kept_place`.
     template <class Real>
     WARPAGG_HD std::uint32_t kept_place(const parameter_arrays<Real>& gaussians) const {
         return gaussians.kept_place == nullptr ? 0 : gaussians.kept_place[first / block_length];
@@ -62,13 +62,6 @@ struct gaussian_row {
         return static_cast<std::ptrdiff_t>(aosoa_index(first, k + static_cast<std::size_t>(n), width));
     }
 
-    /// Returns the same lanes with the Gaussians of this place.
-    WARPAGG_HD gaussian_row at_place(std::uint32_t place) const {
-        gaussian_row row = *this;
-        row.first = (place - 1) * block_length + first % block_length;
-        return row;
-    }
-
   private:
     /// Whether one thread holds all lanes. It then reads and writes whole rows, which is faster
     /// than masked access, and inactive lanes write back the values that they have loaded.
@@ -76,25 +69,23 @@ struct gaussian_row {
     WARPAGG_HD mask_t<W> touched() const { return whole ? mask_t<W>(true) : active; }
 };
 
-/// Where the components of one parameter lie, or values that belong to them, for the Gaussians of a row.
+/// Where the components of a parameter lie, or values that belong to them, for the Gaussians of a row: in
+/// its arrays, or in copies.
 template <class W>
 struct row_place {
     gaussian_row<W> row;
     parameter p;
-    bool is_kept = false;
+    bool is_copy;
 
     /// `kept_place`: see `gaussian_row::kept_place`.
-    template <class Real>
-    WARPAGG_HD row_place(const gaussian_row<W>& of, const parameter_arrays<Real>& all, parameter which,
-                         std::uint32_t kept_place)
-        : row(of), p(which) {
-        if (kept_place == 0 || p <= parameter::sh0 || all.kept_of(p) == nullptr) return;
-        is_kept = true;
-        row = of.at_place(kept_place);
+    WARPAGG_HD row_place(const gaussian_row<W>& of, parameter which, std::uint32_t kept_place)
+        : row(of), p(which), is_copy(kept_place != 0 && which > parameter::sh0) {
+        if (is_copy) row.first = (kept_place - 1) * block_length + of.first % block_length;
     }
     template <class Real>
     WARPAGG_HD Real* array(const parameter_arrays<Real>& all) const {
-        return is_kept ? all.kept_of(p) : all[p];
+        // An index instead of a choice between two pointers saves instructions.
+        return p > parameter::sh0 ? all.sh[degree_of(p) + (is_copy ? 4 : 0)] : all[p];
     }
 };
 

@@ -167,7 +167,7 @@ struct project {
         for (unsigned band = 0; band < 4; ++band) {
             if (static_cast<int>(band) > degree) break;
             const unsigned size = 2 * band + 1;
-            const row_place<W> at(row, gaussians, sh_band(static_cast<int>(band)), kept_place);
+            const row_place<W> at(row, sh_band(static_cast<int>(band)), kept_place);
             WARPAGG_UNROLL
             for (unsigned m = 0; m < size; ++m)
                 sum +=

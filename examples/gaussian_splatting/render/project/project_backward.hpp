@@ -209,7 +209,7 @@ struct project_backward {
         for (int band = 0; band < 4; ++band) {
             if (band > degree) break;
             const int size = 2 * band + 1;
-            const row_place<W> at(row, gaussians, sh_band(band), kept_place);
+            const row_place<W> at(row, sh_band(band), kept_place);
             WARPAGG_UNROLL
             for (int m = 0; m < size; ++m) {
                 const int k = band * band + m;
