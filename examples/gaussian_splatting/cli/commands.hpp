@@ -15,7 +15,7 @@ namespace gs::cli {
 /// @{
 void train(const settings& s);
 /// Trains with this engine and accumulator, regardless of the device and the determinism in `s`, as
-/// one of the ranks. Only the first rank prints, and writes files.
+/// one of the ranks. Only the first rank prints, and writes files other than renders.
 void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator gradient,
            ranks::communicator& ranks);
 void evaluate(const settings& s);

@@ -47,16 +47,22 @@ std::vector<pages::view_images> typical_held_out_views(const held_out_images& vi
 
 std::vector<pages::view_images> typical_training_views(train::engine& engine, const scene& scene,
                                                        const features::feature_set& features,
-                                                       const std::array<float, 3>& background) {
+                                                       const std::array<float, 3>& background,
+                                                       ranks::communicator& ranks) {
     constexpr std::size_t most_views = 12;
     const features::show_function show = features.show_on_host(engine, scene);
     const auto images_of = [&](std::size_t view) {
         return evaluate::training_view(engine, scene, show, background, view);
     };
     const std::size_t count = scene.train.size(), rendered = std::min(count, most_views);
-    std::vector<double> psnr;
-    for (std::size_t i = 0; i < rendered; ++i) psnr.push_back(images_of(i * count / rendered).psnr());
+    const ranks::shares shares(rendered, 1, ranks.count());
+    const ranks::share own = shares.of(ranks.rank());
+    std::vector<double> psnr(rendered);
+    for (std::size_t i = own.first; i < own.last; ++i) psnr[i] = images_of(i * count / rendered).psnr();
+    const auto array = ranks::shared_array::of(psnr.data(), 1, rendered);
+    ranks.gather(shares, {&array, 1});
     std::vector<pages::view_images> chosen;
+    if (!ranks.is_first()) return chosen;
     for (const auto& [rank, label] : pages::typical_views(psnr)) {
         const std::size_t view = rank * count / rendered;
         const gs::view& shown = scene.train[view];

@@ -10,6 +10,7 @@
 #include "../engine/engine.hpp"
 #include "../features/resolve.hpp"
 #include "../pages/run_record.hpp"
+#include "../ranks/communicator.hpp"
 
 namespace gs::cli {
 
@@ -33,10 +34,12 @@ held_out_images held_out_images_of(const std::filesystem::path& folder,
 std::vector<pages::view_images> typical_held_out_views(const held_out_images& views);
 
 /// Returns the worst, the median and the best of at most 12 training views of `scene`, which
-/// `engine` must hold. Renders each of these views.
+/// `engine` must hold. Renders each of these views. The ranks share this work. All must call this
+/// function, and only the first one gets views.
 std::vector<pages::view_images> typical_training_views(train::engine& engine, const scene& scene,
                                                        const features::feature_set& features,
-                                                       const std::array<float, 3>& background);
+                                                       const std::array<float, 3>& background,
+                                                       ranks::communicator& ranks);
 
 /// Returns the name of the file or folder at a path, such as ".", without the folders above it.
 std::string last_part(const std::filesystem::path& relative);

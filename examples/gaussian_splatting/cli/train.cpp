@@ -63,16 +63,17 @@ train::train_options options_of(const settings& s, const scene& scene, const com
 class training_run {
   public:
     /// Loads the scene from `source`, decides which effects to simulate, and passes the first model
-    /// to the engine. Only the first of the ranks writes files.
+    /// to the engine. Only the first of the ranks writes files, apart from renders of held-out views.
     training_run(const settings& s, const load_options& source, std::unique_ptr<train::engine> engine,
                  accumulator gradient, ranks::communicator& ranks);
     training_run(const training_run&) = delete;
     training_run& operator=(const training_run&) = delete;
 
-    void train();
-    /// The functions below are for the first rank, which is the only one by then.
-    /// Measures the model on the held-out views and writes their renders.
+    /// Returns false if training was interrupted, except in the first rank, which throws.
+    bool train();
+    /// Measures the model on the held-out views and writes their renders. The ranks share this work.
     void measure();
+    /// The functions below are for the first rank, which is the only one by then.
     void write_reports();
     /// Writes the pages for a browser.
     void write_pages();
@@ -141,8 +142,9 @@ class training_run {
     bool replaces_ = s_.overwrite;         ///< whether an earlier run is still to be set aside
     progress_bar bar_;
     training_measures measures_;
-    nlohmann::ordered_json metrics_;     ///< content of metrics.json
-    std::optional<live_training> live_;  ///< while training runs, with --viewer
+    std::vector<pages::view_images> training_images_;  ///< for the report, if no view is held out
+    nlohmann::ordered_json metrics_;                   ///< content of metrics.json
+    std::optional<live_training> live_;                ///< while training runs, with --viewer
 };
 
 training_run::training_run(const settings& s, const load_options& source,
@@ -276,7 +278,8 @@ void training_run::save(int iteration) {
 
 void training_run::test(int iteration) {
     options_.features.before_evaluation(*engine_, scene_);
-    const auto report = evaluate::measure_held_out_views(*engine_, scene_, options_.background.color);
+    const auto report =
+        evaluate::measure_held_out_views(*engine_, scene_, options_.background.color, {.ranks = &ranks_});
     measures_.tests.push_back({{"iteration", iteration},
                                {"seconds", measures_.last.seconds},
                                {"psnr", report.psnr()},
@@ -318,13 +321,17 @@ void training_run::end_early() {
                                    std::to_string(last) + (s_.seconds ? " instead of --seconds" : ""));
 }
 
-void training_run::train() {
+bool training_run::train() {
     signals_.emplace();
     begin_live_view();
     measures_.result = train::train(*engine_, scene_, options_, events());
-    if (!ranks_.is_first()) return;
     const train::train_result& result = measures_.result;
-    if (result.iterations < result.plan.last()) end_early();
+    const bool is_complete = result.iterations >= result.plan.last();
+    if (!ranks_.is_first()) {
+        signals_.reset();
+        return is_complete;
+    }
+    if (!is_complete) end_early();
     live_.reset();
     warn_of_missed_time();
     options_.schedule.iterations = result.plan;
@@ -335,6 +342,7 @@ void training_run::train() {
     measures_.pairs_per_iteration = static_cast<double>(engine_->profile().pairs()) / result.iterations;
     measures_.gaussians = engine_->count();
     measures_.traffic = ranks_.traffic();
+    return true;
 }
 
 void training_run::measure() {
@@ -348,9 +356,13 @@ void training_run::measure() {
         {.folder = renders_folder(),
          .fits_exposure = s_.fit_exposure || options_.features.is_on("exposure"),
          .refines_poses = options_.features.is_on("poses") || options_.features.is_on("motion"),
-         .network = lpips_.get()});
+         .network = lpips_.get(),
+         .ranks = &ranks_});
     measures_.evaluate_seconds = evaluating.seconds();
     measures_.peak_device_bytes = engine_->profile().peak_device_bytes();
+    if (scene_.test.empty())
+        training_images_ =
+            typical_training_views(*engine_, scene_, options_.features, options_.background.color, ranks_);
 }
 
 void training_run::write_reports() {
@@ -370,9 +382,8 @@ void training_run::write_pages() {
     const std::string name = last_part(s_.scene.data);
     const std::array<float, 3>& background = options_.background.color;
     pages::report report{{name, metrics_, resolved_settings()}, {}, !scene_.test.empty()};
-    report.views = report.are_held_out
-                       ? typical_held_out_views(held_out_images_of(output_->path(), metrics_))
-                       : typical_training_views(*engine_, scene_, options_.features, background);
+    report.views = report.are_held_out ? typical_held_out_views(held_out_images_of(output_->path(), metrics_))
+                                       : training_images_;
     atomic_file_write(output_->path() / "report.html",
                       [&](std::ostream& out) { pages::write_report_page(out, report); });
     if (!s_.no_viewer)
@@ -413,7 +424,7 @@ fs::path training_run::model_file(int iteration) const {
 }
 
 fs::path training_run::renders_folder() const {
-    return output_->path() / "test" / ("ours_" + std::to_string(measures_.result.iterations));
+    return fs::path(s_.output) / "test" / ("ours_" + std::to_string(measures_.result.iterations));
 }
 
 }  // namespace
@@ -429,9 +440,9 @@ void train(const settings& s, std::unique_ptr<train::engine> engine, accumulator
            ranks::communicator& ranks) {
     require_no_earlier_run(s);
     training_run run(s, scene_with_poses(s), std::move(engine), gradient, ranks);
-    run.train();
-    if (!ranks.is_first()) return;
+    if (!run.train()) return;
     run.measure();
+    if (!ranks.is_first()) return;
     run.write_reports();
     run.write_pages();
     run.print_summary();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <type_traits>
 
 #include "../core/parallel.hpp"
 #include "../scene/view_photo.hpp"
@@ -49,11 +50,10 @@ class batch {
 
     std::size_t size() const { return renders_.size(); }
 
-    /// Appends the measurements of `count` views, which begin with `first`.
-    void measure(std::size_t first, std::size_t count, std::vector<view_quality>& to) {
+    /// Sets the measurements of `count` views, which begin with `first`, in those of all views.
+    void measure(std::size_t first, std::size_t count, std::vector<view_values>& to) {
         for (std::size_t i = 0; i < count; ++i)
-            to.push_back(
-                {scene_.test[first + i].name, engine_.measure(first + i, background_, &renders_[i])});
+            to[first + i].quality = engine_.measure(first + i, background_, &renders_[i]);
         for (std::size_t i = 0; options_.refines_poses && i < count; ++i)
             refined_[i] =
                 engine_.render(engine_.cameras().refined_camera(first + i, background_), background_);
@@ -80,7 +80,7 @@ class batch {
     }
 
   private:
-    void measure_on_host(std::size_t first, std::size_t i, view_quality& to) {
+    void measure_on_host(std::size_t first, std::size_t i, view_values& to) {
         const view_photo decoded(scene_.test[first + i]);
         const image& photo = decoded.pixels();
         const image_pair& pair = pairs_[i] = comparable(renders_[i], photo, background_);
@@ -100,6 +100,14 @@ class batch {
     std::vector<std::vector<float>> renders_, refined_;  ///< not clamped
     std::vector<image_pair> pairs_;
 };
+
+/// Gives all ranks the measurements of the others.
+void gather(ranks::communicator& all, const ranks::shares& shares, std::vector<view_values>& values) {
+    static_assert(std::is_trivially_copyable_v<view_values>);
+    const ranks::traffic_counter::scope scope(all.traffic(), ranks::purpose::other);
+    const auto array = ranks::shared_array::of(values.data(), 1, values.size());
+    all.gather(shares, {&array, 1});
+}
 
 }  // namespace
 
@@ -130,16 +138,25 @@ held_out_report measure_held_out_views(train::engine& engine, const scene& scene
     held_out_report report;
     if (options.network) report.lpips_black = options.network->black();
     const bool writes = !options.folder.empty();
-    if (writes) {
+    ranks::communicator alone;
+    ranks::communicator& all = options.ranks != nullptr ? *options.ranks : alone;
+    if (writes && all.is_first()) {
         std::filesystem::create_directories(options.folder / "renders");
         std::filesystem::create_directories(options.folder / "gt");
     }
+    if (writes) all.barrier();
+    // Consecutive views, so that each rank loads streamed photos ahead for itself only.
+    const ranks::shares shares(scene.test.size(), 1, all.count());
+    const ranks::share own = shares.of(all.rank());
+    std::vector<view_values> values(scene.test.size());
     batch views(engine, scene, background, options);
-    for (std::size_t first = 0; first < scene.test.size(); first += views.size()) {
-        const std::size_t count = std::min(views.size(), scene.test.size() - first);
-        views.measure(first, count, report.views);
+    for (std::size_t first = own.first; first < own.last; first += views.size()) {
+        const std::size_t count = std::min(views.size(), own.last - first);
+        views.measure(first, count, values);
         if (writes) views.write(first, count);
     }
+    gather(all, shares, values);
+    for (std::size_t v = 0; v < values.size(); ++v) report.views.push_back({values[v], scene.test[v].name});
     return report;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../engine/engine.hpp"
+#include "../ranks/communicator.hpp"
 #include "lpips/lpips.hpp"
 #include "view_measures.hpp"
 
@@ -38,10 +39,16 @@ struct held_out_options {
     bool fits_exposure = false;              ///< computes `fitted_psnr`
     bool refines_poses = false;              ///< computes `refined_psnr`
     const lpips_network* network = nullptr;  ///< computes LPIPS if set
+    /// The processes that measure together, or null for one. All must call `measure_held_out_views`
+    /// with the same model and views.
+    ranks::communicator* ranks = nullptr;
 };
 
 /// Measures every held-out view of `scene`, which `engine` must hold. If `options.folder` is set,
 /// writes each render to `renders` in that folder and its photo to `gt`: see `render_names`.
+///
+/// With several ranks, each one measures and writes a share of the views. All get the whole report, when
+/// all files are written. No rank writes files before the first one has called this function.
 ///
 /// Masked pixels do not count. LPIPS, which compares neighborhoods, shows the background there in
 /// both images.

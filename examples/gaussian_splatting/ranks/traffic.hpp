@@ -22,7 +22,7 @@ enum class purpose : std::size_t {
     effects,     ///< the values that effects learn from a view
     gaussians,   ///< the parameters of all Gaussians, after steps
     scores,      ///< renders of several views, by which Gaussians are pruned or added
-    other,       ///< losses, faults, the work of tile rows, and the agreement to go on
+    other,       ///< losses, faults, the work of tile rows, measurements, and the agreement to go on
     connection,  ///< values by which the devices connect
     count
 };

@@ -15,7 +15,7 @@ using gs::evaluate::view_quality;
 namespace {
 
 view_quality view(const std::string& name, double square_error, double ssim) {
-    return {name, {.absolute_error = 0, .square_error = square_error, .ssim = ssim}};
+    return {{.quality = {.absolute_error = 0, .square_error = square_error, .ssim = ssim}}, name};
 }
 
 held_out_report two_views() {

@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <string>
-#include <thread>
 
 #include "../cli/run_program.hpp"
+#include "rank_processes.hpp"
 
 using namespace gs_test;
 
@@ -68,23 +67,8 @@ void check_equal_models(const std::string& scene, const words& options, int widt
     CHECK(read_json(output(1) / "metrics.json").at("gaussians") > 3000);
 }
 
-/// The processes that this one has started.
-std::vector<pid_t> children_of(pid_t process) {
-    const std::string id = std::to_string(process);
-    std::ifstream list("/proc/" + id + "/task/" + id + "/children");
-    std::vector<pid_t> all;
-    for (pid_t child = 0; list >> child;) all.push_back(child);
-    return all;
-}
-
 fs::path checkpoint(const fs::path& output, int iteration) {
     return output / "checkpoints" / ("iteration_" + std::to_string(iteration) + ".safetensors");
-}
-
-void wait_for(const fs::path& file) {
-    for (int i = 0; i < 6000 && !fs::exists(file); ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    REQUIRE(fs::exists(file));
 }
 
 words small_run(const fs::path& output, int ranks) {
@@ -111,22 +95,6 @@ TEST_CASE("ranks: any number of them writes the same model, with exposures and S
     check_equal_models(
         "synthetic:spheres,exposure=0.4,gloss=0.7,vignetting=0.4,views=8",
         density_control + words{"--effects", "auto,+exposure,+direction,+poses,+motion,+moving,+vignetting"});
-}
-
-TEST_CASE("ranks: any number of them learns the same poses, and the first refines those of held-out photos") {
-    const temporary_folder folder;
-    const auto train_in = [&](int ranks) {
-        const fs::path output = folder / std::to_string(ranks);
-        check_success(short_training("synthetic:spheres,poses=1,views=8", output, ranks, 32) +
-                          words{"-i", "40", "--eval", "--effects", "poses"},
-                      "2");
-        return output;
-    };
-    const fs::path one = train_in(1), two = train_in(2);
-    CHECK(read_file(two / "poses.json") == read_file(one / "poses.json"));
-    const double refined = read_json(two / "metrics.json").at("refined_psnr");
-    CHECK(refined ==
-          doctest::Approx(read_json(one / "metrics.json").at("refined_psnr").get<double>()).epsilon(1e-3));
 }
 
 TEST_CASE("ranks: any number of them revises the SH degree alike, from equal measurements") {
