@@ -135,6 +135,19 @@ TEST_CASE("from_points: points that coincide, and too few of them, still get a s
     }
 }
 
+TEST_CASE("from_points: consecutive Gaussians have some of all places") {
+    const gs::gaussians model = gs::from_points(regular_grid(40, 1), 0, all, 0);
+    const std::size_t part = model.count() / 10;
+    for (std::size_t first = 0; first + part <= model.count(); first += part) {
+        std::size_t in_octant[8] = {};
+        for (std::size_t i = first; i < first + part; ++i) {
+            const float* at = &model.mean[3 * i];
+            ++in_octant[(at[0] < 20 ? 0 : 1) + (at[1] < 20 ? 0 : 2) + (at[2] < 20 ? 0 : 4)];
+        }
+        CHECK(std::ranges::count(in_octant, 0u) == 0);
+    }
+}
+
 TEST_CASE("from_points: neighbors in the order of the Gaussians are close in space") {
     std::vector<gs::colored_point> points = regular_grid(16, 1);
     std::ranges::reverse(points);
