@@ -12,7 +12,7 @@
 
 namespace gs::train {
 
-/// An array in host memory, and copies of some of its blocks in device memory.
+/// An array of SH coefficients or their moments, and copies of some of its blocks in device memory.
 struct kept_array {
     std::uint32_t *all, *kept;
     std::uint32_t width;  ///< words of 32 bits per Gaussian
