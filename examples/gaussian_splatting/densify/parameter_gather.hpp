@@ -101,7 +101,7 @@ class parameter_gather {
     /// block length or all, have SH coefficients of degrees 1 to `sh_degree`, which are zero if the
     /// origin has none. Does not wait for the device.
     void run(trained_parameters<Device>& all, std::size_t count, std::size_t with_sh, int sh_degree) {
-        all.settle(device_);
+        all.flush_cache(device_);
         const std::size_t with_sh_before = all.values.gaussians_with_sh();
         const auto gather_all = [&](auto& memory, bool are_moments) {
             for (std::size_t p = 0; p < parameter_count; ++p)

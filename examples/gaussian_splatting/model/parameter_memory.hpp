@@ -52,16 +52,16 @@ class parameter_memory {
             places_[p] = place;
         }
     }
-    /// Reserves device memory for copies of this number of blocks of all SH coefficients above degree 0, or
-    /// frees it. `place`: see `parameter_arrays::kept_place`.
-    void keep_blocks(std::size_t blocks, const std::uint32_t* place) {
+    /// Reserves device memory for a cache with this number of slots for blocks of all SH coefficients above
+    /// degree 0, or frees it. `slot_of`: see `parameter_arrays::cache_slot`.
+    void reserve_cache(std::size_t slots, const std::uint32_t* slot_of) {
         for (std::size_t p = 0; p < parameter_count; ++p) {
-            const bool has_copies = is_view_dependent(p) && arrays_[p].size() > 0;
-            const std::size_t n = has_copies ? blocks * block_length * width(p) : 0;
-            if (n < kept_[p].size()) kept_[p] = {};
-            kept_[p].resize(n);
+            const bool is_in_cache = is_view_dependent(p) && arrays_[p].size() > 0;
+            const std::size_t n = is_in_cache ? slots * block_length * width(p) : 0;
+            if (n < cached_[p].size()) cached_[p] = {};
+            cached_[p].resize(n);
         }
-        kept_place_ = blocks > 0 ? place : nullptr;
+        cache_slot_ = slots > 0 ? slot_of : nullptr;
     }
     /// Returns whether an array lies in host memory.
     bool is_on_host() const {
@@ -69,11 +69,11 @@ class parameter_memory {
             if (places_[p] == device::memory_place::host && arrays_[p].size() > 0) return true;
         return false;
     }
-    /// Calls f(array, copies, width) for each array with copies of its blocks.
+    /// Calls f(array, cached, width) for each array with blocks in the cache.
     template <class F>
-    void for_each_kept(const F& f) const {
+    void for_each_cached(const F& f) const {
         for (std::size_t p = 0; p < parameter_count; ++p)
-            if (kept_[p].size() > 0) f(arrays_[p].data(), kept_[p].data(), width(p));
+            if (cached_[p].size() > 0) f(arrays_[p].data(), cached_[p].data(), width(p));
     }
     /// Frees the memory of one array, or of all.
     /// @{
@@ -186,19 +186,19 @@ class parameter_memory {
 
     template <class Real>
     parameter_arrays<Real> pointers() const {
-        const auto &a = arrays_, &k = kept_;
+        const auto &a = arrays_, &c = cached_;
         return {a[0].data(),
                 a[1].data(),
                 a[2].data(),
                 a[3].data(),
-                {a[4].data(), a[5].data(), a[6].data(), a[7].data(), nullptr, k[5].data(), k[6].data(),
-                 k[7].data()},
+                {a[4].data(), a[5].data(), a[6].data(), a[7].data(), nullptr, c[5].data(), c[6].data(),
+                 c[7].data()},
                 gaussians_with_sh_,
-                kept_place_};
+                cache_slot_};
     }
 
-    std::array<buffer, parameter_count> arrays_, kept_;
-    const std::uint32_t* kept_place_ = nullptr;
+    std::array<buffer, parameter_count> arrays_, cached_;
+    const std::uint32_t* cache_slot_ = nullptr;
     std::array<device::memory_place, parameter_count> places_{};
     std::size_t gaussians_with_sh_ = 0;
 };

@@ -48,13 +48,13 @@ struct parameter_arrays {
     Real* log_scale = nullptr;
     Real* quaternion = nullptr;  ///< w x y z
     Real* opacity = nullptr;     ///< logit
-    Real* sh[8] = {};            ///< by SH degree: RGB of each coefficient; copies of degree d at 4 + d
+    Real* sh[8] = {};            ///< by SH degree: RGB of each coefficient; the cache of degree d at 4 + d
     /// The number of Gaussians with SH coefficients above degree 0, which precede all others. It is
     /// a multiple of the block length, or all. The others have the same color in all directions.
     std::size_t gaussians_with_sh = std::numeric_limits<std::size_t>::max();
-    /// The place of each block in the copies, which replace those blocks of degrees 1 to 3 that they have:
-    /// 1 plus its index, or 0 if they lack it. Null without copies.
-    const std::uint32_t* kept_place = nullptr;
+    /// The slot of each block in the cache, which replaces those blocks of degrees 1 to 3 that it has: 1
+    /// plus its index, or 0 if it lacks the block. Null without a cache.
+    const std::uint32_t* cache_slot = nullptr;
 
     WARPAGG_HD constexpr Real* operator[](parameter p) const {
         switch (p) {

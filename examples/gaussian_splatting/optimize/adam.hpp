@@ -56,7 +56,7 @@ struct adam {
         const raster::gaussian_row<W>& row;
         real first_left, second_left;  ///< decay during the missed steps: beta1^k, beta2^k
         real drift;                    ///< movement in these steps, in units of rate m / sqrt(v)
-        std::uint32_t kept_place;      ///< see `parameter_arrays::kept_place`
+        std::uint32_t cache_slot;      ///< see `parameter_arrays::cache_slot`
         /// The compact second moment of all SH coefficients, before and after SH degree 0 is updated.
         mutable real color_before, color_after;
 
@@ -173,7 +173,7 @@ struct adam {
         }
 
         using place = raster::row_place<W>;
-        WARPAGG_HD place place_of(parameter p) const { return {row, p, kept_place}; }
+        WARPAGG_HD place place_of(parameter p) const { return {row, p, cache_slot}; }
 
         /// Returns 1 / sqrt(v), where v may be zero.
         static WARPAGG_HD real inverse_root(const real& v) {
@@ -220,7 +220,7 @@ struct adam {
                 first_left,
                 second_left,
                 constant<real>(9.0452374997021932) * (1 - r_left),
-                row.kept_place(values),
+                row.cache_slot(values),
                 real(0),
                 real(0)};
     }

@@ -20,15 +20,15 @@ struct parameter_storage {
     bool operator==(const parameter_storage&) const = default;
 };
 
-/// The device has memory for copies of one of this number of blocks: see `kept_rows`.
-inline constexpr std::size_t kept_share = 8;
+/// The device has a cache with a slot for one in this number of blocks: see `block_cache`.
+inline constexpr std::size_t blocks_per_slot = 8;
 
 /// The memory of a Gaussian's parameters, with their moments, in bytes.
 struct parameter_bytes {
     std::size_t on_device = 0, on_host = 0;
 };
 
-/// Returns the memory of a Gaussian of an SH degree, with its share of the copies, and without the step
+/// Returns the memory of a Gaussian of an SH degree, with its share of the cache, and without the step
 /// that updated it last.
 constexpr parameter_bytes bytes_per_gaussian(int sh_degree, const parameter_storage& how) {
     parameter_bytes bytes;
@@ -42,7 +42,7 @@ constexpr parameter_bytes bytes_per_gaussian(int sh_degree, const parameter_stor
         (is_on_host ? bytes.on_host : bytes.on_device) += all;
         if (is_view_dependent(p)) view_dependent += all;
     }
-    if (bytes.on_host > 0) bytes.on_device += (view_dependent + kept_share - 1) / kept_share;
+    if (bytes.on_host > 0) bytes.on_device += (view_dependent + blocks_per_slot - 1) / blocks_per_slot;
     return bytes;
 }
 

@@ -11,7 +11,7 @@
 #include "../model/parameter_memory.hpp"
 #include "../render/project/shown_blocks.hpp"
 #include "adam.hpp"
-#include "kept_rows.hpp"
+#include "block_cache.hpp"
 #include "parameter_storage.hpp"
 
 namespace gs::train {
@@ -28,7 +28,7 @@ struct trained_parameters {
     /// @}
     /// The last step that updated each Gaussian.
     typename Device::template buffer<std::uint32_t> last_step;
-    kept_rows<Device> kept;
+    block_cache<Device> cache;
 
     /// Calls f(array) for `values` and each array of moments that is in use.
     template <class F>
@@ -47,48 +47,48 @@ struct trained_parameters {
     }
     /// Replaces the values, and frees the moments. Waits for the device.
     void set_values(Device& device, const gaussians& model) {
-        stop_keeping();
+        drop_cache();
         free_moments();
         values.upload(device, model);
     }
     /// Returns the values of the first `count` Gaussians. Waits for the device.
     gaussians get_values(Device& device, std::size_t count, int sh_degree) {
-        settle(device);
+        flush_cache(device);
         return values.download(device, count, sh_degree);
     }
     /// See `parameter_memory::change_sh_degree`.
     void change_sh_degree(Device& device, int from, int to) {
-        settle(device);
+        flush_cache(device);
         for_each([&](auto& memory) { memory.change_sh_degree(device, from, to); });
     }
     /// Moves the values to the places of this storage. Moments follow, unless their precision changes: then
     /// they are freed.
     void set_storage(Device& device, const parameter_storage& how) {
-        settle(device);
+        flush_cache(device);
         if (how.precision != precision) free_moments();
         precision = how.precision;
         values.move_to_host_from(device, how.first_degree_on_host);
         for (auto* moments : {&first, &second}) moments->move_to_host_from(device, how.first_degree_on_host);
         packed.move_to_host_from(device, how.first_degree_on_host);
     }
-    /// Copies the blocks in host memory that the view shows: see `kept_rows`.
+    /// Fetches the blocks that the view shows, if some parameters lie in host memory: see `block_cache`.
     void fetch(Device& device, const camera& view) {
-        if (kept.blocks() == 0) return;
+        if (cache.blocks() == 0) return;
         raster::find_shown_blocks(device, values.read().mean, values.gaussians_with_sh(), view,
-                                  kept.needed());
-        kept.fetch(device);
+                                  cache.needed());
+        cache.fetch(device);
     }
-    /// Writes copies back and frees them. Must precede all accesses to arrays except by kernels that heed
-    /// `parameter_arrays::kept_place`.
-    void settle(Device& device) {
-        kept.write_back(device);
-        stop_keeping();
+    /// Writes the cache back and frees it. Must precede all accesses to arrays except by kernels that heed
+    /// `parameter_arrays::cache_slot`.
+    void flush_cache(Device& device) {
+        cache.write_back(device);
+        drop_cache();
     }
     /// Allocates what only steps need, because the storage of a new model is known only then: moments,
-    /// which are zero at first, and memory for the copies of `fetch`.
+    /// which are zero at first, and memory for the cache.
     void require_memory(Device& device, std::size_t count, int sh_degree) {
         if (last_step.size() != count) {
-            settle(device);
+            flush_cache(device);
             for_each_moment([&](auto& moments) {
                 moments.resize(count, values.gaussians_with_sh(), sh_degree);
                 moments.zero(device);
@@ -98,15 +98,15 @@ struct trained_parameters {
         }
         const std::size_t blocks =
             values.is_on_host() ? in_whole_blocks(values.gaussians_with_sh()) / block_length : 0;
-        if (kept.blocks() == blocks) return;
-        const std::size_t places = kept.reset(device, blocks);
+        if (cache.blocks() == blocks) return;
+        const std::size_t slots = cache.reset(device, blocks);
         for_each([&](auto& memory) {
-            memory.keep_blocks(places, kept.place_of());
-            kept.add(memory);
+            memory.reserve_cache(slots, cache.slot_of());
+            cache.add(memory);
         });
     }
     /// Returns a number that determines the memory and the launches of a step, for graph keys.
-    std::size_t memory_key() const { return 2 * values.gaussians_with_sh() + (kept.blocks() > 0 ? 1 : 0); }
+    std::size_t memory_key() const { return 2 * values.gaussians_with_sh() + (cache.blocks() > 0 ? 1 : 0); }
     /// Returns whether all arrays have the sizes for this number of Gaussians and this SH degree.
     bool fits(std::size_t count, int sh_degree) {
         bool fits = last_step.size() == count;
@@ -134,13 +134,13 @@ struct trained_parameters {
     }
     /// Appends all arrays, for `device::gather`.
     void share(Device& device, std::vector<ranks::shared_array>& arrays) {
-        settle(device);
+        flush_cache(device);
         for_each([&](auto& memory) { memory.share(arrays); });
         arrays.push_back(ranks::shared_array::of(last_step.data(), block_length, last_step.size()));
     }
     /// Saves or loads all parameters. Loading takes over the precision. Waits for the device.
     void exchange(state_archive& archive, Device& device) {
-        settle(device);
+        flush_cache(device);
         const auto exchange_memory = [&](const char* name, auto& memory) {
             const state_archive::scope scope(archive, name);
             memory.exchange(archive, device);
@@ -161,9 +161,9 @@ struct trained_parameters {
     }
 
   private:
-    void stop_keeping() {
-        kept.stop();
-        for_each([](auto& memory) { memory.keep_blocks(0, nullptr); });
+    void drop_cache() {
+        cache.drop();
+        for_each([](auto& memory) { memory.reserve_cache(0, nullptr); });
     }
     void free_moments() {
         for (auto* moments : {&first, &second}) moments->free();

@@ -44,7 +44,7 @@ TEST_CASE("storage: the memory of a Gaussian by precision and by the SH degrees 
     };
     CHECK(bytes(3, full, 4).on_device == 708);
     CHECK(bytes(3, full, 4).on_host == 0);
-    CHECK(bytes(3, full, 3).on_device == 708 - 21 * 12 + 68);  // with copies of an eighth
+    CHECK(bytes(3, full, 3).on_device == 708 - 21 * 12 + 68);  // with a cache for an eighth
     CHECK(bytes(3, full, 3).on_host == 21 * 12);
     CHECK(bytes(3, compact, 4).on_device == 348);
     CHECK(bytes(3, compact, 1).on_device == 108 + 30);

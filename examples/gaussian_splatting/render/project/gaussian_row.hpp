@@ -27,10 +27,10 @@ struct gaussian_row {
     WARPAGG_HD int degree_of(const parameter_arrays<Real>& gaussians, int sh_degree) const {
         return first < gaussians.gaussians_with_sh ? sh_degree : 0;
     }
-    /// Returns the place of the row's block in the copies, or 0: see `parameter_arrays::kept_place`.
+    /// Returns the slot of the row's block in the cache, or 0: see `parameter_arrays::cache_slot`.
     template <class Real>
-    WARPAGG_HD std::uint32_t kept_place(const parameter_arrays<Real>& gaussians) const {
-        return gaussians.kept_place == nullptr ? 0 : gaussians.kept_place[first / block_length];
+    WARPAGG_HD std::uint32_t cache_slot(const parameter_arrays<Real>& gaussians) const {
+        return gaussians.cache_slot == nullptr ? 0 : gaussians.cache_slot[first / block_length];
     }
     /// Loads the components k to k + N - 1 of each Gaussian from an array with `width` components
     /// per Gaussian. The values in inactive lanes are unspecified.
@@ -70,22 +70,22 @@ struct gaussian_row {
 };
 
 /// Where the components of a parameter lie, or values that belong to them, for the Gaussians of a row: in
-/// its arrays, or in copies.
+/// its arrays, or in the cache.
 template <class W>
 struct row_place {
     gaussian_row<W> row;
     parameter p;
-    bool is_copy;
+    bool is_cached;
 
-    /// `kept_place`: see `gaussian_row::kept_place`.
-    WARPAGG_HD row_place(const gaussian_row<W>& of, parameter which, std::uint32_t kept_place)
-        : row(of), p(which), is_copy(kept_place != 0 && which > parameter::sh0) {
-        if (is_copy) row.first = (kept_place - 1) * block_length + of.first % block_length;
+    /// `cache_slot`: see `gaussian_row::cache_slot`.
+    WARPAGG_HD row_place(const gaussian_row<W>& of, parameter which, std::uint32_t cache_slot)
+        : row(of), p(which), is_cached(cache_slot != 0 && which > parameter::sh0) {
+        if (is_cached) row.first = (cache_slot - 1) * block_length + of.first % block_length;
     }
     template <class Real>
     WARPAGG_HD Real* array(const parameter_arrays<Real>& all) const {
         // An index instead of a choice between two pointers saves instructions.
-        return p > parameter::sh0 ? all.sh[degree_of(p) + (is_copy ? 4 : 0)] : all[p];
+        return p > parameter::sh0 ? all.sh[degree_of(p) + (is_cached ? 4 : 0)] : all[p];
     }
 };
 

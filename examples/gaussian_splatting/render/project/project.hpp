@@ -161,13 +161,13 @@ struct project {
         const vec3<real> direction = unit(mean - camera.center).direction;
         real basis[16]{};
         sh_basis(degree, direction, basis);
-        const std::uint32_t kept_place = degree > 0 ? row.kept_place(gaussians) : 0;
+        const std::uint32_t cache_slot = degree > 0 ? row.cache_slot(gaussians) : 0;
         vec3<real> sum(constant<real>(0.5));
         WARPAGG_UNROLL
         for (unsigned band = 0; band < 4; ++band) {
             if (static_cast<int>(band) > degree) break;
             const unsigned size = 2 * band + 1;
-            const row_place<W> at(row, sh_band(static_cast<int>(band)), kept_place);
+            const row_place<W> at(row, sh_band(static_cast<int>(band)), cache_slot);
             WARPAGG_UNROLL
             for (unsigned m = 0; m < size; ++m)
                 sum +=

@@ -204,12 +204,12 @@ struct project_backward {
         const vec3<real> direction = sight.direction;
         real basis[16]{}, weight[16]{};
         sh_basis(degree, direction, basis);
-        const std::uint32_t kept_place = degree > 0 ? row.kept_place(gaussians) : 0;
+        const std::uint32_t cache_slot = degree > 0 ? row.cache_slot(gaussians) : 0;
         WARPAGG_UNROLL
         for (int band = 0; band < 4; ++band) {
             if (band > degree) break;
             const int size = 2 * band + 1;
-            const row_place<W> at(row, sh_band(band), kept_place);
+            const row_place<W> at(row, sh_band(band), cache_slot);
             WARPAGG_UNROLL
             for (int m = 0; m < size; ++m) {
                 const int k = band * band + m;

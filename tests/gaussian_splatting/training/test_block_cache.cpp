@@ -33,22 +33,24 @@ parameters on_host(gs::device::cpu& device, gs::train::moment_precision precisio
 }
 
 void need(parameters& rows, const std::set<std::size_t>& blocks) {
-    for (std::size_t b = 0; b < rows.kept.blocks(); ++b) rows.kept.needed()[b] = blocks.contains(b) ? 1 : 0;
+    for (std::size_t b = 0; b < rows.cache.blocks(); ++b) rows.cache.needed()[b] = blocks.contains(b) ? 1 : 0;
 }
 
-bool is_kept(const parameters& rows, std::size_t block) { return rows.values.read().kept_place[block] != 0; }
+bool is_cached(const parameters& rows, std::size_t block) {
+    return rows.values.read().cache_slot[block] != 0;
+}
 
 /// Returns where a kernel finds the first coefficient of degree 3 of a block.
 float& first_of(parameters& rows, std::size_t block) {
     const auto values = rows.values.write();
-    const std::uint32_t place = values.kept_place[block];
+    const std::uint32_t slot = values.cache_slot[block];
     const std::size_t stride = gs::block_length * gs::width_of(sh3);
-    return place == 0 ? values[sh3][block * stride] : values.sh[7][(place - 1) * stride];
+    return slot == 0 ? values[sh3][block * stride] : values.sh[7][(slot - 1) * stride];
 }
 
 }  // namespace
 
-TEST_CASE("kept rows: blocks keep their values and moments through any order of fetches") {
+TEST_CASE("block cache: blocks keep their values and moments through any order of fetches") {
     gs::device::cpu device;
     for (const auto precision : {full, compact})
         for (const int first_degree : {1, 3}) {
@@ -56,69 +58,69 @@ TEST_CASE("kept rows: blocks keep their values and moments through any order of 
             std::vector<float> expected(40);
             for (std::size_t b = 0; b < 40; ++b) expected[b] = first_of(rows, b);
             std::mt19937 random(7);
-            std::size_t kept = 0;
+            std::size_t cached = 0;
             for (int step = 0; step < 200; ++step) {
                 std::set<std::size_t> blocks;
                 for (std::size_t k = 0; k < 1 + random() % 8; ++k) blocks.insert(random() % 40);
                 need(rows, blocks);
-                rows.kept.fetch(device);
+                rows.cache.fetch(device);
                 for (const std::size_t b : blocks) {
-                    if (is_kept(rows, b)) ++kept;
+                    if (is_cached(rows, b)) ++cached;
                     REQUIRE(first_of(rows, b) == expected[b]);
                     first_of(rows, b) = expected[b] = static_cast<float>(random() % 1000);
                 }
             }
-            CHECK(kept > 500);
+            CHECK(cached > 500);
             const gs::gaussians model = rows.get_values(device, count, 3);
             const auto width = static_cast<std::size_t>(model.rest_width());
             for (std::size_t b = 0; b < 40; ++b)
                 CHECK(model.sh_rest[b * gs::block_length * width + 24] == expected[b]);
-            CHECK(rows.values.read().kept_place == nullptr);
+            CHECK(rows.values.read().cache_slot == nullptr);
         }
 }
 
-TEST_CASE("kept rows: needed blocks get all places, and the others stay in host memory") {
+TEST_CASE("block cache: needed blocks get all slots, and the others stay in host memory") {
     gs::device::cpu device;
     parameters rows = on_host(device, full, 2);
-    const auto kept = [&] {
+    const auto cached = [&] {
         std::size_t n = 0;
-        for (std::size_t b = 0; b < 40; ++b) n += is_kept(rows, b) ? 1 : 0;
+        for (std::size_t b = 0; b < 40; ++b) n += is_cached(rows, b) ? 1 : 0;
         return n;
     };
-    constexpr std::size_t places = 40 / gs::train::kept_share;
+    constexpr std::size_t slots = 40 / gs::train::blocks_per_slot;
     need(rows, {1, 2});
-    rows.kept.fetch(device);
-    CHECK(kept() == 2);
+    rows.cache.fetch(device);
+    CHECK(cached() == 2);
     need(rows, {8, 9});
-    rows.kept.fetch(device);
-    CHECK(kept() == 4);  // empty places come first
+    rows.cache.fetch(device);
+    CHECK(cached() == 4);  // empty slots come first
     need(rows, {1, 10, 11, 12, 13, 14, 15, 16});
-    rows.kept.fetch(device);
-    CHECK(kept() == places);
-    CHECK(is_kept(rows, 1));
-    CHECK_FALSE(is_kept(rows, 8));
+    rows.cache.fetch(device);
+    CHECK(cached() == slots);
+    CHECK(is_cached(rows, 1));
+    CHECK_FALSE(is_cached(rows, 8));
 }
 
-TEST_CASE("kept rows: moments move with their block") {
+TEST_CASE("block cache: moments move with their block") {
     gs::device::cpu device;
     parameters rows = on_host(device, compact, 3);
     const std::size_t stride = gs::block_length * 7;
     for (std::size_t b = 0; b < 40; ++b) rows.packed.write()[sh3][b * stride] = static_cast<std::uint32_t>(b);
     need(rows, {20});
-    rows.kept.fetch(device);
+    rows.cache.fetch(device);
     const auto packed = rows.packed.write();
-    const std::uint32_t place = rows.values.read().kept_place[20];
-    REQUIRE(place != 0);
-    CHECK(packed.sh[7][(place - 1) * stride] == 20);
-    packed.sh[7][(place - 1) * stride] = 99;
-    rows.settle(device);
+    const std::uint32_t slot = rows.values.read().cache_slot[20];
+    REQUIRE(slot != 0);
+    CHECK(packed.sh[7][(slot - 1) * stride] == 20);
+    packed.sh[7][(slot - 1) * stride] = 99;
+    rows.flush_cache(device);
     CHECK(rows.packed.write()[sh3][20 * stride] == 99);
     CHECK(rows.packed.write()[sh3][21 * stride] == 21);
 }
 
-TEST_CASE("kept rows: without arrays in host memory there are no copies") {
+TEST_CASE("block cache: without arrays in host memory the cache has no blocks") {
     gs::device::cpu device;
     parameters rows = on_host(device, full, 4);
-    CHECK(rows.kept.blocks() == 0);
-    CHECK(rows.values.read().kept_place == nullptr);
+    CHECK(rows.cache.blocks() == 0);
+    CHECK(rows.values.read().cache_slot == nullptr);
 }
