@@ -48,17 +48,35 @@ CALLS = 5  # exchanges of a step: numbers of splats, splats, lists, gradients, a
 GAUSSIAN = 4 * 59  # bytes of a Gaussian's gradients with SH degree 3
 GATHERED = 7.2  # bytes of a Gaussian that a step gathers with SH degree 3: 720 for each report, after 100 steps
 TILE = 16
+ROWS = 3  # tile rows in which a border between strips can lie so that both strips list a splat, if unmeasured
 # Colors of Okabe and Ito, which color-blind readers can tell apart.
 COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
 LINES = ["-", "--", ":", "-."]
 
 
-def bytes_of_step(splats, height, ranks, sum_bytes):
-    """The mean of the bytes that a rank sends to the others in a step, by purpose."""
+def tile_rows(height):
+    return math.ceil(height / TILE)
+
+
+def sent_splats(visible, rows, height, ranks):
+    """The mean of the number of splats that a rank sends to others. `rows`: see ROWS."""
+    strips = min(1 + (ranks - 1) * rows / tile_rows(height), ranks)  # that list a splat
+    return visible * strips * (ranks - 1) / ranks ** 2
+
+
+def rows_of_splats(run):
+    """The number of rows with which `sent_splats` yields the measured number."""
+    ranks, exchange = run["ranks"], run["exchange"]
+    strips = exchange["sent_splats"] * ranks ** 2 / (exchange["visible_splats"] * (ranks - 1))
+    return (strips - 1) / (ranks - 1) * tile_rows(run["height"])
+
+
+def bytes_of_step(sent, height, ranks, sum_bytes):
+    """The mean of the bytes that a rank sends to the others in a step, by purpose. `sent`: see `sent_splats`."""
     others = ranks - 1
-    return {"splats": SPLAT * splats * others / ranks + 2 * COUNT * others,
-            "lists": 2 * LENGTH * (math.ceil(height / TILE) + 1) * others / ranks,
-            "gradients": SUMS * sum_bytes * splats * others / ranks}
+    return {"splats": SPLAT * sent + 2 * COUNT * (ranks + 1) * others,
+            "lists": 2 * LENGTH * (tile_rows(height) + 1) * others / ranks,
+            "gradients": SUMS * sum_bytes * sent}
 
 
 def present_ranks(device, ranks):
@@ -164,7 +182,7 @@ def traffic_table(result):
         exchange = run["exchange"]
         if exchange is None:
             continue
-        formula = bytes_of_step(exchange["visible_splats"], run["height"], run["ranks"], SUM_BYTES[run["accumulator"]])
+        formula = bytes_of_step(exchange["sent_splats"], run["height"], run["ranks"], SUM_BYTES[run["accumulator"]])
         for purpose, expected in formula.items():
             found = exchange["bytes"][purpose]
             rows.append([f"{run['pixels']:,}", f"{run['gaussians']:,}", devices(result, run["ranks"]), purpose,
@@ -178,10 +196,10 @@ class Model:
 
     NAMES = ["a", "b", "c", "1 / bandwidth", "latency"]
 
-    def __init__(self, visible, gathered, sum_bytes):
-        """`visible`: the share of the Gaussians that a view shows. `gathered`: the bytes of a Gaussian, per step, that
-        the devices gather for reports."""
-        self.visible, self.gathered, self.sum_bytes = visible, gathered, sum_bytes
+    def __init__(self, visible, rows, gathered, sum_bytes):
+        """`visible`: the share of the Gaussians that a view shows. `rows`: see ROWS. `gathered`: the bytes of a
+        Gaussian, per step, that the devices gather for reports."""
+        self.visible, self.rows, self.gathered, self.sum_bytes = visible, rows, gathered, sum_bytes
         self.terms, self.largest_error = [0.0] * len(self.NAMES), 0.0
 
     @classmethod
@@ -193,12 +211,13 @@ class Model:
         if not shared and None in (bandwidth, latency, visible):
             raise SystemExit("error: the file has no training with several ranks, which show the cost of exchanges: "
                              "measure with --ranks 1 2, or give --bandwidth, --latency and --visible")
-        gathered = GATHERED
+        gathered, rows_of_splat = GATHERED, ROWS
         if shared:
+            rows_of_splat = statistics.mean(rows_of_splats(run) for run in shared)
             visible = statistics.mean(run["exchange"]["visible_splats"] / run["gaussians"] for run in shared)
             gathered = statistics.mean(run["exchange"]["bytes"]["gaussians"] / run["gaussians"] * run["ranks"] /
                                        (run["ranks"] - 1) for run in shared)
-        model = cls(visible, gathered, SUM_BYTES[runs[0]["accumulator"]])
+        model = cls(visible, rows_of_splat, gathered, SUM_BYTES[runs[0]["accumulator"]])
         rows = np.array([model.parts(r["pixels"], r["height"], r["gaussians"], r["ranks"], r["exchange"]) for r in runs])
         times = np.array([r["seconds"] for r in runs])
         given = {3: None if bandwidth is None else 1 / bandwidth, 4: latency}
@@ -213,7 +232,8 @@ class Model:
 
     def parts(self, pixels, height, gaussians, ranks, exchange=None):
         """The factors of the terms."""
-        splats = exchange["visible_splats"] if exchange else self.visible * gaussians
+        splats = exchange["sent_splats"] if exchange else (
+            sent_splats(self.visible * gaussians, self.rows, height, ranks))
         sent = sum(bytes_of_step(splats, height, ranks, self.sum_bytes).values()) + (
             self.gathered * gaussians * (ranks - 1) / ranks)
         return [1, pixels / ranks, gaussians / ranks, sent, CALLS if ranks > 1 else 0]

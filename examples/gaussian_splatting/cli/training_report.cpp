@@ -42,6 +42,7 @@ ordered_json exchange_json(const ranks::traffic_counter& traffic) {
     return {{"ranks", traffic.ranks()},
             {"steps", traffic.steps()},
             {"visible_splats", static_cast<double>(traffic.splats()) / steps},
+            {"sent_splats", static_cast<double>(traffic.sent()) / steps / traffic.ranks()},
             {"largest_share", static_cast<double>(traffic.largest_shares()) / steps},
             {"bytes", bytes},
             {"calls", calls}};

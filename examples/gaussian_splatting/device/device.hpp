@@ -123,10 +123,9 @@ concept placed_buffer = requires(B b) {
 /// - `ranks()`: the ranks, for values on the host.
 /// - `sum_over_ranks(p, n)`: gives all ranks the sums of n values in device memory: see
 ///   `ranks::communicator::sum`.
-/// - `sum_for_owners(shares, p, block_size, n)`: gives each rank the sums of its own share of n values,
-///   `block_size` for each block. Afterwards the other values are unspecified.
 /// - `gather(shares, arrays)`: gives all ranks the shares of the others: see
 ///   `ranks::communicator::gather`.
+/// - `exchange(windows, arrays)`: sends each rank its windows: see `ranks::communicator::exchange`.
 ///
 /// Times of an iteration's stages
 /// - `begin(stage)`: marks where a stage begins.
@@ -142,7 +141,8 @@ float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, s
                    typename D::template buffer<std::uint32_t> numbers,
                    typename D::template buffer<std::uint64_t> sums, typename D::transfer& transfer,
                    ranks::communicator& ranks, const ranks::share& part, const ranks::shares& shares,
-                   std::span<const ranks::shared_array> arrays) {
+                   std::span<const ranks::shared_array> arrays, const ranks::windows& windows,
+                   std::span<const ranks::window_array> window_arrays) {
     { c.name() } -> std::same_as<std::string>;
     { c.resident_warps() } -> std::same_as<std::size_t>;
     d.for_each_index(n, archetype::index_kernel{});
@@ -169,8 +169,8 @@ float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, s
     d.join(ranks);
     { d.ranks() } -> std::same_as<ranks::communicator&>;
     d.sum_over_ranks(p, n);
-    d.sum_for_owners(shares, p, n, n);
     d.gather(shares, arrays);
+    d.exchange(windows, window_arrays);
     d.begin(stage::project);
     d.pause_times(true);
     d.sample_times(1);

@@ -20,7 +20,13 @@ namespace gs::ranks {
 
 namespace {
 
-enum operation : std::uint32_t { sum_of = 0, minimum_of = 16, maximum_of = 32, gather_of = 48 };
+enum operation : std::uint32_t {
+    sum_of = 0,
+    minimum_of = 16,
+    maximum_of = 32,
+    gather_of = 48,
+    exchange_of = 64
+};
 
 /// Returns a number that the types of a collective function do not share.
 template <class T>
@@ -116,19 +122,37 @@ void communicator::gather(const shares& all, const shared_array& array) {
     }
 }
 
-template <class T>
-void communicator::add(T* values, std::size_t n) {
-    reduce(sum_of, values, n, [](T a, T b) { return a + b; });
+void communicator::exchange(const windows& all, std::span<const window_array> arrays) {
+    if (count_ == 1) return;
+    traffic_.count_exchange(all, arrays);
+    for (const window_array& array : arrays) exchange(all, array);
 }
+
+void communicator::exchange(const windows& all, const window_array& array) {
+    constexpr std::size_t at_once = shared_memory::slot_bytes;
+    std::size_t longest = 0;
+    for (int r = 0; r < count_; ++r) longest = std::max(longest, all.sent_by(r).items() * array.item_bytes);
+    for (std::size_t first = 0; first < longest; first += at_once) {
+        const std::size_t own = all.sent_by(rank_).items() * array.item_bytes;
+        const std::size_t begin = std::min(first, own), end = std::min(first + at_once, own);
+        show(exchange_of, longest, array.from + begin, end - begin, [&](int r, const std::byte* bytes) {
+            if (r == rank_) return;
+            // The part of the window to this rank that lies in the piece which rank r shows.
+            const share items = all.sent_by(r).of(rank_);
+            const std::size_t from = std::max(items.first * array.item_bytes, first);
+            const std::size_t to = std::min(items.last * array.item_bytes, first + at_once);
+            if (from >= to) return;
+            const std::size_t before = from - items.first * array.item_bytes;
+            std::copy_n(bytes + (from - first), to - from,
+                        array.received(all, r, rank_).begin() + static_cast<std::ptrdiff_t>(before));
+        });
+    }
+}
+
 template <class T>
 void communicator::sum(T* values, std::size_t n) {
     traffic_.count_sum(n * sizeof(T));
-    add(values, n);
-}
-template <class T>
-void communicator::sum_for_owners(const shares& all, T* values, std::size_t block_size, std::size_t n) {
-    traffic_.count_sum_for_owners(all, shared_array::of(values, block_size, n));
-    add(values, n);
+    reduce(sum_of, values, n, [](T a, T b) { return a + b; });
 }
 template <class T>
 void communicator::minimum(T* values, std::size_t n) {
@@ -157,9 +181,6 @@ template void communicator::sum(float*, std::size_t);
 template void communicator::sum(double*, std::size_t);
 template void communicator::sum(std::int64_t*, std::size_t);
 template void communicator::sum(std::uint64_t*, std::size_t);
-template void communicator::sum_for_owners(const shares&, float*, std::size_t, std::size_t);
-template void communicator::sum_for_owners(const shares&, double*, std::size_t, std::size_t);
-template void communicator::sum_for_owners(const shares&, std::int64_t*, std::size_t, std::size_t);
 template void communicator::minimum(std::uint64_t*, std::size_t);
 template void communicator::minimum(unsigned long long*, std::size_t);
 template void communicator::maximum(std::uint64_t*, std::size_t);

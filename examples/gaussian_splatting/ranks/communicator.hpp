@@ -8,6 +8,7 @@
 
 #include "shares.hpp"
 #include "traffic.hpp"
+#include "windows.hpp"
 
 namespace gs::ranks {
 
@@ -49,9 +50,6 @@ class communicator {
     /// bits. T: float, double, or an integer of 64 bits.
     template <class T>
     void sum(T* values, std::size_t n);
-    /// Gives each rank the sums of its own share of n values, `block_size` for each block. T: see `sum`.
-    template <class T>
-    void sum_for_owners(const shares& all, T* values, std::size_t block_size, std::size_t n);
     /// Gives all ranks the smallest or the largest values. T: an integer of 64 bits.
     /// @{
     template <class T>
@@ -61,6 +59,8 @@ class communicator {
     /// @}
     /// Gives all ranks the parts of the others. Each rank has its own part of each array.
     void gather(const shares& all, std::span<const shared_array> arrays);
+    /// Sends the windows of all arrays. The window of a rank to itself is not copied.
+    void exchange(const windows& all, std::span<const window_array> arrays);
     /// Returns the value of rank 0.
     double from_first(double value);
     /// Returns whether any rank passes true.
@@ -70,9 +70,8 @@ class communicator {
   private:
     template <class T, class Combine>
     void reduce(std::uint32_t operation, T* values, std::size_t n, const Combine& combine);
-    template <class T>
-    void add(T* values, std::size_t n);
     void gather(const shares& all, const shared_array& array);
+    void exchange(const windows& all, const window_array& array);
     /// Shows some bytes to the other ranks, and calls `take(rank, theirs)` for each rank, in order.
     /// `operation` and `size` identify the whole exchange, which all ranks must agree on.
     template <class Take>

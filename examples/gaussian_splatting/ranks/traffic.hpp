@@ -10,6 +10,7 @@
 #include <span>
 
 #include "shares.hpp"
+#include "windows.hpp"
 
 namespace gs::ranks {
 
@@ -58,17 +59,21 @@ class traffic_counter {
 
     /// Counts sums, or extremes, of arrays of this size. Each rank combines one part: it gets the part
     /// from all others, and sends them the result.
-    void count_sum(std::size_t bytes) { add(purpose::other, 2 * bytes); }
-    /// Counts sums for owners. Each rank gets its share from all others.
-    void count_sum_for_owners(const shares& all, const shared_array& array) {
-        add(purpose::gradients, size_of(all, {&array, 1}));
-    }
+    void count_sum(std::size_t bytes) { add(purpose::other, (ranks_ - 1) * 2 * bytes); }
     /// Counts that each rank sends its share of all arrays to all others.
     void count_gather(const shares& all, std::span<const shared_array> arrays) {
-        add(purpose::gaussians, size_of(all, arrays));
+        add(purpose::gaussians, (ranks_ - 1) * size_of(all, arrays));
     }
-    /// Counts a step, in which the ranks have these shares of the visible splats.
-    void count_step(const shares& splats) {
+    /// Counts that each rank sends a window of all arrays to each other one.
+    void count_exchange(const windows& all, std::span<const window_array> arrays) {
+        std::size_t bytes = 0;
+        for (const window_array& array : arrays) bytes += all.moved() * array.item_bytes;
+        add(purpose::splats, bytes);
+    }
+    /// Counts a step, in which the ranks have these shares of the visible splats, and send `sent` of them to
+    /// strips of others, each as often as there are such strips.
+    void count_step(const shares& splats, std::size_t sent) {
+        sent_ += sent;
         ++steps_;
         splats_ += splats.items();
         std::size_t largest = 0;
@@ -78,20 +83,21 @@ class traffic_counter {
 
     int ranks() const { return static_cast<int>(ranks_); }
     const amount& of(purpose p) const { return amounts_[static_cast<std::size_t>(p)]; }
-    /// Returns the number of steps, and for all of them the sum of visible splats and the sum of
-    /// the largest share that a rank has of them.
+    /// Returns the number of steps, and the sums over all steps of visible splats, of sent splats, and of
+    /// the largest share that a rank has of the visible ones.
     /// @{
     std::uint64_t steps() const { return steps_; }
     std::uint64_t splats() const { return splats_; }
+    std::uint64_t sent() const { return sent_; }
     std::uint64_t largest_shares() const { return largest_shares_; }
     /// @}
 
   private:
-    /// `bytes`: those that a rank sends to, or gets from, each other one, as a sum over all ranks.
+    /// `bytes`: those that all ranks send to others.
     void add(purpose otherwise, std::size_t bytes) {
         if (ranks_ == 1) return;
         amount& sum = amounts_[static_cast<std::size_t>(now_.value_or(otherwise))];
-        sum.bytes += (ranks_ - 1) * bytes;
+        sum.bytes += bytes;
         ++sum.calls;
     }
     std::size_t size_of(const shares& all, std::span<const shared_array> arrays) const {
@@ -104,7 +110,7 @@ class traffic_counter {
     std::uint64_t ranks_;
     std::optional<purpose> now_;
     std::array<amount, static_cast<std::size_t>(purpose::count)> amounts_{};
-    std::uint64_t steps_ = 0, splats_ = 0, largest_shares_ = 0;
+    std::uint64_t steps_ = 0, splats_ = 0, sent_ = 0, largest_shares_ = 0;
 };
 
 }  // namespace gs::ranks

@@ -176,8 +176,7 @@ class renderer {
     }
     /// The first part of `backward`. Returns the sums over pixels of each of the `own_gaussians`.
     const Real* backward_to_splats(const Real* render_gradient, float largest, accumulator how) {
-        const Real* sums = sums_by_pixel(render_gradient, largest, how, owners());
-        if (shares_gaussians()) sums = visible_.by_gaussian(sums, count_);
+        const Real* sums = sums_by_pixel(render_gradient, largest, how);
         device_.begin(device::stage::project_backward);
         return sums;
     }
@@ -197,19 +196,19 @@ class renderer {
     /// Returns the sums over pixels of each Gaussian that was drawn. With a strip, these are the sums over
     /// the strips of all ranks. Precondition: the strip does not `shares_gaussians`.
     const Real* pixel_sums(const Real* render_gradient, float largest, accumulator how) {
-        return sums_by_pixel(render_gradient, largest, how, nullptr);
+        return sums_by_pixel(render_gradient, largest, how);
     }
 
     /// Runs the blending part of `backward` with this kernel, whose members it sets. Returns the
     /// sums: see `project_backward`.
     template <class Kernel>
-    const buffer<Real>& blend_backward_by(Kernel kernel, const Real* render_gradient, float largest,
-                                          const ranks::shares* owners = nullptr) {
+    const buffer<Real>& blend_backward_by(Kernel kernel, const Real* render_gradient, float largest) {
         sums_.begin(kernel, listed_count(), largest, kernel.template warps_of_sum<warp>(tiles()),
                     effects_.depth);
         device_.begin(device::stage::blend_backward);
         launch_backward(kernel, lists(), render_gradient);
-        return sums_.end(kernel, strip_.has_value(), owners);
+        return shares_gaussians() ? sums_.end_for_owners(kernel, visible_, count_)
+                                  : sums_.end(kernel, strip_.has_value());
     }
     /// See `gradient_sums`.
     std::uint32_t* fault() const { return sums_.fault(); }
@@ -241,18 +240,17 @@ class renderer {
     const unsigned long long* pairs() const { return pairs_.data(); }
 
   private:
-    const Real* sums_by_pixel(const Real* render_gradient, float largest, accumulator how,
-                              const ranks::shares* owners) {
+    const Real* sums_by_pixel(const Real* render_gradient, float largest, accumulator how) {
         const Real* sums = nullptr;
         with_cut([&]<class Shape> {
             Accumulators::visit(how, [&]<class Variant>(Variant) {
                 using kernel = typename Variant::template kernel<Real, Shape>;
                 if (background_image_.planes == nullptr) {
-                    sums = blend_backward_by(kernel{}, render_gradient, largest, owners).data();
+                    sums = blend_backward_by(kernel{}, render_gradient, largest).data();
                 } else if constexpr (Variant::supports_background_image) {
                     using before_colors =
                         typename Variant::template kernel<Real, Shape, image_background<Real>>;
-                    sums = blend_backward_by(before_colors{}, render_gradient, largest, owners).data();
+                    sums = blend_backward_by(before_colors{}, render_gradient, largest).data();
                 } else {
                     throw error(
                         "this accumulator has no gradient for an image in front of a learned background");
@@ -266,7 +264,6 @@ class renderer {
         return {device_.ranks().traffic(), purpose};
     }
     bool shares_gaussians() const { return strip_ && strip_->shares_gaussians; }
-    const ranks::shares* owners() const { return shares_gaussians() ? &visible_.shares() : nullptr; }
     /// Returns the warps that project this rank's Gaussians.
     template <class Warp>
     ranks::share own_warps() const {
@@ -383,8 +380,9 @@ class renderer {
         });
         if (shares_gaussians()) {
             const auto scope = exchanging(ranks::purpose::splats);
-            visible_.collect(own_gaussians(), splats_.data(), boxes_.data(), depths_.data(), tiles_.data());
-            device_.ranks().traffic().count_step(visible_.shares());
+            visible_.collect(own_gaussians(), strip_->listed_by_all(static_cast<int>(tiles_down_)),
+                             splats_.data(), boxes_.data(), depths_.data(), tiles_.data());
+            device_.ranks().traffic().count_step(visible_.drawn(), visible_.moved());
         }
     }
 

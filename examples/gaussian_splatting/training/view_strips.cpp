@@ -35,7 +35,11 @@ std::optional<raster::view_strip> view_strips::of(std::size_t view, const camera
     std::vector<std::uint64_t> weights(in_tiles(camera.height), in_tiles(camera.width) * work_of_tile);
     if (view < work_.size() && work_[view].size() == weights.size())
         for (std::size_t row = 0; row < weights.size(); ++row) weights[row] += work_[view][row];
-    return raster::view_strip{balanced_rows(weights, ranks.rank(), ranks.count()), reach};
+    raster::view_strip strip{{}, reach};
+    for (int rank = 0; rank < ranks.count(); ++rank)
+        strip.own_of_all.push_back(balanced_rows(weights, rank, ranks.count()));
+    strip.own = strip.own_of_all[static_cast<std::size_t>(ranks.rank())];
+    return strip;
 }
 
 }  // namespace gs::train

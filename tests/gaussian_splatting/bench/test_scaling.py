@@ -39,9 +39,10 @@ def given(ranks=(1, 2), terms=TERMS):
         for points in 500_000, 1_000_000, 4_000_000:
             for count in ranks:
                 pixels, splats = height * height * 4 // 3, points / 2
-                sent = {**scaling.bytes_of_step(splats, height, count, 4), "gaussians": 7.2 * points * (count - 1) / count}
+                moved = scaling.sent_splats(splats, 3, height, count)
+                sent = {**scaling.bytes_of_step(moved, height, count, 4), "gaussians": 7.2 * points * (count - 1) / count}
                 parts = [1, pixels / count, points / count, sum(sent.values()), 5 * (count > 1)]
-                exchange = {"visible_splats": splats, "bytes": sent} if count > 1 else None
+                exchange = {"visible_splats": splats, "sent_splats": moved, "bytes": sent} if count > 1 else None
                 runs.append({"megapixels": megapixels, "points": points, "ranks": count, "repeat": 0, "pixels": pixels,
                              "height": height, "seconds": sum(p * t for p, t in zip(parts, terms)), "gaussians": points,
                              "device": "cuda, a GPU", "accumulator": "native", "exchange": exchange})
@@ -51,9 +52,18 @@ def given(ranks=(1, 2), terms=TERMS):
 
 class Formula(unittest.TestCase):
     def test_bytes_by_purpose(self):
-        self.assertEqual(scaling.bytes_of_step(1000, 100, 4, 4), {"splats": 45048, "lists": 96, "gradients": 36000})
-        self.assertEqual(scaling.bytes_of_step(1000, 96, 2, 8), {"splats": 30016, "lists": 56, "gradients": 48000})
-        self.assertEqual(set(scaling.bytes_of_step(1000, 96, 1, 8).values()), {0})
+        self.assertEqual(scaling.bytes_of_step(1000, 100, 4, 4), {"splats": 60240, "lists": 96, "gradients": 48000})
+        self.assertEqual(scaling.bytes_of_step(1000, 96, 2, 8), {"splats": 60048, "lists": 56, "gradients": 96000})
+        self.assertEqual(set(scaling.bytes_of_step(0, 96, 1, 8).values()), {0})
+
+    def test_splats_go_to_the_strips_that_list_them(self):
+        self.assertEqual(scaling.sent_splats(1000, 3, 160, 2), 1000 * 1.3 / 4)
+        self.assertEqual(scaling.sent_splats(1000, 3, 160, 1), 0)
+        self.assertEqual(scaling.sent_splats(1000, 3, 16, 4), 1000 * 3 / 4)  # all strips list all splats
+        for ranks in 2, 3, 8:
+            run = {"ranks": ranks, "height": 1000,
+                   "exchange": {"visible_splats": 500, "sent_splats": scaling.sent_splats(500, 4, 1000, ranks)}}
+            self.assertAlmostEqual(scaling.rows_of_splats(run), 4)
 
     def test_table_shows_differences(self):
         result = given()
@@ -63,7 +73,7 @@ class Formula(unittest.TestCase):
                 run["exchange"]["bytes"]["lists"] *= 1.5
         text = scaling.traffic_table(result)
         self.assertEqual((text.count("+0.000 %"), text.count("+50.000 %")), (18, 9))
-        self.assertIn("| 999,941 | 500,000 | 2 GPUs | splats | 7,500,016 | 7,500,016 | +0.000 % |", text)
+        self.assertIn("| 999,941 | 500,000 | 2 GPUs | splats | 3,954,593 | 3,954,593 | +0.000 % |", text)
 
     def test_repeats_count_as_their_median(self):
         runs = given()["runs"]
@@ -102,8 +112,8 @@ class Prediction(unittest.TestCase):
         rows = self.rows(given())
         self.assertIn("Fit: 2 ms per step, 3 ns per pixel, 1 ns per Gaussian, bandwidth 100 GB/s, 30 µs per exchange; "
                       "a view shows 50 % of the Gaussians; largest error ", self.text)
-        # 3,999,765 pixels and 4,000,000 Gaussians on 8 GPUs: 2 + 1.5 + 0.5 + 1.89 + 0.25 + 0.15 ms, against 18 on one.
-        self.assertIn(["3,999,765", "4,000,000", "8 devices", "", "6.29 (prediction)", "2.86 (prediction)"], rows)
+        # 3,999,765 pixels and 4,000,000 Gaussians on 8 GPUs: 2 + 1.5 + 0.5 + 0.28 + 0.25 + 0.15 ms, against 18 on one.
+        self.assertIn(["3,999,765", "4,000,000", "8 devices", "", "4.68 (prediction)", "3.84 (prediction)"], rows)
         self.assertIn(["3,999,765", "4,000,000", "1 GPU", "18 (measured)", "18 (fit)", "1.00 (fit)"], rows)
 
     def test_all_predicted_figures_are_labeled(self):
@@ -135,7 +145,7 @@ class Prediction(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertRegex(refused.stderr, "^error: the file has no training with several ranks.*--ranks 1 2.*\n$")
         rows = self.rows(given(ranks=(1,)), "--bandwidth", "100", "--latency", "30", "--visible", "0.5")
-        self.assertIn(["3,999,765", "4,000,000", "8 devices", "", "6.29 (prediction)", "2.86 (prediction)"], rows)
+        self.assertIn(["3,999,765", "4,000,000", "8 devices", "", "4.68 (prediction)", "3.84 (prediction)"], rows)
 
     def test_more_ranks_are_used(self):
         self.assertEqual(len(self.rows(given(ranks=(1, 2, 4)))), 9 * 6)
@@ -192,7 +202,7 @@ class Measurement(unittest.TestCase):
         self.assertIsNone(result["runs"][0]["exchange"])
         for run in result["runs"][1:]:
             exchange = run["exchange"]
-            formula = scaling.bytes_of_step(exchange["visible_splats"], 47, run["ranks"], 4)
+            formula = scaling.bytes_of_step(exchange["sent_splats"], 47, run["ranks"], 4)
             for purpose, expected in formula.items():
                 self.assertAlmostEqual(exchange["bytes"][purpose], expected, 6)
             self.assertEqual([exchange["calls"][purpose] for purpose in formula], [2, 1, 1])

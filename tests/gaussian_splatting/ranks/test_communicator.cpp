@@ -120,6 +120,45 @@ TEST_CASE("communicator: all ranks get the parts of the others") {
         }
 }
 
+TEST_CASE("communicator: each rank gets the windows that the others send to it, and can send them back") {
+    for (const int count : {2, 3, 5})
+        for (const std::size_t size : {1u, 60'000u}) {  // 60,000 items of 3 doubles take several slots
+            CAPTURE(count);
+            CAPTURE(size);
+            CHECK(all_find(count, [&](communicator& all) {
+                // Rank 1 sends nothing to rank 0.
+                std::vector<std::size_t> counts;
+                for (int i = 0; i < count * count; ++i)
+                    counts.push_back(i == count ? 0 : size * static_cast<std::size_t>(i % 4 + 1));
+                const gs::ranks::windows windows(counts, count);
+                const auto value = [](int from, int to, std::size_t i) {
+                    return 1e7 * from + 1e6 * to + static_cast<double>(i);
+                };
+                const int me = all.rank();
+                const auto& to = windows.sent_by(me);
+                const auto& from = windows.received_by(me);
+                std::vector<double> sent(3 * to.items()), received(3 * from.items(), -1),
+                    back(sent.size(), -1);
+                for (int r = 0; r < count; ++r)
+                    for (std::size_t i = 0; i < 3 * to.of(r).count(); ++i)
+                        sent[3 * to.of(r).first + i] = value(me, r, i);
+                const auto array = [](const auto& a, auto& b) {
+                    return gs::ranks::window_array::of(a.data(), b.data(), 3);
+                };
+                all.exchange(windows, std::array{array(sent, received)});
+                all.exchange(windows.reversed(), std::array{array(received, back)});
+                for (int r = 0; r < count; ++r) {
+                    for (std::size_t i = 0; i < 3 * from.of(r).count(); ++i)
+                        if (received[3 * from.of(r).first + i] != (r == me ? -1 : value(r, me, i)))
+                            return false;
+                    for (std::size_t i = 0; i < 3 * to.of(r).count(); ++i)
+                        if (back[3 * to.of(r).first + i] != (r == me ? -1 : value(me, r, i))) return false;
+                }
+                return true;
+            }));
+        }
+}
+
 TEST_CASE("communicator: ranks that disagree about an exchange end with an error") {
     for (const bool other_size : {false, true}) {
         const auto end = gs::ranks::run(2, [&](communicator& all) {

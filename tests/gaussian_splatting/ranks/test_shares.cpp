@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "ranks/shares.hpp"
+#include "ranks/windows.hpp"
 
 using gs::ranks::share;
 using gs::ranks::shared_array;
 using gs::ranks::shares;
+using gs::ranks::windows;
 
 TEST_CASE("shares: consecutive whole blocks, which differ by at most one block") {
     for (const std::size_t items : {0u, 1u, 31u, 32u, 33u, 95u, 1000u})
@@ -32,6 +34,19 @@ TEST_CASE("shares: consecutive whole blocks, which differ by at most one block")
             CHECK(end == items);
             CHECK(most - least <= 1);
         }
+}
+
+TEST_CASE("windows: each rank knows where the windows of all others are") {
+    // Rank 0 sends 1 and 2 items, and rank 1 sends 3 and 4.
+    const windows all(std::vector<std::size_t>{1, 2, 3, 4}, 2);
+    CHECK(all.ranks() == 2);
+    CHECK(all.sent_by(0).of(1) == share{1, 3});
+    CHECK(all.sent_by(1).of(0) == share{0, 3});
+    CHECK(all.received_by(0).of(1) == share{1, 4});
+    CHECK(all.received_by(1).of(1) == share{2, 6});
+    CHECK(all.moved() == 2 + 3);
+    CHECK(all.reversed().sent_by(0).of(1) == all.received_by(0).of(1));
+    CHECK(all.reversed().received_by(1).of(0) == all.sent_by(1).of(0));
 }
 
 TEST_CASE("shares: parts of arrays with several values per item, padding, or fewer items") {

@@ -16,6 +16,7 @@ using namespace gs_test;
 using gs::ranks::communicator;
 using gs::ranks::purpose;
 using gs::ranks::shared_array;
+using gs::ranks::window_array;
 
 namespace {
 
@@ -39,14 +40,16 @@ nlohmann::json exchange_of(const std::string& scene, int ranks, const words& opt
 double mean(std::uint64_t of_all, int ranks) { return static_cast<double>(of_all * steps) / (steps * ranks); }
 
 /// Checks the formula of docs/explanation/when_several_gpus_help.md. All numbers are of one view.
-void check_formula(const nlohmann::json& exchange, int ranks, std::uint64_t splats, std::uint64_t values,
-                   std::uint64_t bytes_of_sum, std::uint64_t bytes_of_splat = 60) {
+void check_formula(const nlohmann::json& exchange, int ranks, std::uint64_t values, double bytes_of_sum,
+                   double bytes_of_splat = 60) {
     constexpr std::uint64_t tile_rows = 3;
     const auto others = static_cast<std::uint64_t>(ranks - 1), all = static_cast<std::uint64_t>(ranks);
     const auto& bytes = exchange.at("bytes");
-    CHECK(bytes.at("splats") == mean(others * (bytes_of_splat * splats + 2 * 8 * all), ranks));
+    const double sent = exchange.at("sent_splats");
+    const double counts = 16 * static_cast<double>(others * (all + 1));
+    CHECK(bytes.at("splats").get<double>() == doctest::Approx(bytes_of_splat * sent + counts).epsilon(1e-12));
     CHECK(bytes.at("lists") == mean(others * 2 * 8 * (tile_rows + 1), ranks));
-    CHECK(bytes.at("gradients") == mean(others * 12 * bytes_of_sum * splats, ranks));
+    CHECK(bytes.at("gradients").get<double>() == doctest::Approx(12 * bytes_of_sum * sent).epsilon(1e-12));
     CHECK(bytes.at("effects") == mean(others * 2 * 4 * values, ranks));
     CHECK(bytes.at("scores") == 0);
 }
@@ -79,7 +82,10 @@ TEST_CASE("traffic: a step of 2, 3 and 4 ranks exchanges the bytes of the formul
             // The shares are of 94 blocks, the last of which has 24 Gaussians, and the others 32.
             CHECK(exchange.at("largest_share") ==
                   std::array{47 * 32, 31 * 32 + 24, 24 * 32}.at(static_cast<std::size_t>(ranks) - 2));
-            check_formula(exchange, ranks, 3000, 0, fixed ? 8 : 4);
+            check_formula(exchange, ranks, 0, fixed ? 8 : 4);
+            // Each rank would send all its splats to all others if strips did not matter.
+            CHECK(exchange.at("sent_splats") > 0);
+            CHECK(exchange.at("sent_splats") < 3000.0 * (ranks - 1) / ranks);
             const auto& calls = exchange.at("calls");
             CHECK(calls.at("splats") == 2);
             CHECK(calls.at("lists") == 1);
@@ -90,9 +96,9 @@ TEST_CASE("traffic: a step of 2, 3 and 4 ranks exchanges the bytes of the formul
 
 TEST_CASE("traffic: effects add the bytes of their values, and depth maps those of another splat") {
     // Exposures have 12 sums per patch of 8 by 8 pixels, and all views have 36 patches.
-    check_formula(exchange_of("synthetic:alpha,views=8", 2, {"--effects", "exposure"}), 2, 3000, 12 * 36, 4);
-    check_formula(exchange_of("synthetic:alpha,views=8,depths=0.02", 3, {"--effects", "depth"}), 3, 3000, 0,
-                  4, 60 + 48);
+    check_formula(exchange_of("synthetic:alpha,views=8", 2, {"--effects", "exposure"}), 2, 12 * 36, 4);
+    check_formula(exchange_of("synthetic:alpha,views=8,depths=0.02", 3, {"--effects", "depth"}), 3, 0, 4,
+                  60 + 48);
 }
 
 TEST_CASE("traffic: one process exchanges nothing, and its metrics.json has no such part") {
@@ -104,7 +110,7 @@ TEST_CASE("traffic: one process exchanges nothing, and its metrics.json has no s
     CHECK(alone.traffic().of(purpose::other).calls == 0);
 }
 
-TEST_CASE("traffic: sums, sums for owners and shares have their own numbers of bytes") {
+TEST_CASE("traffic: sums, windows and shares have their own numbers of bytes") {
     for (const int count : {2, 3, 5}) {
         CAPTURE(count);
         const auto others = static_cast<std::uint64_t>(count - 1);
@@ -115,8 +121,19 @@ TEST_CASE("traffic: sums, sums for owners and shares have their own numbers of b
             all.sum(values.data(), 10);
             all.maximum(&most, 1);
         }));
-        CHECK(all_count(count, purpose::gradients, others * 8 * 200, 1,
-                        [&](communicator& all) { all.sum_for_owners(shares, values.data(), 16, 200); }));
+        // Rank r sends r items to each other one.
+        CHECK(all_count(
+            count, purpose::splats, others * (others + 1) / 2 * others * (8 * 3 + 4), 1,
+            [&](communicator& all) {
+                std::vector<std::size_t> items;
+                for (int r = 0; r < count; ++r)
+                    items.insert(items.end(), static_cast<std::size_t>(count), static_cast<std::size_t>(r));
+                std::vector<double> sent(3 * 100), received(3 * 100);
+                std::vector<float> sent_too(100), received_too(100);
+                const window_array arrays[] = {window_array::of(sent.data(), received.data(), 3),
+                                               window_array::of(sent_too.data(), received_too.data(), 1)};
+                all.exchange(gs::ranks::windows(items, count), arrays);
+            }));
         CHECK(all_count(count, purpose::gaussians, others * (8 * 200 + 4 * 100), 1, [&](communicator& all) {
             std::vector<float> more(100);
             const shared_array arrays[] = {shared_array::of(values.data(), 16, 200),

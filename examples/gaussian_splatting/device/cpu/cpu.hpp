@@ -251,12 +251,11 @@ class basic_cpu {
     void sum_over_ranks(T* p, std::size_t n) {
         ranks_->sum(p, n);
     }
-    template <class T>
-    void sum_for_owners(const gs::ranks::shares& shares, T* p, std::size_t block_size, std::size_t n) {
-        ranks_->sum_for_owners(shares, p, block_size, n);
-    }
     void gather(const gs::ranks::shares& shares, std::span<const gs::ranks::shared_array> arrays) {
         ranks_->gather(shares, arrays);
+    }
+    void exchange(const gs::ranks::windows& windows, std::span<const gs::ranks::window_array> arrays) {
+        ranks_->exchange(windows, arrays);
     }
 
     void sample_times(int every) {

@@ -236,16 +236,11 @@ class cuda {
     void sum_over_ranks(T* p, std::size_t n) {
         if (peers_) peers_->sum(p, n, stream_);
     }
-    template <class T>
-    void sum_for_owners(const gs::ranks::shares& shares, T* p, std::size_t block_size, std::size_t n) {
-        if (!peers_) return;
-        const gs::ranks::share own = shares.of(ranks_->rank(), block_size, n);
-        const T* theirs = peers_->exchange_parts(shares, p, block_size, n, stream_);
-        for_each_index(own.count(),
-                       add_parts<T>{p + own.first, theirs, own.count(), ranks_->rank(), ranks_->count()});
-    }
     void gather(const gs::ranks::shares& shares, std::span<const gs::ranks::shared_array> arrays) {
         if (peers_) peers_->gather(shares, arrays, stream_);
+    }
+    void exchange(const gs::ranks::windows& windows, std::span<const gs::ranks::window_array> arrays) {
+        if (peers_) peers_->exchange(windows, arrays, stream_);
     }
 
     void sample_times(int every) { times_.sample(every); }

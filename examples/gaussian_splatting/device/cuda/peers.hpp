@@ -13,25 +13,6 @@
 
 namespace gs::device {
 
-/// Adds the parts of all ranks in the order of ranks, so that the sums do not depend on the order in
-/// which parts arrive. One index per value.
-template <class T>
-struct add_parts {
-    T* own;           ///< the part of this rank, which becomes the sum
-    const T* theirs;  ///< the parts of all ranks; its own is unused
-    std::size_t count;
-    int rank, ranks;
-
-    WARPAGG_HD void operator()(std::size_t i) const {
-        T sum(0);
-        for (int r = 0; r < ranks; ++r) {
-            const T part = r == rank ? own[i] : theirs[static_cast<std::size_t>(r) * count + i];
-            sum = r == 0 ? part : sum + part;
-        }
-        own[i] = sum;
-    }
-};
-
 /// The GPUs of all ranks, connected by NCCL. All functions are collective. They run in the order of the
 /// stream, and don't wait. The connections last as long as the process, because NCCL ends them only
 /// after all ranks of the machine have asked for it.
@@ -59,19 +40,16 @@ class cuda_peers {
         traffic_.count_sum(n * sizeof(T));
         nccl_.check(nccl_.all_reduce(values, values, n, nccl_type<T>(), ncclSum, group_, stream));
     }
-    /// Sends each rank its part of the values. Returns the parts that this rank got: see `add_parts`.
-    template <class T>
-    const T* exchange_parts(const ranks::shares& shares, T* values, std::size_t block_size, std::size_t n,
-                            cudaStream_t stream) {
-        const auto array = ranks::shared_array::of(values, block_size, n);
-        traffic_.count_sum_for_owners(shares, array);
-        const std::size_t bytes = array.part(shares, rank_).size();
-        received_.resize(bytes * static_cast<std::size_t>(count_));
+    /// Sends the windows of all arrays: see `ranks::communicator::exchange`.
+    void exchange(const ranks::windows& windows, std::span<const ranks::window_array> arrays,
+                  cudaStream_t stream) {
+        traffic_.count_exchange(windows, arrays);
         for_each_other([&](int other) {
-            send(array.part(shares, other), other, stream);
-            receive({received_.data() + static_cast<std::size_t>(other) * bytes, bytes}, other, stream);
+            for (const auto& array : arrays) {
+                send(array.sent(windows, rank_, other), other, stream);
+                receive(array.received(windows, other, rank_), other, stream);
+            }
         });
-        return reinterpret_cast<const T*>(received_.data());
     }
     /// Gives all ranks the parts of the others.
     void gather(const ranks::shares& shares, std::span<const ranks::shared_array> arrays,
@@ -88,9 +66,10 @@ class cuda_peers {
   private:
     /// Makes the first exchange, because NCCL connects GPUs when they first need it.
     void connect() {
-        received_.resize(sizeof(double) * static_cast<std::size_t>(count_));
-        double* const values = reinterpret_cast<double*>(received_.data());
-        check(cudaMemsetAsync(values, 0, received_.size(), cudaStreamLegacy));
+        cuda_buffer<double> memory;
+        memory.resize(static_cast<std::size_t>(count_));
+        double* const values = memory.data();
+        check(cudaMemsetAsync(values, 0, memory.size() * sizeof(double), cudaStreamLegacy));
         sum(values, static_cast<std::size_t>(count_), cudaStreamLegacy);
         const ranks::shared_array array[] = {
             ranks::shared_array::of(values, 1, static_cast<std::size_t>(count_))};
@@ -118,7 +97,6 @@ class cuda_peers {
     ncclComm_t group_ = nullptr;
     int rank_, count_;
     ranks::traffic_counter& traffic_;
-    cuda_buffer<std::byte> received_;
 };
 
 }  // namespace gs::device

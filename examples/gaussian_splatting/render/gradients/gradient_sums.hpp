@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "../../core/error.hpp"
 #include "../../device/device.hpp"
@@ -21,6 +22,24 @@ struct round_sums {
     float* sums;
 
     WARPAGG_HD void operator()(std::size_t i) const { sums[i] = cells[i].value() * unit; }
+};
+
+/// Returns the float of a sum in fixed point.
+template <class Accumulate>
+struct round_fixed {
+    float unit;
+
+    WARPAGG_HD float operator()(std::int64_t sum) const {
+        return warpagg::accumulator<Accumulate>{{sum}}.value() * unit;
+    }
+};
+
+/// Returns a sum as it is.
+struct keep_sum {
+    template <class Real>
+    WARPAGG_HD Real operator()(Real sum) const {
+        return sum;
+    }
 };
 
 /// The gradient sums of a backward pass, and their memory on the device.
@@ -78,23 +97,32 @@ class gradient_sums {
         device_.for_each_index(sums_.size() / record_stride, set_red_aside<in_memory>{kernel.sums});
     }
     /// Called after the kernel. Returns the sums as `Real`. If `adds_ranks`, first adds those of all ranks.
-    /// With `owners`, a rank gets the sums of its own share of the Gaussians only.
     template <class Kernel>
-    const buffer<Real>& end(const Kernel& kernel, bool adds_ranks, const ranks::shares* owners) {
-        if constexpr (std::is_same_v<std::remove_pointer_t<decltype(kernel.sums)>, Real>) {
-            if (adds_ranks) add_ranks(sums_.data(), owners);
+    const buffer<Real>& end(const Kernel& kernel, bool adds_ranks) {
+        const std::size_t n = sums_.size();
+        const ranks::traffic_counter::scope scope(device_.ranks().traffic(), ranks::purpose::scores);
+        if constexpr (are_real<Kernel>) {
+            if (adds_ranks) device_.sum_over_ranks(sums_.data(), n);
         } else {
-            if constexpr (requires { kernel.how.accumulating().fault; })
-                if (adds_ranks) add_ranks(reinterpret_cast<std::int64_t*>(cells_.data()), owners);
-            float unit = 1;
-            if constexpr (requires { kernel.how.accumulating().scale; })
-                unit = 1 / kernel.how.accumulating().scale;
-            const std::size_t n = sums_.size();
-            device_.for_each_index(
-                owners == nullptr ? ranks::share{0, n} : owners->of(device_.ranks().rank(), record_stride, n),
-                round_sums<kept_by<Kernel>>{kernel.sums, unit, sums_.data()});
+            if constexpr (are_fixed<Kernel>)
+                if (adds_ranks) device_.sum_over_ranks(fixed(), n);
+            device_.for_each_index(n,
+                                   round_sums<kept_by<Kernel>>{kernel.sums, unit_of(kernel), sums_.data()});
         }
         return sums_;
+    }
+    /// Called after the kernel if each rank has sums of the `splats` that it lists. Returns the sums of
+    /// this rank's share of the Gaussians: see `visible_splats::add_ranks`. Precondition: the sums are `Real`
+    /// or in fixed point.
+    template <class Kernel, class Splats>
+    const buffer<Real>& end_for_owners(const Kernel& kernel, Splats& splats, std::size_t gaussians) {
+        const ranks::traffic_counter::scope scope(device_.ranks().traffic(), ranks::purpose::gradients);
+        if constexpr (are_real<Kernel>)
+            return splats.add_ranks(sums_.data(), keep_sum{}, gaussians);
+        else if constexpr (are_fixed<Kernel>)
+            return splats.add_ranks(fixed(), round_fixed<kept_by<Kernel>>{unit_of(kernel)}, gaussians);
+        else
+            throw error("ranks cannot add the sums of this accumulator");
     }
 
     /// Returns the size of the sums of a Gaussian. Accumulators other than `native` have an integer
@@ -107,18 +135,24 @@ class gradient_sums {
     std::uint32_t* fault() const { return fault_.data(); }
 
   private:
-    /// Precondition: there is one value per sum.
-    template <class T>
-    void add_ranks(T* values, const ranks::shares* owners) {
-        using enum ranks::purpose;
-        const ranks::traffic_counter::scope scope(device_.ranks().traffic(),
-                                                  owners == nullptr ? scores : gradients);
-        owners == nullptr ? device_.sum_over_ranks(values, sums_.size())
-                          : device_.sum_for_owners(*owners, values, record_stride, sums_.size());
-    }
-
     template <class Kernel>
     using kept_by = typename Kernel::policy::accumulate::storage;
+    template <class Kernel>
+    static constexpr bool are_real =
+        std::is_same_v<std::remove_pointer_t<decltype(std::declval<Kernel>().sums)>, Real>;
+    template <class Kernel>
+    static constexpr bool are_fixed = requires(const Kernel kernel) {
+        kernel.how.accumulating().fault;
+    };
+    /// Returns the value of one unit of an accumulator.
+    template <class Kernel>
+    static float unit_of(const Kernel& kernel) {
+        if constexpr (requires { kernel.how.accumulating().scale; })
+            return 1 / kernel.how.accumulating().scale;
+        else
+            return 1;
+    }
+    std::int64_t* fixed() const { return reinterpret_cast<std::int64_t*>(cells_.data()); }
 
     Device& device_;
     buffer<Real> sums_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -9,37 +10,75 @@
 #include "../../device/device.hpp"
 #include "../geometry/splat.hpp"
 #include "../tiles/tile_reach.hpp"
+#include "../tiles/view_strip.hpp"
 #include "project_backward.hpp"
 
 namespace gs::raster {
 
-/// Marks the Gaussians that are drawn. One index per Gaussian of a share.
-struct mark_drawn {
-    const std::uint32_t* tiles;  ///< of the share: see `project`
-    std::uint32_t* marks;
-    WARPAGG_HD void operator()(std::size_t i) const { marks[i] = tiles[i] != 0 ? 1 : 0; }
-};
+/// Marks the Gaussians of a share that each rank lists. One index per Gaussian.
+struct mark_listed {
+    listed_tile_rows rows;
+    std::size_t count;           ///< number of Gaussians of the share
+    const std::uint32_t* tiles;  ///< of the share, like the next: see `project`
+    const tile_box* boxes;
+    std::uint32_t* marks;  ///< `count` for each rank, and `count` more for the Gaussians that are drawn
 
-/// Copies the values of drawn Gaussians to consecutive places. One index per Gaussian of a share.
-template <class T>
-struct copy_drawn {
-    const std::uint32_t* marks;
-    const std::uint64_t* places;
-    const T* from;
-    T* to;
     WARPAGG_HD void operator()(std::size_t i) const {
-        if (marks[i] != 0) to[places[i]] = from[i];
+        const bool is_drawn = tiles[i] != 0;
+        for (unsigned rank = 0; rank < rows.ranks; ++rank)
+            marks[rank * count + i] = is_drawn && limited(boxes[i], rows.of[rank]).size() != 0 ? 1 : 0;
+        marks[rows.ranks * count + i] = is_drawn ? 1 : 0;
     }
 };
 
-/// Stores which Gaussian each place has. One index per Gaussian of a share.
-struct number_drawn {
-    const std::uint32_t* marks;
-    const std::uint64_t* places;
-    std::size_t first;
-    std::uint32_t* gaussian_of;
+/// Counts the marks of each rank, and those after them. One index per number.
+struct count_marks {
+    const std::uint64_t* places;  ///< the prefix sum of the marks
+    std::size_t count;            ///< marks of each rank
+    std::uint64_t* counts;
+
+    WARPAGG_HD void operator()(std::size_t rank) const {
+        counts[rank] = places[(rank + 1) * count] - places[rank * count];
+    }
+};
+
+/// The windows that a rank sends to all ranks, in places that follow each other.
+struct sent_windows {
+    const std::uint32_t* marks;   ///< see `mark_listed`
+    const std::uint64_t* places;  ///< the prefix sum of the marks
+    std::size_t count;            ///< number of Gaussians of the share
+    unsigned own, ranks;
+    std::uint64_t first_own;  ///< the first place of the window to the rank itself
+
+    /// Calls f(place) for each place of a Gaussian in windows to others, and g(item) with its number in the
+    /// window to the rank itself, in the order of ranks.
+    template <class F, class G>
+    WARPAGG_HD void visit(std::size_t gaussian, const F& f, const G& g) const {
+        for (unsigned rank = 0; rank < ranks; ++rank) {
+            const std::size_t i = rank * count + gaussian;
+            if (marks[i] == 0) continue;
+            rank == own ? g(places[i] - first_own) : f(places[i]);
+        }
+    }
+};
+
+/// An array with a value per Gaussian, and the windows that receive them.
+template <class T>
+struct filled_array {
+    const T* from;
+    T* sent;
+    T* kept;  ///< the window to the rank itself
+};
+
+/// Copies the values of each Gaussian to its places in windows. One index per Gaussian of a share.
+template <class... T>
+struct fill_windows : filled_array<T>... {
+    sent_windows windows;
+
     WARPAGG_HD void operator()(std::size_t i) const {
-        if (marks[i] != 0) gaussian_of[places[i]] = static_cast<std::uint32_t>(first + i);
+        windows.visit(
+            i, [&](std::uint64_t place) { ((filled_array<T>::sent[place] = filled_array<T>::from[i]), ...); },
+            [&](std::uint64_t item) { ((filled_array<T>::kept[item] = filled_array<T>::from[i]), ...); });
     }
 };
 
@@ -49,19 +88,33 @@ struct count_up {
     WARPAGG_HD void operator()(std::size_t i) const { numbers[i] = static_cast<std::uint32_t>(i); }
 };
 
-/// Copies the sums of splats to the records of their Gaussians. One index per value.
-template <class Real>
-struct spread_sums {
-    const std::uint32_t* gaussian_of;
-    const Real* from;
-    Real* to;
+/// Adds the sums of each Gaussian that the ranks have computed, in the order of ranks, so that the
+/// result does not depend on the order in which they arrive. One index per sum of a share.
+/// `Round`: `T to_sum(T)` as `Real`.
+template <class T, class Real, class Round>
+struct add_windows {
+    sent_windows windows;
+    const T* returned;  ///< sums in the places of windows to others
+    const T* kept;      ///< those in the window to the rank itself
+    Round round;
+    Real* sums;  ///< of the share
     WARPAGG_HD void operator()(std::size_t i) const {
-        to[std::size_t{gaussian_of[i / record_stride]} * record_stride + i % record_stride] = from[i];
+        const std::size_t k = i % record_stride;
+        T sum(0);
+        bool is_first = true;
+        const auto add = [&](const T& part) {
+            sum = is_first ? part : sum + part;
+            is_first = false;
+        };
+        windows.visit(
+            i / record_stride, [&](std::uint64_t place) { add(returned[place * record_stride + k]); },
+            [&](std::uint64_t item) { add(kept[item * record_stride + k]); });
+        sums[i] = round(sum);
     }
 };
 
-/// The splats of a view that are drawn, in the order of their Gaussians, on each rank. A rank projects
-/// only its own Gaussians, and gets the other splats from their owners.
+/// The splats that a rank lists, in the order of their Gaussians. A rank projects only its own
+/// Gaussians. It sends each splat to the ranks whose strips it may touch, and gets their sums back.
 template <device::device Device, class Real>
 class visible_splats {
     template <class T>
@@ -70,53 +123,61 @@ class visible_splats {
   public:
     explicit visible_splats(Device& device) : device_(device) {}
 
-    /// Collects the splats of all ranks. The arguments have a value per Gaussian; those of the share
-    /// `own` are set. All ranks must call this. Waits for the device.
-    void collect(const ranks::share& own, const splat<Real>* all_splats, const tile_box* all_boxes,
-                 const std::uint32_t* all_depths, const std::uint32_t* all_tiles) {
+    /// Collects the splats of this rank's strip. The arguments have a value per Gaussian; those of the
+    /// share `own` are set. `rows`: the tile rows that each rank lists. All ranks must call this. Waits for
+    /// the device.
+    void collect(const ranks::share& own, const listed_tile_rows& rows, const splat<Real>* all_splats,
+                 const tile_box* all_boxes, const std::uint32_t* all_depths, const std::uint32_t* all_tiles) {
         own_ = own;
-        marks_.resize(own.count());
-        places_.resize(own.count() + 1);
-        device_.for_each_index(own.count(), mark_drawn{all_tiles + own.first, marks_.data()});
-        device_.prefix_sum(marks_, places_, own.count());
-        std::uint64_t drawn = 0;
-        device_.download(&drawn, places_.data() + own.count(), 1);
+        const std::size_t ranks = rows.ranks, marks = (ranks + 1) * own.count();
+        marks_.resize(marks);
+        places_.resize(marks + 1);
+        device_.for_each_index(own.count(), mark_listed{rows, own.count(), all_tiles + own.first,
+                                                        all_boxes + own.first, marks_.data()});
+        device_.prefix_sum(marks_, places_, marks);
+        counts_.resize(ranks + 1);
+        device_.for_each_index(ranks + 1, count_marks{places_.data(), own.count(), counts_.data()});
+        exchange_counts(ranks);
 
-        const int rank = device_.ranks().rank();
-        std::vector<std::uint64_t> counts(static_cast<std::size_t>(device_.ranks().count()));
-        counts[static_cast<std::size_t>(rank)] = drawn;
-        device_.ranks().sum(counts.data(), counts.size());
-        shares_ = ranks::shares(std::vector<std::size_t>(counts.begin(), counts.end()));
-        gaussian_of_.resize(drawn);
-        device_.for_each_index(own.count(),
-                               number_drawn{marks_.data(), places_.data(), own.first, gaussian_of_.data()});
-        copy(all_splats, splats);
-        copy(all_boxes, boxes);
-        copy(all_depths, depths);
-        const ranks::shared_array arrays[] = {shared(splats), shared(boxes), shared(depths)};
-        device_.gather(shares_, arrays);
+        device_.for_each_index(
+            own.count(), fill_windows<splat<Real>, tile_box, std::uint32_t>{
+                             filled(all_splats, sent_splats_, splats), filled(all_boxes, sent_boxes_, boxes),
+                             filled(all_depths, sent_depths_, depths), places()});
         order.resize(count());
         device_.for_each_index(count(), count_up{order.data()});
+        const ranks::window_array arrays[] = {array(sent_splats_, splats), array(sent_boxes_, boxes),
+                                              array(sent_depths_, depths)};
+        device_.exchange(windows_, arrays);
     }
     /// Collects other splats of the same Gaussians. All ranks must call this.
     void collect(const splat<Real>* all_splats, buffer<splat<Real>>& to) {
-        copy(all_splats, to);
-        const ranks::shared_array arrays[] = {shared(to)};
-        device_.gather(shares_, arrays);
+        device_.for_each_index(own_.count(),
+                               fill_windows<splat<Real>>{filled(all_splats, sent_splats_, to), places()});
+        const ranks::window_array arrays[] = {array(sent_splats_, to)};
+        device_.exchange(windows_, arrays);
     }
-    /// Returns the sums of each Gaussian of this rank, from those of its splats. `gaussians`: the
-    /// number of all Gaussians.
-    const Real* by_gaussian(const Real* sums, std::size_t gaussians) {
+    /// Returns the sums of each Gaussian of this rank's share, from those that all ranks have for the splats
+    /// they list. Others are unspecified. `gaussians`: the number of all Gaussians. All ranks must call this.
+    template <class T, class Round>
+    const buffer<Real>& add_ranks(const T* of_listed, const Round& round, std::size_t gaussians) {
+        returned_.resize(windows_.sent_by(rank()).items() * record_stride * sizeof(T));
+        T* const returned = reinterpret_cast<T*>(returned_.data());
+        const ranks::window_array arrays[] = {ranks::window_array::of(of_listed, returned, record_stride)};
+        device_.exchange(windows_.reversed(), arrays);
         sums_.resize(gaussians * record_stride);
-        const ranks::share own = shares_.of(device_.ranks().rank());
-        device_.for_each_index(
-            own.count() * record_stride,
-            spread_sums<Real>{gaussian_of_.data(), sums + own.first * record_stride, sums_.data()});
-        return sums_.data();
+        device_.for_each_index(own_.count() * record_stride,
+                               add_windows<T, Real, Round>{
+                                   places(), returned, of_listed + kept_in_received().first * record_stride,
+                                   round, sums_.data() + own_.first * record_stride});
+        return sums_;
     }
 
-    std::size_t count() const { return shares_.items(); }
-    const ranks::shares& shares() const { return shares_; }
+    /// The number of splats that this rank lists.
+    std::size_t count() const { return windows_.received_by(rank()).items(); }
+    /// The drawn splats of all ranks, by owner.
+    const ranks::shares& drawn() const { return drawn_; }
+    /// The number of splats that ranks have sent to others.
+    std::size_t moved() const { return windows_.moved(); }
 
     /// The values of each splat: see `project`.
     buffer<splat<Real>> splats;
@@ -124,23 +185,55 @@ class visible_splats {
     buffer<std::uint32_t> depths, order;
 
   private:
-    template <class T>
-    void copy(const T* from, buffer<T>& to) {
-        to.resize(count());
-        device_.for_each_index(own_.count(),
-                               copy_drawn<T>{marks_.data(), places_.data(), from + own_.first,
-                                             to.data() + shares_.of(device_.ranks().rank()).first});
+    int rank() const { return device_.ranks().rank(); }
+    /// Gives all ranks the numbers of splats in all windows. Waits for the device.
+    void exchange_counts(std::size_t ranks) {
+        counts_on_host_.resize(ranks + 1);
+        device_.begin_download(counted_, counts_on_host_.data(), counts_.data(), ranks + 1);
+        counted_.wait();
+        std::vector<std::uint64_t> all(ranks * (ranks + 1));
+        std::copy_n(
+            counts_on_host_.data(), ranks + 1,
+            all.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(rank()) * (ranks + 1)));
+        device_.ranks().sum(all.data(), all.size());
+        std::vector<std::size_t> windows, drawn;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            (i % (ranks + 1) == ranks ? drawn : windows).push_back(all[i]);
+        windows_ = ranks::windows(windows, static_cast<int>(ranks));
+        drawn_ = ranks::shares(drawn);
+    }
+    ranks::share kept_in_sent() const { return windows_.sent_by(rank()).of(rank()); }
+    ranks::share kept_in_received() const { return windows_.received_by(rank()).of(rank()); }
+    sent_windows places() const {
+        return {marks_.data(),
+                places_.data(),
+                own_.count(),
+                static_cast<unsigned>(rank()),
+                static_cast<unsigned>(windows_.ranks()),
+                kept_in_sent().first};
     }
     template <class T>
-    ranks::shared_array shared(const buffer<T>& values) const {
-        return ranks::shared_array::of(values.data(), 1, count());
+    filled_array<T> filled(const T* from, buffer<T>& to_others, buffer<T>& to) const {
+        to_others.resize(windows_.sent_by(rank()).items());
+        to.resize(count());
+        return {from + own_.first, to_others.data(), to.data() + kept_in_received().first};
+    }
+    template <class T>
+    static ranks::window_array array(const buffer<T>& from, const buffer<T>& to) {
+        return ranks::window_array::of(from.data(), to.data(), 1);
     }
 
     Device& device_;
     ranks::share own_;
-    ranks::shares shares_{0, 1, 1};
-    buffer<std::uint32_t> marks_, gaussian_of_;
-    buffer<std::uint64_t> places_;
+    ranks::shares drawn_{0, 1, 1};
+    ranks::windows windows_{std::vector<std::size_t>{0}, 1};
+    buffer<std::uint32_t> marks_, sent_depths_;
+    buffer<std::uint64_t> places_, counts_;
+    typename Device::template host_buffer<std::uint64_t> counts_on_host_;
+    typename Device::transfer counted_;
+    buffer<splat<Real>> sent_splats_;
+    buffer<tile_box> sent_boxes_;
+    buffer<char> returned_;  ///< sums that other ranks have sent back
     buffer<Real> sums_;
 };
 

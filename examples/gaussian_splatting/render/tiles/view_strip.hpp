@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "../../device/atomic.hpp"
+#include "../../ranks/communicator.hpp"
 #include "../geometry/list_capacity.hpp"
 #include "../geometry/row_range.hpp"
 #include "tile_lists.hpp"
@@ -13,21 +16,48 @@
 
 namespace gs::raster {
 
+/// The tile rows that each rank lists.
+struct listed_tile_rows {
+    unsigned ranks;
+    std::array<row_range, ranks::most_ranks> of;
+};
+
 /// The tile rows of a view that one of several ranks draws. Together, the ranks own all rows.
 struct view_strip {
     row_range own;
     int reach = 0;  ///< number of pixel rows beyond its own that it only renders, see `loss::reach`
-    bool shares_gaussians = false;  ///< whether the rank projects its own Gaussians only
+    bool shares_gaussians = false;           ///< whether the rank projects its own Gaussians only
+    std::vector<row_range> own_of_all = {};  ///< the own rows of each rank, if it `shares_gaussians`
 
     /// Returns the tile rows with tile lists, of a view with `down` tile rows.
-    row_range listed(int down) const {
-        return own.grown(reach / tile_size + (reach % tile_size > 0 ? 1 : 0), down);
+    row_range listed(int down) const { return listed(own, down); }
+    /// The same for each rank. Precondition: the strip `shares_gaussians`.
+    listed_tile_rows listed_by_all(int down) const {
+        listed_tile_rows all{static_cast<unsigned>(own_of_all.size()), {}};
+        for (std::size_t rank = 0; rank < own_of_all.size(); ++rank)
+            all.of[rank] = listed(own_of_all[rank], down);
+        return all;
     }
     /// Returns the rows of pixels of its own tile rows.
     row_range own_pixels(int height) const {
         return row_range{own.first * tile_size, own.last * tile_size}.within(height);
     }
+
+  private:
+    row_range listed(const row_range& rows, int down) const {
+        return rows.grown(reach / tile_size + (reach % tile_size > 0 ? 1 : 0), down);
+    }
 };
+
+/// Returns the part of a box that lies in some tile rows.
+WARPAGG_HD tile_box limited(const tile_box& box, const row_range& rows) {
+    const auto in_rows = [&rows](std::uint16_t row) {
+        const auto first = static_cast<std::uint16_t>(rows.first),
+                   last = static_cast<std::uint16_t>(rows.last);
+        return row < first ? first : row > last ? last : row;
+    };
+    return {box.x0, in_rows(box.y0), box.x1, in_rows(box.y1)};
+}
 
 /// Limits boxes to some tile rows. Splats without a tile there get the largest depth, so that they are
 /// sorted behind all others. One index per splat.
@@ -38,13 +68,7 @@ struct clip_boxes {
     std::uint32_t* depths;  ///< sort keys: see `project`
 
     WARPAGG_HD void operator()(std::size_t i) const {
-        const auto limited = [this](std::uint16_t row) {
-            const auto first = static_cast<std::uint16_t>(rows.first),
-                       last = static_cast<std::uint16_t>(rows.last);
-            return row < first ? first : row > last ? last : row;
-        };
-        const tile_box box = boxes[i];
-        const tile_box in_rows{box.x0, limited(box.y0), box.x1, limited(box.y1)};
+        const tile_box in_rows = limited(boxes[i], rows);
         limited_boxes[i] = in_rows;
         if (in_rows.size() == 0) depths[i] = 0xffffffffu;
     }
