@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The warpagg authors
 # SPDX-License-Identifier: MIT
-"""How often `inspect` decides right what a scene calls for: on synthetic scenes of known truth, and what it says of photos.
+"""How often `inspect` or `train` decides right what a scene calls for: on synthetic scenes of known truth, and what they say of photos.
 
     bench/decisions.py run --program build/.../gaussian_splatting --data ../shared/data --scenes lego truck \\
         --output bench/results/decisions.json
     bench/decisions.py table bench/results/decisions.json
 
+    bench/decisions.py run --train --program ... --output train.json -- -i 1500
+
+With --train, the decisions are those with which a training ends, which may have revised them. Options after -- go to `train`.
 Pure scenes have one effect or noise; mixtures have each effect or not, by the seed, and each mixture comes with each noise.
 """
 import argparse
@@ -18,7 +21,7 @@ import subprocess
 import tempfile
 import time
 
-from environment import environment
+from environment import environment, own_and_passed_on
 from markdown_tables import markdown
 from scenes import by
 
@@ -65,20 +68,40 @@ def mixtures(count, seed, noises):
     return cases
 
 
+def run_program(scene, command):
+    try:
+        done = subprocess.run(command, capture_output=True, text=True)
+    except OSError as problem:
+        raise SystemExit(f"'{command[0]}' does not run: {problem.strerror}") from None
+    if done.returncode:
+        raise SystemExit(f"{command[1]} failed with {scene}: {done.stderr.strip()}")
+
+
+def trained(program, scene, options):
+    """By effect, whether a training ended with it, and the reason. Effects that follow from the files are missing."""
+    with tempfile.TemporaryDirectory() as folder:
+        run_program(scene, [program, "train", "-d", scene, "-o", folder, "-q", "--no-viewer", *options])
+        found = json.loads((pathlib.Path(folder) / "metrics.json").read_text())["effects"]
+    return {e["name"]: {"recommended": e["on"] and e.get("sh_degree", 1) > 0, "evidence": e["reason"]} for e in found
+            if e["name"] != BACKGROUND}
+
+
 def inspect(program, scene):
     """By effect, whether it is called for (None: undecided) and the evidence; and the seconds of the whole process."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "effects.json"
         start = time.monotonic()
-        try:
-            done = subprocess.run([program, "inspect", "-d", scene, "-o", file], capture_output=True, text=True)
-        except OSError as problem:
-            raise SystemExit(f"'{program}' does not run: {problem.strerror}") from None
+        run_program(scene, [program, "inspect", "-d", scene, "-o", file])
         seconds = time.monotonic() - start
-        if done.returncode:
-            raise SystemExit(f"{scene} could not be inspected: {done.stderr.strip()}")
         found = json.loads(file.read_text())["effects"]
     return {"effects": {e["name"]: {key: e[key] for key in ("recommended", "evidence")} for e in found}, "seconds": seconds}
+
+
+def decide(arguments, scene):
+    found = inspect(arguments.program, scene)
+    if arguments.train:
+        found["effects"].update(trained(arguments.program, scene, arguments.options))
+    return found
 
 
 def run(arguments):
@@ -96,13 +119,14 @@ def run(arguments):
     runs = []
     cases = [*pure(), *mixtures(arguments.mixtures, arguments.seed, arguments.noises)]
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        for case, found in zip(cases, pool.map(lambda case: inspect(arguments.program, case["scene"]), cases)):
+        for case, found in zip(cases, pool.map(lambda case: decide(arguments, case["scene"]), cases)):
             runs.append({**case, **found})
             print(case["scene"], "wrong: " + (", ".join(wrong(runs[-1])) or "none"), flush=True)
     for folder in real:
-        runs.append({"kind": "real", "scene": folder.name, **inspect(arguments.program, str(folder))})
+        runs.append({"kind": "real", "scene": folder.name, **decide(arguments, str(folder))})
         print(folder.name, f"{runs[-1]['seconds']:.2f} s", flush=True)
-    result = {"bench": "decisions", **environment(arguments.commit), "seed": arguments.seed, "runs": runs}
+    result = {"bench": "decisions", **environment(arguments.commit), "seed": arguments.seed,
+              "train": arguments.options if arguments.train else None, "runs": runs}
     aside = output.with_name(output.name + ".part")
     aside.write_text(json.dumps(result, indent=1) + "\n")
     aside.replace(output)
@@ -145,8 +169,10 @@ def tables(result):
             rows.append([effect, f"{noise:g}", share(both, both + only_said), share(both, both + only_true), str(both),
                          str(only_said), str(only_true)])
     head = ["effect", "noise", "precision", "recall", "true positives", "false positives", "false negatives"]
-    text = [f"{len(mixed)} scenes, random mixtures of effects by seed {result['seed']}, each with each noise; undecided "
-            "counts as not called for:\n", markdown(head, rows)]
+    options = result.get("train")
+    by_whom = "`inspect`" if options is None else f"`train {' '.join(options)}`"
+    text = [f"{len(mixed)} scenes, random mixtures of effects by seed {result['seed']}, each with each noise; decisions of "
+            f"{by_whom}; undecided counts as not called for:\n", markdown(head, rows)]
 
     verdict = lambda one, effect: "**wrong**" if effect in wrong(one) else "right"
     rows = [[name(r), *(f"{verdict(r, effect)}: {said(r, effect)}" for effect in EFFECTS)] for r in kinds["pure"]]
@@ -184,13 +210,16 @@ def main():
     runner.add_argument("--noises", nargs="+", type=float, default=[0, 0.01, 0.03])
     runner.add_argument("--seed", type=int, default=0)
     runner.add_argument("--jobs", type=int, default=1, help="synthetic scenes that are inspected at once, which then take longer")
+    runner.add_argument("--train", action="store_true", help="take the decisions of a training")
     runner.add_argument("--commit", help="where the sources are no git checkout")
     runner.add_argument("--output", required=True)
     runner.set_defaults(action=run)
     shower = commands.add_parser("table")
     shower.add_argument("file")
     shower.set_defaults(action=table)
-    arguments = parser.parse_args()
+    own, passed_on = own_and_passed_on()
+    arguments = parser.parse_args(own)
+    arguments.options = passed_on[0] if passed_on else []
     arguments.action(arguments)
 
 

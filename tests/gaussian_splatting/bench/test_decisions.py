@@ -99,6 +99,16 @@ class Program(unittest.TestCase):
         self.assertIn("| `spheres,walls=0.8` |" + " right: no |" * 11, text)
         self.assertNotIn("Photos", text)
 
+    def test_decisions_of_a_training(self):
+        program = os.environ["WARPAGG_PROGRAM"]
+        found = decisions.trained(program, "synthetic:spheres,exposure=0.3,views=16", ["-i", "20", "--device", "cpu"])
+        self.assertTrue(found["exposure"]["recommended"])
+        self.assertFalse(found["masks"]["recommended"])
+        self.assertNotIn("background", found)
+        self.assertIn("differs by", found["exposure"]["evidence"])
+        with self.assertRaisesRegex(SystemExit, "train failed with synthetic:spheres: .*iterations"):
+            decisions.trained(program, "synthetic:spheres", ["-i", "none"])
+
     def test_what_is_wrong_is_said_in_a_sentence(self):
         def refusal(*words):
             done = subprocess.run([*SCRIPT, *words], capture_output=True, text=True)
@@ -118,7 +128,7 @@ class Program(unittest.TestCase):
             self.assertEqual(refusal("run", "--program", program, "--output", f"{folder}/no/x.json"),
                              f"there is no folder '{folder}/no'\n")
             self.assertEqual(os.listdir(folder), [])
-        with self.assertRaisesRegex(SystemExit, "synthetic:cubes could not be inspected: .*there is no synthetic scene 'cubes'"):
+        with self.assertRaisesRegex(SystemExit, "inspect failed with synthetic:cubes: .*there is no synthetic scene 'cubes'"):
             decisions.inspect(program, "synthetic:cubes")
 
 
