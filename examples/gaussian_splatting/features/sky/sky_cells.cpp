@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 
 #include "../../core/parallel.hpp"
+#include "../../scene/image_radius.hpp"
+#include "../../scene/lens_falloff.hpp"
 #include "../../scene/view_photo.hpp"
 
 namespace gs::features {
@@ -71,6 +73,22 @@ glm::dvec2 photo_cells::middle(std::size_t cell) const {
 glm::dvec3 photo_cells::ray(const camera& taken_with, std::size_t cell) const {
     const glm::dvec2 place = middle(cell);
     return taken_with.ray(place.x, place.y);
+}
+
+void remove_falloff(const scene& of, const std::array<double, 3>& strengths,
+                    std::vector<photo_cells>& photos) {
+    lens_falloff falloff;
+    falloff.channels = strengths;
+    for (std::size_t v = 0; v < photos.size(); ++v) {
+        const camera& c = of.train[v].camera;
+        if (c.is_panorama) continue;
+        for (std::size_t i = 0; i < photos[v].cells.size(); ++i) {
+            const glm::dvec2 middle = photos[v].middle(i);
+            const auto factors = falloff.at(square_radius(c, middle.x, middle.y));
+            for (int k = 0; k < 3; ++k)
+                photos[v].cells[i].color[k] /= static_cast<float>(factors[static_cast<std::size_t>(k)]);
+        }
+    }
 }
 
 std::vector<photo_cells> divide_photos(const scene& of) {

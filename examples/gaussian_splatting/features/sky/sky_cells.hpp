@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -36,5 +37,10 @@ struct photo_cells {
 /// Returns the squares of each training photo. Cost: decodes all photos, and projects all points into
 /// each of them.
 std::vector<photo_cells> divide_photos(const scene& of);
+
+/// Removes a falloff with these strengths of red, green and blue from the colors of squares: see
+/// `lens_falloff`. Within a square it is about linear, so the means of squares suffice. Panoramas have none.
+void remove_falloff(const scene& of, const std::array<double, 3>& strengths,
+                    std::vector<photo_cells>& photos);
 
 }  // namespace gs::features

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <numeric>
 #include <optional>
 
 #include "../../core/parallel.hpp"
@@ -41,6 +42,13 @@ std::vector<sighting> sightings(const scene& of, const std::vector<photo_cells>&
                 {v, c.center(), cells[v].ray(c, i), gain[v] * glm::dvec3(cells[v].cells[i].color)});
         }
     return found;
+}
+
+/// Returns the factors that even out the brightness of photos.
+std::vector<double> gains(const scene& of, const std::vector<double>& brighter) {
+    std::vector<double> gain(of.train.size(), 1.0);
+    for (std::size_t v = 0; v < brighter.size(); ++v) gain[v] = std::exp2(-brighter[v]);
+    return gain;
 }
 
 /// Returns the place at which the ray of a sighting leaves a sphere. Precondition: its eye is inside.
@@ -79,17 +87,47 @@ struct comparisons {
     }
 };
 
+/// Returns the number of comparisons that match at infinity, with every `step`-th sighting.
+std::size_t far_matches(const scene& of, const std::vector<photo_cells>& cells,
+                        const std::vector<double>& gain, const std::vector<sighting>& squares,
+                        std::size_t step) {
+    std::vector<std::size_t> by_view(of.train.size());
+    for_each_in_parallel(by_view.size(), [&](std::size_t v) {
+        const camera& c = of.train[v].camera;
+        for (std::size_t i = 0; i < squares.size(); i += step)
+            if (squares[i].view != v &&
+                shows(cells[v], c, gain[v], squares[i], c.center() + squares[i].ray).value_or(false))
+                ++by_view[v];
+    });
+    return std::accumulate(by_view.begin(), by_view.end(), std::size_t{0});
+}
+
 }  // namespace
+
+double strength_of_falloff(const scene& of, const std::vector<photo_cells>& cells, const sky_fit& fit,
+                           const std::vector<double>& brighter) {
+    constexpr std::size_t step = 4;
+    const std::vector<double> gain = gains(of, brighter);
+    double best = 0;
+    std::size_t most = 0;
+    for (int tenth = 0; tenth <= 8; ++tenth) {
+        std::vector<photo_cells> bright = cells;
+        const double strength = tenth / 10.0;
+        remove_falloff(of, {strength, strength, strength}, bright);
+        const std::size_t matches = far_matches(of, bright, gain, sightings(of, bright, fit, gain), step);
+        if (matches <= most) continue;
+        most = matches;
+        best = strength;
+    }
+    return best;
+}
 
 sky_distance measure_distance(const scene& of, const std::vector<photo_cells>& cells, const sky_fit& fit,
                               const std::vector<double>& brighter) {
     const double extent = of.extent();
     glm::dvec3 center(0);
-    std::vector<double> gain(of.train.size(), 1.0);
-    for (std::size_t v = 0; v < of.train.size(); ++v) {
-        center += of.train[v].camera.center() / static_cast<double>(of.train.size());
-        if (!brighter.empty()) gain[v] = std::exp2(-brighter[v]);
-    }
+    for (const view& v : of.train) center += v.camera.center() / static_cast<double>(of.train.size());
+    const std::vector<double> gain = gains(of, brighter);
     const std::vector<sighting> squares = sightings(of, cells, fit, gain);
 
     std::vector<std::array<comparisons, distances.size()>> by_view(of.train.size());

@@ -27,6 +27,12 @@ struct sky_distance {
     bool is_near() const { return near_only - far_only > largest_excess; }
 };
 
+/// Returns the strength of the falloff without which most looks at infinity show the same color: 0 to 0.8 in
+/// steps of 0.1, see `lens_falloff`. Parameters: see `measure_distance`. Cost: nine looks at up to 1000
+/// squares from each camera.
+double strength_of_falloff(const scene& of, const std::vector<photo_cells>& cells, const sky_fit& fit,
+                           const std::vector<double>& brighter);
+
 /// Compares the predicted sky between the training photos, and returns the finite distance with the
 /// largest difference of both shares. `cells`, `fit` and `brighter` are from `divide_photos` and
 /// `fit_sky`. Cost: looks at up to 4000 squares from each camera.

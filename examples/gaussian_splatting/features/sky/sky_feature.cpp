@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "../../scene/image_radius.hpp"
 #include "../text.hpp"
 #include "sky_distance.hpp"
 #include "sky_fit.hpp"
@@ -29,18 +28,13 @@ struct measured_sky {
     sky_distance distance;
 };
 
-/// Removes a falloff from the colors of squares. A linear falloff in a square changes their mean little.
-void remove_falloff(const scene& of, const lens_falloff& falloff, std::vector<photo_cells>& photos) {
-    for (std::size_t v = 0; v < photos.size(); ++v) {
-        const camera& c = of.train[v].camera;
-        if (c.is_panorama) continue;
-        for (std::size_t i = 0; i < photos[v].cells.size(); ++i) {
-            const glm::dvec2 middle = photos[v].middle(i);
-            const auto factors = falloff.at(square_radius(c, middle.x, middle.y));
-            for (int k = 0; k < 3; ++k)
-                photos[v].cells[i].color[k] /= static_cast<float>(factors[static_cast<std::size_t>(k)]);
-        }
-    }
+/// Measures the distance in photos without the falloff that the sky itself shows. Points may not show it, and
+/// it differs between two places of a photo.
+sky_distance distance_of(const scene& photos, std::vector<photo_cells> cells, const sky_fit& fit,
+                         const std::vector<double>& brightness) {
+    const double strength = strength_of_falloff(photos, cells, fit, brightness);
+    remove_falloff(photos, {strength, strength, strength}, cells);
+    return measure_distance(photos, cells, fit, brightness);
 }
 
 /// Fits the sky to the photos as they are, except for a clear falloff, and, if their brightness is known, to
@@ -50,15 +44,13 @@ measured_sky measure_sky(const scene_statistics& statistics) {
     const scene& photos = statistics.scene();
     if (photos.points.empty()) return {};
     std::vector<photo_cells> cells = divide_photos(photos);
-    if (statistics.falloff().is_clear()) remove_falloff(photos, statistics.falloff(), cells);
+    if (statistics.falloff().is_clear()) remove_falloff(photos, statistics.falloff().channels, cells);
     const std::vector<double>& brightness = statistics.brightness().log2;
     sky_fit found = fit_sky(photos, cells, {}), evened;
     if (!brightness.empty()) evened = fit_sky(photos, cells, brightness);
     const bool even = evened.share > found.share;
     if (even) found = std::move(evened);
-    const sky_distance distance =
-        measure_distance(photos, cells, found, even ? brightness : std::vector<double>{});
-    return {std::move(cells), std::move(found), distance};
+    return {cells, found, distance_of(photos, cells, found, even ? brightness : std::vector<double>{})};
 }
 
 /// Returns for each square of a photo whether it counts as sky, or nothing for squares that may not.
