@@ -132,7 +132,7 @@ photo_brightness estimate_brightness(const observed_points& points, std::size_t 
     std::vector<std::size_t> seen_by(photos);
     for (const auto& seen : points)
         for (const observation& o : seen) ++seen_by[o.view];
-    photo_brightness found{found_log2, std::vector<double>(photos, 0.0)};
+    photo_brightness found{found_log2, std::vector<double>(photos, 0.0), points.size()};
     for (std::size_t v = 0; v < photos; ++v) {
         if (seen_by[v] < least_points_of_photo)
             found.log2[v] = 0;

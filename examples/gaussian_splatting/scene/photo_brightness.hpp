@@ -14,6 +14,8 @@ namespace gs {
 struct photo_brightness {
     std::vector<double> log2;   ///< one per photo; zero for photos with too few points
     std::vector<double> error;  ///< standard errors; zero for photos with too few points
+    std::size_t points = 0;     ///< number of points with which they were measured
+    bool is_rough = false;      ///< whether these include points in rough parts of photos
 };
 
 /// Estimates the brightness by least squares over points and photos with Huber weights, in ten

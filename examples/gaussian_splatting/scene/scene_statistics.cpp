@@ -38,11 +38,27 @@ const observed_points& scene_statistics::smooth_points() const {
 }
 
 const photo_brightness& scene_statistics::brightness() const {
+    constexpr std::size_t few = 100;
+    constexpr float one_size = 2.2f;  // of footprints: see `keep_one_size`
+    if (smooth_points().size() >= few) return brightness_of_smooth();
     if (brightness_) return *brightness_;
-    observed_points points = smooth_points();
-    if (!points.empty()) remove_clear_falloff(points);
-    brightness_ = points.empty() ? photo_brightness{} : estimate_brightness(points, scene_.train.size());
+    observed_points all = points();
+    for (auto& seen : all) keep_one_size(seen, one_size);
+    std::erase_if(all, [](const auto& seen) { return seen.size() < least_photos_of_point; });
+    brightness_ = measure_brightness(std::move(all));
+    brightness_->is_rough = true;
     return *brightness_;
+}
+
+const photo_brightness& scene_statistics::brightness_of_smooth() const {
+    if (!brightness_of_smooth_) brightness_of_smooth_ = measure_brightness(smooth_points());
+    return *brightness_of_smooth_;
+}
+
+photo_brightness scene_statistics::measure_brightness(observed_points points) const {
+    if (points.empty()) return {};
+    remove_clear_falloff(points);
+    return estimate_brightness(points, scene_.train.size());
 }
 
 const lens_falloff& scene_statistics::falloff() const {

@@ -32,9 +32,12 @@ class scene_statistics {
     /// `least_photos_of_point` of them. In rough parts, the color depends too much on the exact
     /// position of the point. The threshold follows the noise, estimated from the smoothest tenth.
     const observed_points& smooth_points() const;
-    /// Returns the relative brightness of the photos. The lists are empty if there are no smooth
-    /// points.
+    /// Returns the relative brightness of the photos, measured at the smooth points, and if these are few,
+    /// at all points. The color of a point in a rough part is uncertain, but the brightness of a photo is the
+    /// mean over many points. The lists are empty if there are no points.
     const photo_brightness& brightness() const;
+    /// The same, measured at the smooth points only.
+    const photo_brightness& brightness_of_smooth() const;
     /// Returns the falloff of lenses, measured at the smooth points, and if these are few, at points in
     /// slightly rough parts, too.
     const lens_falloff& falloff() const;
@@ -42,9 +45,11 @@ class scene_statistics {
     void remove_clear_falloff(observed_points& points) const;
 
   private:
+    photo_brightness measure_brightness(observed_points points) const;
+
     const gs::scene& scene_;
     mutable std::optional<observed_points> points_, smooth_;
-    mutable std::optional<photo_brightness> brightness_;
+    mutable std::optional<photo_brightness> brightness_, brightness_of_smooth_;
     mutable std::optional<lens_falloff> falloff_;
 };
 

@@ -174,6 +174,23 @@ TEST_CASE("a smooth wall is not a sky, because the photos disagree about it at i
     CHECK_FALSE(distance_of(alone, {}).is_near());
 }
 
+TEST_CASE("a lens that darkens corners does not make a sky look near") {
+    const gs::scene scene = made("spheres,gloss=0.87,vignetting=0.49,sky=0.54,passers=0.18");
+    std::vector<photo_cells> cells = divide_photos(scene);
+    const sky_fit fit = fit_sky(scene, cells, {});
+    CHECK(measure_distance(scene, cells, fit, {}).is_near());
+    const double strength = strength_of_falloff(scene, cells, fit, {});
+    CHECK(strength == doctest::Approx(0.49).epsilon(0.25));
+    remove_falloff(scene, {strength, strength, strength}, cells);
+    CHECK_FALSE(measure_distance(scene, cells, fit, {}).is_near());
+    CHECK(analyzed("sky", scene).recommended == true);
+
+    const gs::scene clear = made("spheres,sky=0.8");
+    const std::vector<photo_cells> even = divide_photos(clear);
+    CHECK(strength_of_falloff(clear, even, fit_sky(clear, even, {}), {}) == 0);
+    CHECK(analyzed("sky", made("spheres,walls=0.8,vignetting=0.4")).recommended == false);
+}
+
 TEST_CASE("synthetic walls are behind the spheres, at a finite distance") {
     const auto corner_depths = [](const std::string& parameters) {
         const gs::scene scene = made(parameters);
@@ -267,6 +284,22 @@ TEST_CASE("exposures are found to 0.7 %, on average") {
     REQUIRE(off.size() > 30);
     for (const double x : off) square += std::pow(x - mean / double(off.size()), 2);
     CHECK(std::sqrt(square / double(off.size())) < 0.01);
+}
+
+TEST_CASE(
+    "exposures are found at rough points if few points are smooth, and things in few photos do not count") {
+    // Photos from very different distances show few points smoothly.
+    const gs::scene rough = made("alpha,gloss=0.99,exposure=0.49,scales=3.79,moving=0.18,fisheye=61");
+    const gs::scene_statistics statistics(rough);
+    CHECK(statistics.smooth_points().size() < 100);
+    CHECK(statistics.brightness().is_rough);
+    CHECK(statistics.brightness().points > 100);
+    CHECK(statistics.brightness_of_smooth().points == statistics.smooth_points().size());
+    CHECK(analyzed("exposure", rough).recommended == true);
+    CHECK(analyzed("exposure", made("alpha,scales=6.32,blur=11.16,moving=0.37,noise=0.015")).recommended ==
+          false);
+    const gs::scene plain = made("spheres,exposure=0.3");
+    CHECK_FALSE(gs::scene_statistics(plain).brightness().is_rough);
 }
 
 TEST_CASE(

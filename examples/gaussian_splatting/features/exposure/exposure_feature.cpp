@@ -20,6 +20,18 @@ namespace {
 constexpr double least_spread = 0.1;  ///< root mean square of log2 of the brightness
 constexpr double least_errors = 3;    ///< smallest spread, in standard errors
 
+double root_mean_square(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double x : values) sum += x * x;
+    return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+/// Returns the standard deviation of most photos: some may differ because things in them hide most points.
+double typical_spread(std::vector<double> distances) {
+    constexpr double deviations_per_median = 1.4826;  // of a normal distribution
+    return distances.empty() ? 0 : deviations_per_median * median(distances);
+}
+
 double percent(double log2) { return 100 * (std::exp2(log2) - 1); }
 
 std::vector<float> values_of(const photo_brightness& brightness, std::size_t photos) {
@@ -43,20 +55,22 @@ nlohmann::ordered_json to_json(const std::vector<view>& views, const std::vector
 }  // namespace
 
 finding exposure_feature::analyze(const scene_statistics& statistics) const {
-    const std::size_t photos = statistics.scene().train.size(), points = statistics.smooth_points().size();
+    const std::size_t photos = statistics.scene().train.size();
     const photo_brightness& brightness = statistics.brightness();
     std::vector<float> values = values_of(brightness, photos);
-    if (points < enough_points)
-        return {{}, too_few_points(points, "in smooth areas"), "off", std::move(values)};
-    const std::vector<bool> left_out = find_moving_things(statistics).contributing_photos();
-    std::vector<double> errors;
-    double square = 0;
+    if (brightness.points < enough_points)
+        return {{}, too_few_points(brightness.points, "visible"), "off", std::move(values)};
+    const moving_evidence moving = find_moving_things(statistics);
+    const std::vector<bool> left_out = moving.contributing_photos();
+    std::vector<double> errors, apart;
     for (std::size_t v = 0; v < photos; ++v) {
         if (brightness.error[v] == 0 || left_out[v]) continue;
         errors.push_back(brightness.error[v]);
-        square += brightness.log2[v] * brightness.log2[v];
+        apart.push_back(std::abs(brightness.log2[v]));
     }
-    const double spread = errors.empty() ? 0 : std::sqrt(square / static_cast<double>(errors.size()));
+    // Things that hide many points of a photo, or mix with rough parts, change the brightness of few photos.
+    const bool is_doubtful = moving.is_clear() || brightness.is_rough;
+    const double spread = is_doubtful ? typical_spread(apart) : root_mean_square(apart);
     const double error = median(errors);
     const bool varies = spread >= least_spread && spread >= least_errors * error;
     return {

@@ -151,7 +151,7 @@ observed_points comparable_points(const scene_statistics& statistics) {
     const std::vector<bool> left_out = find_moving_things(statistics).contributing_photos();
     for (auto& seen : points) std::erase_if(seen, [&](const observation& o) { return left_out[o.view]; });
     statistics.remove_clear_falloff(points);
-    const photo_brightness& brightness = statistics.brightness();
+    const photo_brightness& brightness = statistics.brightness_of_smooth();
     for (auto& seen : points) {
         std::erase_if(seen, [&](const observation& o) { return brightness.error[o.view] == 0; });
         keep_one_size(seen, one_size);

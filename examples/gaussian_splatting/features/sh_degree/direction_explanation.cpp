@@ -167,7 +167,8 @@ explanation explain_direction(const scene_statistics& statistics, int degree) {
     made.photos.push_back(photo_with_most(found, statistics.scene()));
     std::vector<point_views> rows;
     for (const point_views& seen : found.listed) rows.push_back(by_angle_from_brightest(seen));
-    image sheet = contact_sheet(statistics.scene(), statistics.brightness(), std::move(rows)).draw();
+    image sheet =
+        contact_sheet(statistics.scene(), statistics.brightness_of_smooth(), std::move(rows)).draw();
     const int width = sheet.width, height = sheet.height;
     made.photos.push_back(
         {.label = "The same point in several photos",
