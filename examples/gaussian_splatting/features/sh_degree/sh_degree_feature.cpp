@@ -54,7 +54,10 @@ finding sh_degree_feature::analyze(const scene_statistics& statistics) const {
     const direction_statistics found = measure_direction(statistics);
     const int degree = found.degree();
     const std::string choice = "--sh-degree " + std::to_string(degree);
-    std::vector<float> values{static_cast<float>(degree), 1};
+    // If points show matte colors, they decide: renders of a half-trained model differ from photos in ways
+    // that depend on the direction, even in matte scenes.
+    const bool revises = !found.is_known() || degree > 0;
+    std::vector<float> values{static_cast<float>(degree), revises ? 1.0f : 0.0f};
     if (!found.is_known())
         return {{},
                 too_few_points(found.points, "of similar size in smooth areas"),
