@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,7 +18,7 @@ namespace gs::raster {
 /// The tile rows that each rank lists.
 struct listed_tile_rows {
     unsigned ranks;
-    std::array<row_range, ranks::most_ranks> of;
+    row_range of[ranks::most_ranks];
 };
 
 /// The tile rows of a view that one of several ranks draws. Together, the ranks own all rows.
