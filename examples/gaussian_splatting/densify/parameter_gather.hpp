@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -12,7 +11,6 @@
 #include "../device/device.hpp"
 #include "../model/aosoa.hpp"
 #include "../model/parameters.hpp"
-#include "../model/spread_pieces.hpp"
 #include "../optimize/trained_parameters.hpp"
 
 namespace gs::train {
@@ -23,8 +21,7 @@ enum class birth : std::uint32_t {
     kept,      ///< the only successor of its origin
     original,  ///< the origin itself, which also has a copy
     copy,
-    first_half,  ///< one half of a split
-    second_half
+    half  ///< one half of a split
 };
 
 /// Clears the flags of the Gaussians with the first ranks. One index per rank.
@@ -33,15 +30,6 @@ struct clear_ranked {
     std::uint32_t* flags;
 
     WARPAGG_HD void operator()(std::size_t rank) const { flags[gaussian_of[rank]] = 0; }
-};
-
-/// Moves the values of an order to their places. One index per value.
-struct move_to_places {
-    spread_pieces pieces;
-    const std::uint32_t* from;
-    std::uint32_t* to;
-
-    WARPAGG_HD void operator()(std::size_t i) const { to[pieces.place_of(i)] = from[i]; }
 };
 
 /// Gathers an array of one parameter for the new generation, in whole blocks. One index per new element.
@@ -108,18 +96,6 @@ class parameter_gather {
     /// Orders the first `count` new Gaussians by their origins. Copies then lie beside each other, so that
     /// a warp has Gaussians which the same views show.
     void order_by_origin(std::size_t count) { device_.sort_pairs(origin_, births_, count); }
-    /// Spreads pieces of the first `count` new Gaussians. Call it when these are in their final order, which
-    /// follows that of the `before` Gaussians so far. It does so whenever the number has passed a power
-    /// of two. The pieces of all earlier times then have grown, and each new piece has parts of few of them.
-    void spread(std::size_t before, std::size_t count) {
-        if (std::bit_width(count) <= std::bit_width(before)) return;
-        const spread_pieces pieces(count);
-        spare_steps_.resize(count);
-        for (buffer<std::uint32_t>* values : {&origin_, &births_}) {
-            device_.for_each_index(count, move_to_places{pieces, values->data(), spare_steps_.data()});
-            device_.copy(values->data(), spare_steps_.data(), count);
-        }
-    }
 
     /// Replaces the Gaussians with `count` new ones. The first `with_sh` of them, a multiple of the
     /// block length or all, have SH coefficients of degrees 1 to `sh_degree`, which are zero if the

@@ -10,9 +10,9 @@
 #include <random>
 #include <utility>
 
+#include "../model/aosoa.hpp"
 #include "../model/morton_order.hpp"
 #include "../model/spherical_harmonics.hpp"
-#include "../model/spread_pieces.hpp"
 #include "neighbor_distances.hpp"
 
 namespace gs {
@@ -46,18 +46,28 @@ void keep_at_random(std::vector<colored_point>& points, std::size_t most, std::u
     points.resize(most);
 }
 
-/// Orders points along a Morton curve, so that a warp has Gaussians which the same views show, and
-/// spreads the pieces of this curve.
+/// Orders points along a Morton curve, so that a warp has Gaussians which the same views show. The curve
+/// is cut into pieces in random order, so that ranks, which own consecutive Gaussians, all own some
+/// that a view shows.
 void sort_by_place(std::vector<colored_point>& points) {
+    constexpr std::size_t piece = 4 * block_length;
     std::vector<float> positions;
     positions.reserve(3 * points.size());
     for (const colored_point& p : points)
         for (glm::length_t axis = 0; axis < 3; ++axis)
             positions.push_back(static_cast<float>(p.position[axis]));
-    const std::vector<std::uint32_t> order = morton_order(positions);
-    const spread_pieces pieces(points.size());
-    std::vector<colored_point> sorted(points.size());
-    for (std::size_t i = 0; i < order.size(); ++i) sorted[pieces.place_of(i)] = points[order[i]];
+    std::vector<std::uint32_t> order = morton_order(positions);
+    std::mt19937_64 random;
+    for (std::size_t n = points.size() / piece; n > 1; --n) {
+        const auto other = static_cast<std::size_t>(uniform(random) * static_cast<double>(n));
+        if (other == n - 1) continue;
+        std::swap_ranges(order.begin() + static_cast<std::ptrdiff_t>((n - 1) * piece),
+                         order.begin() + static_cast<std::ptrdiff_t>(n * piece),
+                         order.begin() + static_cast<std::ptrdiff_t>(other * piece));
+    }
+    std::vector<colored_point> sorted;
+    sorted.reserve(points.size());
+    for (const std::uint32_t i : order) sorted.push_back(points[i]);
     points = std::move(sorted);
 }
 

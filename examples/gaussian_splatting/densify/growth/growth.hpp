@@ -52,7 +52,7 @@ class growth {
                                    limits.most_births, copies_.data()});
         const growth_tally tally = renew(c);
         const auto gaussians = c.parameters.values.write();
-        device_.for_each_index(tally.count, split{c.gather.births(), gaussians});
+        device_.for_each_index(tally.count, split{c.gather.births(), c.gather.origins(), gaussians});
         if (limits.revised_opacity)
             device_.for_each_index(tally.count, revise_opacity{c.gather.births(), gaussians.opacity});
         return tally;
@@ -75,7 +75,6 @@ class growth {
         device_.copy(&tally_.data()->count, first_copy_.data() + c.count, 1);
         growth_tally tally;
         device_.download(&tally, tally_.data(), 1);
-        c.gather.spread(c.count, tally.count);
         c.gather.run(c.parameters, tally.count, tally.count, c.sh_degree);
         return tally;
     }

@@ -56,7 +56,7 @@ struct place_copies {
         for (std::uint32_t c = 0; c < copies[i]; ++c) {
             origin[first[i] + c] = static_cast<std::uint32_t>(i);
             births[first[i] + c] = copies[i] == 1  ? birth::kept
-                                   : large[i] != 0 ? (c == 0 ? birth::first_half : birth::second_half)
+                                   : large[i] != 0 ? birth::half
                                    : c == 0        ? birth::original
                                                    : birth::copy;
         }
@@ -65,15 +65,16 @@ struct place_copies {
 
 /// Places the halves of a split on the longest axis of their origin, half a standard deviation to
 /// each side. They are half as long, a little thinner, and less opaque (Deng et al. 2025,
-/// "ImprovedGS"). One index per new Gaussian.
+/// "ImprovedGS"). One index per new Gaussian; the halves of a split are neighbors.
 struct split {
     const birth* births;
+    const std::uint32_t* origin;
     parameter_arrays<float> gaussians;
 
     WARPAGG_HD void operator()(std::size_t index) const {
         const auto i = static_cast<unsigned>(index);
-        const bool is_second = births[i] == birth::second_half;
-        if (births[i] != birth::first_half && !is_second) return;
+        if (births[i] != birth::half) return;
+        const bool is_second = i > 0 && origin[i - 1] == origin[i];
         glm::vec3 log_scale = raster::load3(gaussians.log_scale, i);
         const int axis = longest(log_scale);
         const raster::unit turn(raster::load4(gaussians.quaternion, i));

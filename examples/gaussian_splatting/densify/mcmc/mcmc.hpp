@@ -65,7 +65,6 @@ class mcmc final : public strategy<Device> {
                                                    c.gather.origins(), c.gather.births()});
         device_.for_each_index(c.count, forget_moments{drawn_.data(), c.gather.births()});
         c.gather.order_by_origin(count);
-        c.gather.spread(c.count, count);
         c.gather.run(c.parameters, count, count, c.sh_degree);
         device_.for_each_index(
             count, share_appearance{c.gather.origins(), drawn_.data(), c.parameters.values.write()});
