@@ -78,12 +78,15 @@ def run_program(scene, command):
 
 
 def trained(program, scene, options):
-    """By effect, whether a training ended with it, and the reason. Effects that follow from the files are missing."""
+    """By effect, whether a training ended with it, and why it began with or without it. Effects that follow from the
+    files are missing."""
     with tempfile.TemporaryDirectory() as folder:
         run_program(scene, [program, "train", "-d", scene, "-o", folder, "-q", "--no-viewer", *options])
         found = json.loads((pathlib.Path(folder) / "metrics.json").read_text())["effects"]
-    return {e["name"]: {"recommended": e["on"] and e.get("sh_degree", 1) > 0, "evidence": e["reason"]} for e in found
-            if e["name"] != BACKGROUND}
+    revised = lambda e: (f"; revised from degree {e['sh_degree_at_first']} to {e['sh_degree']}"
+                         if "sh_degree_at_first" in e else "")
+    return {e["name"]: {"recommended": e["on"] and e.get("sh_degree", 1) > 0, "evidence": e["reason"] + revised(e)}
+            for e in found if e["name"] != BACKGROUND}
 
 
 def inspect(program, scene):
@@ -220,6 +223,8 @@ def main():
     own, passed_on = own_and_passed_on()
     arguments = parser.parse_args(own)
     arguments.options = passed_on[0] if passed_on else []
+    if arguments.options and not getattr(arguments, "train", False):
+        parser.error("options after -- are for train: give --train")
     arguments.action(arguments)
 
 

@@ -197,8 +197,8 @@ class Model:
     NAMES = ["a", "b", "c", "1 / bandwidth", "latency"]
 
     def __init__(self, visible, rows, gathered, sum_bytes):
-        """`visible`: the share of the Gaussians that a view shows. `rows`: see ROWS. `gathered`: the bytes of a
-        Gaussian, per step, that the devices gather for reports."""
+        """`visible`: the share of the Gaussians that a view shows. `rows`: see ROWS, by pixels and Gaussians of the
+        measured scenes. `gathered`: the bytes of a Gaussian, per step, that the devices gather for reports."""
         self.visible, self.rows, self.gathered, self.sum_bytes = visible, rows, gathered, sum_bytes
         self.terms, self.largest_error = [0.0] * len(self.NAMES), 0.0
 
@@ -211,29 +211,30 @@ class Model:
         if not shared and None in (bandwidth, latency, visible):
             raise SystemExit("error: the file has no training with several ranks, which show the cost of exchanges: "
                              "measure with --ranks 1 2, or give --bandwidth, --latency and --visible")
-        gathered, rows_of_splat = GATHERED, ROWS
+        gathered, rows = GATHERED, {}
+        for run in shared:
+            rows.setdefault((run["pixels"], run["gaussians"]), []).append(rows_of_splats(run))
         if shared:
-            rows_of_splat = statistics.mean(rows_of_splats(run) for run in shared)
             visible = statistics.mean(run["exchange"]["visible_splats"] / run["gaussians"] for run in shared)
             gathered = statistics.mean(run["exchange"]["bytes"]["gaussians"] / run["gaussians"] * run["ranks"] /
                                        (run["ranks"] - 1) for run in shared)
-        model = cls(visible, rows_of_splat, gathered, SUM_BYTES[runs[0]["accumulator"]])
-        rows = np.array([model.parts(r["pixels"], r["height"], r["gaussians"], r["ranks"], r["exchange"]) for r in runs])
+        model = cls(visible, {scene: statistics.mean(found) for scene, found in rows.items()}, gathered, SUM_BYTES[runs[0]["accumulator"]])
+        factors = np.array([model.parts(r["pixels"], r["height"], r["gaussians"], r["ranks"], r["exchange"]) for r in runs])
         times = np.array([r["seconds"] for r in runs])
         given = {3: None if bandwidth is None else 1 / bandwidth, 4: latency}
         given = {term: value for term, value in given.items() if value is not None}
-        rest = times - sum(rows[:, term] * value for term, value in given.items())
-        model.terms = np.array(least_squares(rows / times[:, None], rest / times,
+        rest = times - sum(factors[:, term] * value for term, value in given.items())
+        model.terms = np.array(least_squares(factors / times[:, None], rest / times,
                                              [k for k in range(len(cls.NAMES)) if k not in given]))
         for term, value in given.items():
             model.terms[term] = value
-        model.largest_error = float(np.max(np.abs(rows @ model.terms / times - 1)))
+        model.largest_error = float(np.max(np.abs(factors @ model.terms / times - 1)))
         return model
 
     def parts(self, pixels, height, gaussians, ranks, exchange=None):
         """The factors of the terms."""
         splats = exchange["sent_splats"] if exchange else (
-            sent_splats(self.visible * gaussians, self.rows, height, ranks))
+            sent_splats(self.visible * gaussians, self.rows.get((pixels, gaussians), ROWS), height, ranks))
         sent = sum(bytes_of_step(splats, height, ranks, self.sum_bytes).values()) + (
             self.gathered * gaussians * (ranks - 1) / ranks)
         return [1, pixels / ranks, gaussians / ranks, sent, CALLS if ranks > 1 else 0]

@@ -17,7 +17,7 @@ namespace gs::ranks {
 /// The purpose of an exchange. The first four are exchanged in steps, the next two between steps, and
 /// `other` are small values of both.
 enum class purpose : std::size_t {
-    splats,      ///< the splats of a view
+    splats,      ///< splats for the strips of others, and their numbers
     lists,       ///< the lengths of its tile lists
     gradients,   ///< the sums of its splats' gradients
     effects,     ///< the values that effects learn from a view

@@ -45,6 +45,7 @@ const photo_brightness& scene_statistics::brightness() const {
     observed_points all = points();
     for (auto& seen : all) keep_one_size(seen, one_size);
     std::erase_if(all, [](const auto& seen) { return seen.size() < least_photos_of_point; });
+    if (all.size() <= smooth_points().size()) return brightness_of_smooth();
     brightness_ = measure_brightness(std::move(all));
     brightness_->is_rough = true;
     return *brightness_;

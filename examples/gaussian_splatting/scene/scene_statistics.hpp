@@ -33,8 +33,8 @@ class scene_statistics {
     /// position of the point. The threshold follows the noise, estimated from the smoothest tenth.
     const observed_points& smooth_points() const;
     /// Returns the relative brightness of the photos, measured at the smooth points, and if these are few,
-    /// at all points. The color of a point in a rough part is uncertain, but the brightness of a photo is the
-    /// mean over many points. The lists are empty if there are no points.
+    /// at all points of a similar size. The color of a point in a rough part is uncertain, but the brightness
+    /// of a photo is the mean over many points. The lists are empty if there are no points.
     const photo_brightness& brightness() const;
     /// The same, measured at the smooth points only.
     const photo_brightness& brightness_of_smooth() const;

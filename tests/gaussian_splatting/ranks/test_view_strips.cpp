@@ -55,6 +55,11 @@ TEST_CASE("strips: known work of tile rows moves the borders between ranks") {
         gs::train::view_strips strips;
         strips.reset(1);
         const row_range before = strips.of(0, camera, 10, all)->own;
+        const auto first = strips.of(0, camera, 10, all);
+        const auto listed = first->listed_by_all(4);
+        if (first->own_of_all != std::vector<row_range>{{0, 2}, {2, 4}} || listed.ranks != 2 ||
+            listed.of[0] != row_range{0, 3} || listed.of[1] != row_range{1, 4})
+            return 2;
         strips.note(0, {900, 0, 0, 0});
         const row_range after = strips.of(0, camera, 10, all)->own;
         strips.note(0, {900, 0});  // of another size

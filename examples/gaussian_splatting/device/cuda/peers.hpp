@@ -5,7 +5,6 @@
 #include <array>
 #include <cstring>
 #include <span>
-#include <warpagg/core/compiler.hpp>
 
 #include "../../ranks/communicator.hpp"
 #include "memory.hpp"

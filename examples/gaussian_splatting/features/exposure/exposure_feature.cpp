@@ -17,7 +17,7 @@
 namespace gs::features {
 namespace {
 
-constexpr double least_spread = 0.1;  ///< root mean square of log2 of the brightness
+constexpr double least_spread = 0.1;  ///< standard deviation of log2 of the brightness
 constexpr double least_errors = 3;    ///< smallest spread, in standard errors
 
 double root_mean_square(const std::vector<double>& values) {
@@ -59,7 +59,7 @@ finding exposure_feature::analyze(const scene_statistics& statistics) const {
     const photo_brightness& brightness = statistics.brightness();
     std::vector<float> values = values_of(brightness, photos);
     if (brightness.points < enough_points)
-        return {{}, too_few_points(brightness.points, "visible"), "off", std::move(values)};
+        return {{}, too_few_points(brightness.points, "visible at a similar size"), "off", std::move(values)};
     const moving_evidence moving = find_moving_things(statistics);
     const std::vector<bool> left_out = moving.contributing_photos();
     std::vector<double> errors, apart;

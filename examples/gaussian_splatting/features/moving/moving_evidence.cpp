@@ -63,7 +63,7 @@ observed_points comparable_observations(const scene_statistics& statistics) {
     std::erase_if(points,
                   [](const auto& seen) { return seen.size() < scene_statistics::least_photos_of_point; });
     statistics.remove_clear_falloff(points);
-    // Not `statistics.brightness()`, for which far photos have too few smooth points.
+    // Not `statistics.brightness()`: far photos can have too few smooth points, even if there are many.
     const photo_brightness brightness = estimate_brightness(points, statistics.scene().train.size());
     for (auto& seen : points)
         for (observation& o : seen) o.color *= static_cast<float>(std::exp2(-brightness.log2[o.view]));

@@ -26,11 +26,11 @@ struct view_strip {
     row_range own;
     int reach = 0;  ///< number of pixel rows beyond its own that it only renders, see `loss::reach`
     bool shares_gaussians = false;           ///< whether the rank projects its own Gaussians only
-    std::vector<row_range> own_of_all = {};  ///< the own rows of each rank, if it `shares_gaussians`
+    std::vector<row_range> own_of_all = {};  ///< the own rows of each rank; needed if it `shares_gaussians`
 
     /// Returns the tile rows with tile lists, of a view with `down` tile rows.
     row_range listed(int down) const { return listed(own, down); }
-    /// The same for each rank. Precondition: the strip `shares_gaussians`.
+    /// The same for each rank. Precondition: `own_of_all` is set.
     listed_tile_rows listed_by_all(int down) const {
         listed_tile_rows all{static_cast<unsigned>(own_of_all.size()), {}};
         for (std::size_t rank = 0; rank < own_of_all.size(); ++rank)
