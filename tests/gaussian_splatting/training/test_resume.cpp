@@ -146,10 +146,6 @@ TEST_CASE("resume: other iterations, image sizes, features and SH degrees are al
     }
     SUBCASE("another strategy") { o.densification.name = "mcmc"; }
     SUBCASE("photos that are never halved") { o.schedule.num_downscales = 0; }
-    SUBCASE("the checkpoint's SH degree, although photos now show matte colors") {
-        o.features = gs::features::feature_set({{"direction", false, "", {0, 2}}});
-        CHECK(trained(gs::train::make_cpu_engine, scene, o, ignored).sh_degree == 1);
-    }
     SUBCASE("a lower SH degree") {
         o.features = gs::features::feature_set({gs::features::explicit_sh_degree(0)});
         CHECK(trained(gs::train::make_cpu_engine, scene, o, ignored).sh_degree == 0);

@@ -22,13 +22,6 @@ train::sh_degree_state& state_of(train::engine& engine) {
     return dynamic_cast<train::sh_degree_state&>(engine.feature("direction"));
 }
 
-std::vector<float> values_for(int degree, sh_degree_choice by) {
-    return {static_cast<float>(degree), static_cast<float>(by)};
-}
-sh_degree_choice choice_of(const std::vector<float>& values) {
-    return values.size() > 1 ? static_cast<sh_degree_choice>(values[1]) : sh_degree_choice::user;
-}
-
 /// Determines the SH degree from the difference between photos and renders, and reports the
 /// figures.
 int revise(train::training& training, int sh_degree) {
@@ -61,11 +54,7 @@ finding sh_degree_feature::analyze(const scene_statistics& statistics) const {
     const direction_statistics found = measure_direction(statistics);
     const int degree = found.degree();
     const std::string choice = "--sh-degree " + std::to_string(degree);
-    // If points show matte colors, they decide: renders of a half-trained model differ from photos in ways
-    // that depend on the direction, even in matte scenes.
-    const bool is_matte = found.is_known() && degree == 0;
-    std::vector<float> values =
-        values_for(degree, is_matte ? sh_degree_choice::photos : sh_degree_choice::training);
+    std::vector<float> values{static_cast<float>(degree), 1};
     if (!found.is_known())
         return {{},
                 too_few_points(found.points, "of similar size in smooth areas"),
@@ -97,20 +86,19 @@ void sh_degree_feature::prepare(const selected_feature& selected, scene&, gaussi
 void sh_degree_feature::schedule(const selected_feature& selected, train::training& training) const {
     const int degree = first_sh_degree(selected.values);
     training.schedule().sh_degree = degree;
-    const sh_degree_choice by = choice_of(selected.values);
-    const std::optional<int> explicit_degree =
-        by == sh_degree_choice::user ? std::optional(degree) : std::nullopt;
+    const bool revises = selected.values.size() > 1 && selected.values[1] != 0;
+    const std::optional<int> explicit_degree = revises ? std::nullopt : std::optional(degree);
     training.add_state(
         [=, &training](state_archive& archive) { exchange_degree(archive, explicit_degree, training); });
     training.result().feature_reports["direction"]["sh_degree"] = degree;
-    if (by != sh_degree_choice::training) return;
+    if (!revises) return;
     schedule_revision(
         training, [&training](int so_far) { return revise(training, so_far); }, prune_change_limit);
 }
 
 selected_feature explicit_sh_degree(int degree) {
-    return {"direction", degree > 0, "--sh-degree " + std::to_string(degree),
-            values_for(degree, sh_degree_choice::user)};
+    return {
+        "direction", degree > 0, "--sh-degree " + std::to_string(degree), {static_cast<float>(degree), 0}};
 }
 
 int first_sh_degree(const std::vector<float>& values) {

@@ -9,8 +9,8 @@
 
 namespace gs::features {
 
-/// View-dependent color by spherical harmonics. Values: the initial SH degree, and who determines it: see
-/// `sh_degree_choice`.
+/// View-dependent color by spherical harmonics. Values: the initial SH degree, and 1 if training
+/// revises it after half of the iterations.
 class sh_degree_feature final : public feature {
   public:
     std::string_view name() const override { return "direction"; }
@@ -24,13 +24,6 @@ class sh_degree_feature final : public feature {
     std::vector<float> neutral_values(const scene&) const override { return {3, 0}; }
     void prepare(const selected_feature& selected, scene&, gaussians& model) const override;
     void schedule(const selected_feature& selected, train::training& training) const override;
-};
-
-/// Who determines the SH degree.
-enum class sh_degree_choice {
-    user,      ///< the value, even in a training that continues from a checkpoint with another degree
-    training,  ///< revises the value after half of the iterations
-    photos     ///< the value, except that a training which continues keeps the degree of its checkpoint
 };
 
 /// Returns the feature as `--sh-degree` specifies it.
