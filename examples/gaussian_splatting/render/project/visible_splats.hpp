@@ -90,7 +90,7 @@ struct count_up {
 
 /// Adds the sums of each Gaussian that the ranks have computed, in the order of ranks, so that the
 /// result does not depend on the order in which they arrive. One index per sum of a share.
-/// `Round`: `T to_sum(T)` as `Real`.
+/// `Round`: converts a T to a Real.
 template <class T, class Real, class Round>
 struct add_windows {
     sent_windows windows;
