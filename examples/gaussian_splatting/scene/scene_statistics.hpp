@@ -36,7 +36,7 @@ class scene_statistics {
     /// at all points of a similar size. The color of a point in a rough part is uncertain, but the brightness
     /// of a photo is the mean over many points. The lists are empty if there are no points.
     const photo_brightness& brightness() const;
-    /// The same, measured at the smooth points only.
+    /// Returns the relative brightness of the photos, measured at the smooth points only.
     const photo_brightness& brightness_of_smooth() const;
     /// Returns the falloff of lenses, measured at the smooth points, and if these are few, at points in
     /// slightly rough parts, too.
