@@ -3,15 +3,31 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
-#include "../ranks/communicator.hpp"
+#include "../ranks/shares.hpp"
 #include "aosoa.hpp"
 
 namespace gs {
 
-/// Divides the Gaussians among the ranks. Shares consist of whole AoSoA blocks.
-inline ranks::shares shares_of(std::size_t gaussians, const ranks::communicator& all) {
-    return {gaussians, block_length, all.count()};
-}
+/// Divides the Gaussians among the ranks, so that views show about as many of each. Shares are
+/// consecutive and consist of whole AoSoA blocks. They are even until `balance` has been called.
+class gaussian_shares {
+  public:
+    /// The work for a Gaussian that a view does not show, as a part of that for one that it shows.
+    static constexpr double work_of_hidden = 1.0 / 16;
+
+    /// Returns the shares of this number of Gaussians. If it grows, all shares grow alike.
+    ranks::shares of(std::size_t gaussians, int ranks) const;
+    /// Adds a view that showed this many Gaussians of each rank.
+    void note(const ranks::shares& shown, std::size_t gaussians, int ranks);
+    /// Moves the borders so that all ranks would have had about the same work in the views since the
+    /// last call. Precondition: each rank has the present state of all Gaussians.
+    void balance();
+
+  private:
+    std::vector<double> ends_;  ///< of the shares, as parts of all Gaussians; empty if shares are even
+    std::vector<double> work_;  ///< by rank
+};
 
 }  // namespace gs

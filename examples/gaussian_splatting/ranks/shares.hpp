@@ -26,6 +26,12 @@ class shares {
         const std::size_t blocks = (items + block - 1) / block, parts = static_cast<std::size_t>(ranks);
         for (std::size_t rank = 0; rank <= parts; ++rank) borders_.push_back(blocks * rank / parts);
     }
+    /// Shares of whole blocks that end at these blocks, one per rank. The last one has all others.
+    shares(std::size_t items, std::size_t block, std::span<const std::size_t> ends)
+        : items_(items), block_(block), borders_{0} {
+        borders_.insert(borders_.end(), ends.begin(), ends.end());
+        borders_.back() = (items + block - 1) / block;
+    }
     /// Shares with these numbers of items. A block is one item.
     explicit shares(std::span<const std::size_t> counts) {
         borders_.push_back(0);

@@ -11,7 +11,6 @@
 
 #include "../core/error.hpp"
 #include "../device/device.hpp"
-#include "../model/gaussian_shares.hpp"
 #include "blend/blend_backward.hpp"
 #include "blend/blend_forward.hpp"
 #include "blend/depth_splats.hpp"
@@ -229,8 +228,10 @@ class renderer {
     /// The Gaussians of the last view that this rank projects and passes to the sink of `backward`.
     ranks::share own_gaussians() const {
         if (!shares_gaussians()) return {0, count_};
-        return shares_of(count_, device_.ranks()).of(device_.ranks().rank());
+        return visible_.shares_of(count_).of(device_.ranks().rank());
     }
+    /// The visible splats of the last view whose strip `shares_gaussians`.
+    visible_splats<Device, Real>& visible() { return visible_; }
     /// The number of splats that sampled pixels of the last view blend, by tile row, on the device. Zero
     /// for rows of other ranks.
     std::span<const unsigned long long> row_work() const { return {work_.data(), tiles_down_}; }
@@ -380,8 +381,8 @@ class renderer {
         });
         if (shares_gaussians()) {
             const auto scope = exchanging(ranks::purpose::splats);
-            visible_.collect(own_gaussians(), strip_->listed_by_all(static_cast<int>(tiles_down_)),
-                             splats_.data(), boxes_.data(), depths_.data(), tiles_.data());
+            visible_.collect(count, strip_->listed_by_all(static_cast<int>(tiles_down_)), splats_.data(),
+                             boxes_.data(), depths_.data(), tiles_.data());
             device_.ranks().traffic().count_step(visible_.drawn(), visible_.moved());
         }
     }

@@ -17,7 +17,6 @@
 #include "../features/device_features.hpp"
 #include "../features/sh_degree/prune_sh.hpp"
 #include "../metrics/image_comparison.hpp"
-#include "../model/gaussian_shares.hpp"
 #include "../render/renderer.hpp"
 #include "clamp_render.hpp"
 #include "device_views.hpp"
@@ -372,7 +371,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         std::vector<ranks::shared_array> arrays;
         trained_.share(device_, arrays);
         arrays.push_back(ranks::shared_array::of(seen_.data(), block_length, count_));
-        device_.gather(shares_of(count_, device_.ranks()), arrays);
+        device_.gather(renderer_.visible().shares_of(count_), arrays);
+        renderer_.visible().balance();
         is_complete_ = true;
     }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../../device/device.hpp"
+#include "../../model/gaussian_shares.hpp"
 #include "../geometry/splat.hpp"
 #include "../tiles/tile_reach.hpp"
 #include "../tiles/view_strip.hpp"
@@ -123,12 +124,13 @@ class visible_splats {
   public:
     explicit visible_splats(Device& device) : device_(device) {}
 
-    /// Collects the splats of this rank's strip. The arguments have a value per Gaussian; those of the
-    /// share `own` are set. `rows`: the tile rows that each rank lists. All ranks must call this. Waits for
-    /// the device.
-    void collect(const ranks::share& own, const listed_tile_rows& rows, const splat<Real>* all_splats,
+    /// Collects the splats of this rank's strip. The arguments have a value for each of the `gaussians`;
+    /// those of this rank's share are set. `rows`: the tile rows that each rank lists. All ranks must call
+    /// this. Waits for the device.
+    void collect(std::size_t gaussians, const listed_tile_rows& rows, const splat<Real>* all_splats,
                  const tile_box* all_boxes, const std::uint32_t* all_depths, const std::uint32_t* all_tiles) {
-        own_ = own;
+        own_ = shares_of(gaussians).of(rank());
+        const ranks::share own = own_;
         const std::size_t ranks = rows.ranks, marks = (ranks + 1) * own.count();
         marks_.resize(marks);
         places_.resize(marks + 1);
@@ -138,6 +140,7 @@ class visible_splats {
         counts_.resize(ranks + 1);
         device_.for_each_index(ranks + 1, count_marks{places_.data(), own.count(), counts_.data()});
         exchange_counts(ranks);
+        shares_.note(drawn_, gaussians, device_.ranks().count());
 
         device_.for_each_index(
             own.count(), fill_windows<splat<Real>, tile_box, std::uint32_t>{
@@ -172,6 +175,12 @@ class visible_splats {
         return sums_;
     }
 
+    /// Returns the shares of the ranks of this number of Gaussians.
+    ranks::shares shares_of(std::size_t gaussians) const {
+        return shares_.of(gaussians, device_.ranks().count());
+    }
+    /// See `gaussian_shares`.
+    void balance() { shares_.balance(); }
     /// The number of splats that this rank lists.
     std::size_t count() const { return windows_.received_by(rank()).items(); }
     /// The drawn splats of all ranks, by owner.
@@ -224,6 +233,7 @@ class visible_splats {
     }
 
     Device& device_;
+    gaussian_shares shares_;
     ranks::share own_;
     ranks::shares drawn_{0, 1, 1};
     ranks::windows windows_{std::vector<std::size_t>{0}, 1};
