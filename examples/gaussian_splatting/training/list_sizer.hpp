@@ -71,7 +71,7 @@ class list_sizer {
         }
         // The new reserve exceeds the tested one, so that the memory seldom changes.
         if (static_cast<double>(renderer.reserved_instances()) < 1.5 * expected + 1024)
-            renderer.reserve_instances(longest, static_cast<std::uint64_t>(2 * expected) + 4096);
+            renderer.reserve_instances(longest, static_cast<std::uint64_t>(expected) + 4096);
     }
 
   private:

@@ -51,6 +51,7 @@ struct sent_windows {
     unsigned own, ranks;
     std::uint64_t first_own;  ///< the first place of the window to the rank itself
 
+    WARPAGG_HD bool is_drawn(std::size_t gaussian) const { return marks[ranks * count + gaussian] != 0; }
     /// Calls f(place) for each place of a Gaussian in windows to others, and g(item) with its number in the
     /// window to the rank itself, in the order of ranks.
     template <class F, class G>
@@ -89,8 +90,8 @@ struct count_up {
     WARPAGG_HD void operator()(std::size_t i) const { numbers[i] = static_cast<std::uint32_t>(i); }
 };
 
-/// Adds the sums of each Gaussian that the ranks have computed, in the order of ranks, so that the
-/// result does not depend on the order in which they arrive. One index per sum of a share.
+/// Adds the sums of each drawn Gaussian that the ranks have computed, in the order of ranks, so that the
+/// result does not depend on the order in which they arrive. One index per Gaussian of a share.
 /// `Round`: converts a T to a Real.
 template <class T, class Real, class Round>
 struct add_windows {
@@ -99,18 +100,22 @@ struct add_windows {
     const T* kept;      ///< those in the window to the rank itself
     Round round;
     Real* sums;  ///< of the share
+
     WARPAGG_HD void operator()(std::size_t i) const {
-        const std::size_t k = i % record_stride;
-        T sum(0);
+        if (!windows.is_drawn(i)) return;
+        T total[record_stride];
+        for (T& sum : total) sum = T(0);
         bool is_first = true;
-        const auto add = [&](const T& part) {
-            sum = is_first ? part : sum + part;
+        const auto add = [&](const T* part) {
+            WARPAGG_UNROLL
+            for (unsigned k = 0; k < record_stride; ++k) total[k] = is_first ? part[k] : total[k] + part[k];
             is_first = false;
         };
         windows.visit(
-            i / record_stride, [&](std::uint64_t place) { add(returned[place * record_stride + k]); },
-            [&](std::uint64_t item) { add(kept[item * record_stride + k]); });
-        sums[i] = round(sum);
+            i, [&](std::uint64_t place) { add(returned + place * record_stride); },
+            [&](std::uint64_t item) { add(kept + item * record_stride); });
+        WARPAGG_UNROLL
+        for (unsigned k = 0; k < record_stride; ++k) sums[i * record_stride + k] = round(total[k]);
     }
 };
 
@@ -159,8 +164,9 @@ class visible_splats {
         const ranks::window_array arrays[] = {array(sent_splats_, to)};
         device_.exchange(windows_, arrays);
     }
-    /// Returns the sums of each Gaussian of this rank's share, from those that all ranks have for the splats
-    /// they list. Others are unspecified. `gaussians`: the number of all Gaussians. All ranks must call this.
+    /// Returns the sums of each drawn Gaussian of this rank's share, from those that all ranks have for the
+    /// splats they list. Others are unspecified. `gaussians`: the number of all Gaussians. All ranks must
+    /// call this.
     template <class T, class Round>
     const buffer<Real>& add_ranks(const T* of_listed, const Round& round, std::size_t gaussians) {
         returned_.resize(windows_.sent_by(rank()).items() * record_stride * sizeof(T));
@@ -168,10 +174,10 @@ class visible_splats {
         const ranks::window_array arrays[] = {ranks::window_array::of(of_listed, returned, record_stride)};
         device_.exchange(windows_.reversed(), arrays);
         sums_.resize(gaussians * record_stride);
-        device_.for_each_index(own_.count() * record_stride,
-                               add_windows<T, Real, Round>{
-                                   places(), returned, of_listed + kept_in_received().first * record_stride,
-                                   round, sums_.data() + own_.first * record_stride});
+        device_.for_each_index(
+            own_.count(), add_windows<T, Real, Round>{places(), returned,
+                                                      of_listed + kept_in_received().first * record_stride,
+                                                      round, sums_.data() + own_.first * record_stride});
         return sums_;
     }
 
