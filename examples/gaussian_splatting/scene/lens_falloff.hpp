@@ -4,19 +4,13 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
+#include "fixed_effects.hpp"
 #include "observations.hpp"
 
 namespace gs {
-
-/// A number with its standard error.
-struct estimated {
-    double value = 0;
-    double error = std::numeric_limits<double>::infinity();
-};
 
 /// How much darker the same points look in photos that show them farther from the center. A strength is the
 /// natural logarithm of the brightness at the principal point relative to that at the farthest corner. It

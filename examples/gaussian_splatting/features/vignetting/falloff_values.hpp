@@ -4,37 +4,16 @@
 
 #include <array>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "../../scene/image_radius.hpp"
+#include "lens_values.hpp"
 #include "vignetting_kernels.hpp"
 
 namespace gs::features {
 
 /// The values of the effect `vignetting`.
-struct falloff_values {
-    std::vector<int> lens_of_view;  ///< by training view, the index of its lens, or -1 for panoramas
-    std::vector<float> parameters;  ///< `falloff_width` for each lens
-
-    falloff_values(std::vector<int> lenses, std::vector<float> of_lenses)
-        : lens_of_view(std::move(lenses)), parameters(std::move(of_lenses)) {}
-    /// Reads the result of `flattened`. Precondition: there are as many training views.
-    falloff_values(const std::vector<float>& values, std::size_t views) {
-        for (std::size_t v = 0; v < views; ++v) lens_of_view.push_back(static_cast<int>(values[v]));
-        parameters.assign(values.begin() + static_cast<std::ptrdiff_t>(views), values.end());
-    }
-
-    std::vector<float> flattened() const {
-        std::vector<float> values(lens_of_view.begin(), lens_of_view.end());
-        values.insert(values.end(), parameters.begin(), parameters.end());
-        return values;
-    }
-    /// Returns a pointer to the parameters of a lens.
-    const float* of(int lens) const {
-        return parameters.data() + static_cast<std::size_t>(lens) * falloff_width;
-    }
-};
+using falloff_values = lens_values<falloff_width>;
 
 /// Returns the geometry of a camera's images.
 inline falloff_geometry geometry_of(const camera& c) {
