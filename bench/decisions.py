@@ -27,17 +27,17 @@ from scenes import by
 
 WORLDS = ["spheres", "alpha"]
 BACKGROUND = "background"
-CAUSES = {"direction": "gloss", "vignetting": "vignetting", "exposure": "exposure", "antialiasing": "scales", "sky": "sky",
-          "motion": "blur", "moving": "moving", "masks": "passers", "depth": "depths", "lens": "fisheye"}
+CAUSES = {"direction": "gloss", "vignetting": "vignetting", "exposure": "exposure", "response": "response",
+          "antialiasing": "scales", "sky": "sky", "motion": "blur", "moving": "moving", "masks": "passers", "depth": "depths", "lens": "fisheye"}
 EFFECTS = [*CAUSES, BACKGROUND]
-PURE = [{}, {"gloss": 1}, {"vignetting": 0.4}, {"exposure": 0.3}, {"scales": 4}, {"sky": 0.8}, {"walls": 0.8}, {"blur": 8},
-        {"moving": 0.2}, {"passers": 0.1},
+PURE = [{}, {"gloss": 1}, {"vignetting": 0.4}, {"exposure": 0.3}, {"exposure": 0.5, "response": 0.8},
+        {"response": 0.8}, {"scales": 4}, {"sky": 0.8}, {"walls": 0.8}, {"blur": 8}, {"moving": 0.2}, {"passers": 0.1},
         {"depths": 0.05}, {"depths": 2}, {"fisheye": 60}, {"noise": 0.03}]
 SKYLESS = "alpha"  # pixels without a surface are transparent
-LACKED = {"sky", "walls", "vignetting"}  # parameters that SKYLESS lacks
+LACKED = {"sky", "walls", "vignetting", "response"}  # parameters that SKYLESS lacks
 RIGHT_DEPTHS = 0.05  # more noise hides the order of depths
-MIXED = {"gloss": (0.3, 1), "vignetting": (0.2, 0.6), "exposure": (0.15, 0.5), "scales": (3, 8), "sky": (0.3, 1),
-         "blur": (6, 12), "moving": (0.1, 0.5), "passers": (0.05, 0.2),
+MIXED = {"gloss": (0.3, 1), "vignetting": (0.2, 0.6), "exposure": (0.15, 0.5), "response": (0.6, 1), "scales": (3, 8),
+         "sky": (0.3, 1), "blur": (6, 12), "moving": (0.1, 0.5), "passers": (0.05, 0.2),
          "depths": (0.01, 0.02), "fisheye": (50, 70)}
 
 
@@ -48,6 +48,7 @@ def synthetic(kind, world, parameters):
         parameters.pop("blur", None)
     given = [f"{name}={value:g}" for name, value in parameters.items() if value]
     truth = {effect: bool(parameters.get(cause)) for effect, cause in CAUSES.items()}
+    truth["response"] = truth["response"] and truth["exposure"]  # otherwise, colors of the scene can have any curve
     truth["depth"] = truth["depth"] and parameters["depths"] <= RIGHT_DEPTHS
     return {"kind": kind, "scene": "synthetic:" + ",".join([world, *given]), "noise": parameters.get("noise", 0),
             "truth": {**truth, BACKGROUND: world == "alpha"}}

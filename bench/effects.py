@@ -26,19 +26,27 @@ from scenes import by, where
 SCENES = {"direction": ("spheres,gloss=1,noise=0.01", "spheres,noise=0.03"),
           "vignetting": ("spheres,vignetting=0.4", "spheres"),
           "exposure": ("spheres,exposure=0.3", "spheres"),
+          "response": ("spheres,exposure=0.5,response=0.8", "spheres,exposure=0.5"),
           "antialiasing": ("spheres,scales=4", "spheres"),
           "sky": ("spheres,sky=0.8", "spheres"),
           "motion": ("spheres,blur=6", "spheres"),
           "moving": ("spheres,moving=0.5", "spheres"),
           "masks": ("spheres,passers=0.1", "spheres"),
           "depth": ("spheres,views=4,points=300,depths=0.02", "spheres,depths=0.02")}
+NEEDS = {"response": "exposure"}  # effects that only make sense with another one, which is on in both runs
 LITTLE = ["spheres,noise=0.03", "alpha,noise=0.03"]
 MUCH = ["spheres,gloss=0.7,exposure=0.3,scales=4,sky=0.7", "alpha,gloss=0.7,exposure=0.3,scales=4"]
 SELECTIONS = ["none", "auto", "all"]
 DISTANCES = [1, 0.5, 4]
-TAKEN = {"vignetting", "exposure", "scales", "passers", "moving", "blur", "shutter", "depths", "points", "views",
-         "noise"}  # parameters of the photos, not of the world
+TAKEN = {"vignetting", "exposure", "response", "scales", "passers", "moving", "blur", "shutter", "depths", "points",
+         "views", "noise"}  # parameters of the photos, not of the world
 SIDE = "256"
+
+
+def selections(effect):
+    """The values of --effects without and with an effect."""
+    needed = NEEDS.get(effect)
+    return (needed, f"{needed},{effect}") if needed else ("none", effect)
 
 
 def evaluated(program, ply, world, distance, device, background, folder):
@@ -73,7 +81,8 @@ def train(arguments, scene, effects, seed):
 
 
 def run(arguments):
-    pairs = {(scene, effects): None for effect, scenes in SCENES.items() for scene in scenes for effects in ("none", effect)}
+    pairs = {(scene, effects): None for effect, scenes in SCENES.items() for scene in scenes
+             for effects in selections(effect)}
     chosen = {(scene, effects): None for scene in (*LITTLE, *MUCH, *arguments.scenes) for effects in SELECTIONS}
     runs = [train(arguments, *one, seed) for seed in arguments.seeds for one in {**pairs, **chosen}]
     result = {"bench": "effects", "scenes": arguments.scenes, "options": arguments.options, **environment(arguments.commit),
@@ -115,7 +124,7 @@ def outcome(run):
 
 def table(result):
     sets = {key: by("options", same) for key, same in by("scene", result["runs"]).items()}
-    rows = [[f"`{effect}`", "yes" if k == 0 else "no", f"`{scene}`", *figures(sets[scene]["none"], sets[scene][effect])]
+    rows = [[f"`{effect}`", "yes" if k == 0 else "no", f"`{scene}`", *figures(*(sets[scene][s] for s in selections(effect)))]
             for effect, scenes in SCENES.items() for k, scene in enumerate(scenes)]
     head = ["effect", "called for", "scene", "time of an iteration, on to off", "peak MiB", "held-out PSNR, off and on, dB",
             "after fitting exposures", *(f"the world from {d} times the distance" for d in DISTANCES)]

@@ -15,10 +15,10 @@ namespace fs = std::filesystem;
 
 constexpr const char *checkpoints_name = "checkpoints", *replaced_name = "replaced";
 /// The results of training that belong to one run.
-constexpr std::array result_names{"point_cloud", "test",          "settings.json",   "metrics.json",
-                                  "metrics.csv", "metrics.md",    "exposures.json",  "poses.json",
-                                  "cameras",     "motion.json",   "vignetting.json", "viewer.html",
-                                  "report.html", checkpoints_name};
+constexpr std::array result_names{"point_cloud", "test",        "settings.json",   "metrics.json",
+                                  "metrics.csv", "metrics.md",  "exposures.json",  "poses.json",
+                                  "cameras",     "motion.json", "vignetting.json", "response.json",
+                                  "viewer.html", "report.html", checkpoints_name};
 
 bool is_finished(const fs::path& output) { return fs::exists(output / "metrics.json"); }
 

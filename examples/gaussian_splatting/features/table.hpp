@@ -13,6 +13,7 @@
 #include "motion/motion_feature.hpp"
 #include "moving/moving_feature.hpp"
 #include "poses/poses_feature.hpp"
+#include "response/response_feature.hpp"
 #include "sh_degree/sh_degree_feature.hpp"
 #include "sky/sky_feature.hpp"
 #include "vignetting/vignetting_feature.hpp"
@@ -22,8 +23,8 @@ namespace gs::features {
 /// All features, in the order in which `inspect` prints them and a step calls their hooks. A
 /// feature with a device part has a member template `on_device<Renderer>`, which derives from
 /// `device_feature<Renderer>`.
-using table = std::tuple<sh_degree_feature, vignetting_feature, exposure_feature, antialiasing_feature,
-                         sky_feature, poses_feature, motion_feature, moving_feature, masks_feature,
-                         depth_feature, lens_feature, background_feature>;
+using table = std::tuple<sh_degree_feature, vignetting_feature, exposure_feature, response_feature,
+                         antialiasing_feature, sky_feature, poses_feature, motion_feature, moving_feature,
+                         masks_feature, depth_feature, lens_feature, background_feature>;
 
 }  // namespace gs::features

@@ -75,6 +75,14 @@ const lens_falloff& scene_statistics::falloff() const {
     return *falloff_;
 }
 
+const tone_response& scene_statistics::response() const {
+    if (response_) return *response_;
+    observed_points points = smooth_points();
+    remove_clear_falloff(points);
+    response_ = estimate_response(scene_, std::move(points));
+    return *response_;
+}
+
 void scene_statistics::remove_clear_falloff(observed_points& points) const {
     if (falloff().is_clear()) remove_falloff(scene_, falloff(), points);
 }

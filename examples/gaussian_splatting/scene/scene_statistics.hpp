@@ -11,6 +11,7 @@
 #include "lens_falloff.hpp"
 #include "photo_brightness.hpp"
 #include "scene.hpp"
+#include "tone_response.hpp"
 
 namespace gs {
 
@@ -41,6 +42,8 @@ class scene_statistics {
     /// Returns the falloff of lenses, measured at the smooth points, and if these are few, at points in
     /// slightly rough parts, too.
     const lens_falloff& falloff() const;
+    /// Returns the response of cameras, measured at the smooth points after a clear falloff is removed.
+    const tone_response& response() const;
     /// Removes the falloff from the colors of observations if it is clear.
     void remove_clear_falloff(observed_points& points) const;
 
@@ -51,6 +54,7 @@ class scene_statistics {
     mutable std::optional<observed_points> points_, smooth_;
     mutable std::optional<photo_brightness> brightness_, brightness_of_smooth_;
     mutable std::optional<lens_falloff> falloff_;
+    mutable std::optional<tone_response> response_;
 };
 
 }  // namespace gs

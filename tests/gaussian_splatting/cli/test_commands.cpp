@@ -201,7 +201,7 @@ TEST_CASE("inspect prints and writes the effects that a scene needs") {
     CAPTURE(o.err);
     CHECK(o.code == 0);
     const auto json = nlohmann::json::parse(read_file(file));
-    REQUIRE(json.at("effects").size() == 12);
+    REQUIRE(json.at("effects").size() == 13);
     for (const auto& effect : json.at("effects")) {
         const auto name = effect.at("name").get<std::string>();
         if (name == "poses")

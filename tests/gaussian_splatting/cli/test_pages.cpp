@@ -110,7 +110,7 @@ TEST_CASE("inspect --html writes the evidence for each effect") {
                       "<code>--effects auto,+direction</code>", "<code>--sh-degree 3</code>",
                       "<code>--background white</code>", "no training photo has masked pixels"}));
     const json effects = read_json(folder / "effects.json").at("effects");
-    REQUIRE(effects.size() == 12);
+    REQUIRE(effects.size() == 13);
     for (const json& effect : effects) {
         const auto name = effect.at("name").get<std::string>();
         CAPTURE(name);

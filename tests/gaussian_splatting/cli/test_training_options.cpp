@@ -179,6 +179,7 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
     CHECK(effects("auto", varied, {}) == set{{"direction", false},
                                              {"vignetting", false},
                                              {"exposure", true},
+                                             {"response", false},
                                              {"antialiasing", true},
                                              {"sky", false},
                                              {"poses", false},
@@ -201,6 +202,7 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
     CHECK(effects("some", varied, {"--effects=-exposure,+direction"}) == set{{"direction", true},
                                                                              {"vignetting", false},
                                                                              {"exposure", false},
+                                                                             {"response", false},
                                                                              {"antialiasing", true},
                                                                              {"sky", false},
                                                                              {"poses", false},
@@ -212,6 +214,7 @@ TEST_CASE("train simulates the effects that the scene needs or that are given") 
     CHECK(!fs::exists(folder / "some/exposures.json"));
     CHECK(!fs::exists(folder / "some/poses.json"));
     CHECK(!fs::exists(folder / "some/vignetting.json"));
+    CHECK(!fs::exists(folder / "some/response.json"));
     CHECK(!read_json(folder / "some/metrics.json").contains("fitted_psnr"));
 
     CHECK(effects("poses", "synthetic:spheres,poses=1", {"--effects", "poses"}).at("poses"));

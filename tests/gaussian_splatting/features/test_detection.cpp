@@ -65,6 +65,7 @@ TEST_CASE("long: detection recommends the effects that a scene was made with, an
         {"spheres,exposure=0.3,noise=0.01", {"exposure"}},
         {"spheres,vignetting=0.4,noise=0.03", {"vignetting"}},
         {"spheres,vignetting=0.3,exposure=0.3,sky=0.7", {"vignetting", "exposure", "sky"}},
+        {"spheres,exposure=0.5,response=0.8,noise=0.01", {"exposure", "response"}},
         {"spheres,scales=4", {"antialiasing"}},
         {"spheres,blur=8", {"motion"}},
         {"spheres,sky=0.4,noise=0.03", {"sky"}},
@@ -83,7 +84,7 @@ TEST_CASE("long: detection recommends the effects that a scene was made with, an
         INFO(c.scene);
         const gs::scene scene = made(c.scene);
         const gs::scene_statistics statistics(scene);
-        REQUIRE(all_features().size() == 12);
+        REQUIRE(all_features().size() == 13);
         for (const auto& f : all_features()) {
             INFO(f->name());
             const finding found = f->analyze(statistics);
@@ -219,7 +220,7 @@ TEST_CASE("a scene without points is not told what it needs") {
     const gs::scene_statistics statistics(scene);
     for (const auto& f : all_features()) {
         INFO(f->name());
-        const std::set<std::string_view> of_files = {"background", "vignetting", "motion",
+        const std::set<std::string_view> of_files = {"background", "vignetting", "response", "motion",
                                                      "masks",      "depth",      "lens"};
         CHECK(f->analyze(statistics).recommended.has_value() == of_files.contains(f->name()));
     }
@@ -393,16 +394,18 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
         return "";
     };
     CHECK(refusal("spheres,gloss=0.5,noise=0.1") == "");
-    CHECK(refusal("spheres,glos=0.5") ==
-          "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
-          "moving, blur, shutter, vignetting, sky, walls, fisheye, panorama, depths, points, views, poses, "
-          "noise");
+    CHECK(
+        refusal("spheres,glos=0.5") ==
+        "a synthetic scene has no parameter 'glos'; there are: gloss, exposure, scales, distance, passers, "
+        "moving, blur, shutter, vignetting, response, sky, walls, fisheye, panorama, depths, points, views, "
+        "poses, noise");
     CHECK(refusal("spheres,gloss=2") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not '2'");
     CHECK(refusal("spheres,gloss") == "the 'gloss' of a synthetic scene is a number from 0 to 1, not ''");
-    CHECK(refusal("spheres,") ==
-          "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
-          "moving, blur, shutter, vignetting, sky, walls, fisheye, panorama, depths, points, views, poses, "
-          "noise");
+    CHECK(
+        refusal("spheres,") ==
+        "a synthetic scene has no parameter ''; there are: gloss, exposure, scales, distance, passers, "
+        "moving, blur, shutter, vignetting, response, sky, walls, fisheye, panorama, depths, points, views, "
+        "poses, noise");
     CHECK(refusal("spheres,gloss=nan") ==
           "the 'gloss' of a synthetic scene is a number from 0 to 1, not 'nan'");
     CHECK(refusal("spheres,views=4,depths=0") == "");
@@ -416,6 +419,10 @@ TEST_CASE("a parameter of a synthetic scene that is wrong is named") {
           "a synthetic scene has either 'vignetting' or a 'panorama', not both: "
           "spheres,vignetting=0.3,panorama=1");
     CHECK_THROWS_WITH_AS(made("alpha,vignetting=0.4"), doctest::Contains("it has no vignetting"), gs::error);
+    CHECK_THROWS_WITH_AS(made("alpha,response=0.4"), doctest::Contains("it has no response"), gs::error);
+    CHECK(refusal("spheres,response=0.3,panorama=1") ==
+          "a synthetic scene has either a 'response' or a 'panorama', not both: "
+          "spheres,response=0.3,panorama=1");
     CHECK(refusal("spheres,views=4.5") ==
           "the 'views' of a synthetic scene is a whole number from 1 to 48, not '4.5'");
     CHECK(refusal("spheres,depths=-1") ==

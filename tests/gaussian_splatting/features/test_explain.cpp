@@ -82,8 +82,8 @@ TEST_CASE("explain: each effect names its condition, and shows photos of the sce
 TEST_CASE("explain: a scene without points has no photos of effects that need points") {
     gs::scene scene = explained_scene("spheres,views=3,points=300");
     scene.points.clear();
-    for (const char* name :
-         {"direction", "vignetting", "exposure", "antialiasing", "sky", "moving", "masks", "depth"}) {
+    for (const char* name : {"direction", "vignetting", "exposure", "response", "antialiasing", "sky",
+                             "moving", "masks", "depth"}) {
         CAPTURE(name);
         const explanation found = explained(name, scene);
         CHECK(!found.condition.empty());

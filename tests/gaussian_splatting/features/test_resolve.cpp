@@ -37,7 +37,7 @@ std::string refusal(const std::string& text) {
 
 /// The names of the selectable features.
 const selected_feature& outcome(const feature_set& features, std::size_t i) {
-    REQUIRE(features.all().size() == 10);
+    REQUIRE(features.all().size() == 11);
     return features.all()[i];
 }
 
@@ -78,9 +78,10 @@ TEST_CASE("long: training simulates the recommended effects, or those that --eff
     CHECK(revises_sh_degree(matte));
     CHECK(gains_of(matte).empty());
     CHECK_FALSE(matte.is_on("antialiasing"));
-    REQUIRE(matte.all().size() == 10);
-    for (std::size_t i = 0; const char* name : {"direction", "vignetting", "exposure", "antialiasing", "sky",
-                                                "poses", "motion", "moving", "masks", "depth"}) {
+    REQUIRE(matte.all().size() == 11);
+    for (std::size_t i = 0;
+         const char* name : {"direction", "vignetting", "exposure", "response", "antialiasing", "sky",
+                             "poses", "motion", "moving", "masks", "depth"}) {
         CHECK(matte.all()[i].name == name);
         CHECK_FALSE(matte.all()[i++].on);
     }
@@ -116,32 +117,32 @@ TEST_CASE("long: training simulates the recommended effects, or those that --eff
     CHECK(outcome(settled, 0).reason == "--sh-degree 2");
 
     const feature_set under_sky = simulated(made("spheres,sky=0.7"), "auto");
-    CHECK(outcome(under_sky, 4).on);
+    CHECK(outcome(under_sky, 5).on);
     CHECK(under_sky.values_if_on("sky").size() == gs::sky_width);
     CHECK(std::abs(under_sky.values_if_on("sky")[0]) > 0.1f);
     CHECK(matte.values_if_on("sky").empty());
     CHECK(simulated(spheres, "all").values_if_on("sky") == std::vector<float>(gs::sky_width, 0.0f));
     CHECK(simulated(made("alpha"), "all").values_if_on("sky").empty());
-    CHECK(outcome(simulated(made("alpha"), "all"), 4).reason == "photos have transparent parts");
-    CHECK(outcome(simulated(spheres, "all"), 8).reason == "no training photo has masked pixels");
+    CHECK(outcome(simulated(made("alpha"), "all"), 5).reason == "photos have transparent parts");
+    CHECK(outcome(simulated(spheres, "all"), 9).reason == "no training photo has masked pixels");
     const feature_set masked = simulated(made("spheres,passers=0.1"), "auto");
-    CHECK(outcome(masked, 8).on);
-    CHECK(outcome(masked, 8).reason.starts_with("48 of 48 photos have masks, which exclude "));
+    CHECK(outcome(masked, 9).on);
+    CHECK(outcome(masked, 9).reason.starts_with("48 of 48 photos have masks, which exclude "));
 
-    CHECK(outcome(simulated(spheres, "all"), 9).reason == "no training photo has a depth map");
+    CHECK(outcome(simulated(spheres, "all"), 10).reason == "no training photo has a depth map");
     CHECK(simulated(spheres, "all").values_if_on("depth").empty());
     const gs::scene estimated = made("spheres,views=4,points=1000,depths=0.02");
     CHECK(simulated(estimated, "none").values_if_on("depth").empty());
     for (const char* text : {"auto", "depth"}) {
         const feature_set deep = simulated(estimated, text);
-        CHECK(outcome(deep, 9).on);
+        CHECK(outcome(deep, 10).on);
         const std::vector<float> fits = deep.values_if_on("depth");
         REQUIRE(fits.size() == 8);
         for (std::size_t i = 0; i < 8; i += 2) CHECK(fits[i] > 0);
     }
     const feature_set wrong = simulated(made("spheres,views=4,depths=10"), "all");
-    CHECK_FALSE(outcome(wrong, 9).on);
-    CHECK(outcome(wrong, 9).reason.starts_with(
+    CHECK_FALSE(outcome(wrong, 10).on);
+    CHECK(outcome(wrong, 10).reason.starts_with(
         "4 of 4 photos have depth maps, of which 0 agree with the points; the median correlation is "));
 }
 
@@ -152,7 +153,7 @@ TEST_CASE("a selection of effects that is none is refused") {
         CHECK(refusal(text) == "");
     }
     CHECK(refusal("glare") ==
-          "--effects: there is no effect 'glare'; the effects are direction, vignetting, exposure, "
+          "--effects: there is no effect 'glare'; the effects are direction, vignetting, exposure, response, "
           "antialiasing, sky, poses, motion, moving, masks, depth");
     CHECK(parse_selection("auto").allows("masks"));
     CHECK(parse_selection("masks").allows("masks"));

@@ -93,8 +93,9 @@ words small_run(const fs::path& output, int ranks) {
 
 TEST_CASE("ranks: any number of them writes the same model, with exposures and SH coefficients") {
     check_equal_models(
-        "synthetic:spheres,exposure=0.4,gloss=0.7,vignetting=0.4,views=8",
-        density_control + words{"--effects", "auto,+exposure,+direction,+poses,+motion,+moving,+vignetting"});
+        "synthetic:spheres,exposure=0.4,response=0.6,gloss=0.7,vignetting=0.4,views=8",
+        density_control +
+            words{"--effects", "auto,+exposure,+response,+direction,+poses,+motion,+moving,+vignetting"});
 }
 
 TEST_CASE("ranks: any number of them revises the SH degree alike, from equal measurements") {

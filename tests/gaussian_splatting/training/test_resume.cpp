@@ -15,6 +15,7 @@
 #include "features/exposure/exposure_feature.hpp"
 #include "features/motion/motion_feature.hpp"
 #include "features/poses/poses_feature.hpp"
+#include "features/response/response_feature.hpp"
 #include "features/sh_degree/sh_degree_feature.hpp"
 #include "features/vignetting/vignetting_feature.hpp"
 #include "training/initialize.hpp"
@@ -42,6 +43,7 @@ gs::train::train_options options_for(const gs::scene& scene, const std::string& 
         {{"direction", true, "", {1, 1}},  // revises the SH degree
          {"vignetting", true, "", gs::features::vignetting_feature().neutral_values(scene)},
          {"exposure", true, "", gs::features::exposure_feature().neutral_values(scene)},
+         {"response", true, "", gs::features::response_feature().neutral_values(scene)},
          {"poses", true, "", gs::features::poses_feature().neutral_values(scene)},
          {"motion", true, "", gs::features::motion_feature().neutral_values(scene)},
          {"moving", true, "", {}},

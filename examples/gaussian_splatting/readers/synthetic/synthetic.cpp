@@ -24,6 +24,7 @@
 #include "synthetic_parameters.hpp"
 #include "synthetic_passers.hpp"
 #include "synthetic_random.hpp"
+#include "synthetic_response.hpp"
 #include "synthetic_vignetting.hpp"
 #include "synthetic_walls.hpp"
 
@@ -124,12 +125,14 @@ world world_of(const std::string& text) {
         if (how.world == candidate.name) {
             world made = candidate.make();
             made.how = how;
-            if ((how.sky > 0 || how.walls > 0 || how.vignetting > 0) && made.transparent)
+            const char* lacked = how.sky > 0          ? "sky"
+                                 : how.walls > 0      ? "walls"
+                                 : how.vignetting > 0 ? "vignetting"
+                                 : how.response > 0   ? "response"
+                                                      : nullptr;
+            if (lacked != nullptr && made.transparent)
                 throw error("the synthetic scene '" + how.world +
-                            "' is transparent where it has nothing: it has no " +
-                            (how.sky > 0     ? "sky"
-                             : how.walls > 0 ? "walls"
-                                             : "vignetting"));
+                            "' is transparent where it has nothing: it has no " + lacked);
             return made;
         }
         known += (known.empty() ? "" : ", ") + std::string(candidate.name);
@@ -302,6 +305,7 @@ void render_row(const world& w, const camera& c, std::size_t photo, int row, std
         if (w.how.vignetting > 0) falloff = synthetic_falloff(w.how, c, column + 0.5, row + 0.5);
         for (int channel = 0; channel < 3; ++channel) {
             double shown = exposure * falloff[static_cast<std::size_t>(channel)] * weight * color[channel];
+            if (w.how.response > 0) shown = synthetic_response(w.how, shown);
             if (w.how.noise > 0 && hits > 0) shown += w.how.noise * normal(random);
             const double most = rgba[3] / 255.0;  // colors are premultiplied
             rgba[channel] = to_byte(std::clamp(shown, 0.0, most));

@@ -29,6 +29,7 @@ constexpr parameter parameters[] = {{"gloss", &synthetic_parameters::gloss, 0, 1
                                     {"blur", &synthetic_parameters::blur, 0, 32},
                                     {"shutter", &synthetic_parameters::shutter, -32, 32},
                                     {"vignetting", &synthetic_parameters::vignetting, 0, 0.8},
+                                    {"response", &synthetic_parameters::response, 0, 1},
                                     {"sky", &synthetic_parameters::sky, 0, 1},
                                     {"walls", &synthetic_parameters::walls, 0, 1},
                                     {"fisheye", &synthetic_parameters::fisheye, 0, 190},
@@ -76,6 +77,8 @@ synthetic_parameters parse_synthetic(const std::string& text) {
         throw error("a synthetic scene has either a 'fisheye' or a 'panorama', not both: " + text);
     if (result.vignetting > 0 && result.panorama > 0)
         throw error("a synthetic scene has either 'vignetting' or a 'panorama', not both: " + text);
+    if (result.response > 0 && result.panorama > 0)
+        throw error("a synthetic scene has either a 'response' or a 'panorama', not both: " + text);
     if ((result.blur > 0 || result.shutter != 0) && (result.fisheye > 0 || result.panorama > 0))
         throw error("a synthetic scene has 'blur' and 'shutter' only with pinhole cameras: " + text);
     if (result.sky > 0 && result.walls > 0)

@@ -19,6 +19,7 @@ struct synthetic_parameters {
     double blur = 0;        ///< largest motion blur of the training photos, as if 128 pixels wide, 0 to 32
     double shutter = 0;     ///< largest rolling-shutter shift, from the first row to the last, -32 to 32
     double vignetting = 0;  ///< share of the light that is lost in the corners, as displayed, 0 to 0.8
+    double response = 0;    ///< strength of the tone curve of the camera, 0 to 1
     double depths = -1;     ///< relative noise of depth maps, 0 to 10; negative for no depth maps
     double sky = 0;         ///< brightness of the sky, which depends only on direction, 0 to 1
     double walls = 0;       ///< brightness of smooth walls around scene and cameras, 0 to 1; 0 for none
@@ -31,8 +32,8 @@ struct synthetic_parameters {
 };
 
 /// Parses "WORLD", "WORLD,gloss=0.5,noise=0.02" and so on. Throws `error` for a parameter that is
-/// unknown, repeated or out of range, for panoramas together with a fisheye lens or vignetting, for a sky
-/// together with walls, and for moving cameras without a pinhole. Does not check `world`.
+/// unknown, repeated or out of range, for panoramas together with a fisheye lens, vignetting or a
+/// response, for a sky together with walls, and for moving cameras without a pinhole. Does not check `world`.
 synthetic_parameters parse_synthetic(const std::string& text);
 
 }  // namespace gs
