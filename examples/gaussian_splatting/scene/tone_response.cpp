@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../core/median.hpp"
+
 namespace gs {
 namespace {
 
@@ -74,6 +76,21 @@ value_column predicted(const tone_samples& samples) {
     return brightness;
 }
 
+/// Returns the typical difference from the prediction.
+double noise_of(const tone_samples& samples, const value_column& brightness) {
+    value_column sizes;
+    for (std::size_t i = 0; i < brightness.size(); ++i)
+        sizes.push_back(std::abs(std::exp(samples.y[i]) - brightness[i]));
+    return 1.4826 * median(sizes);
+}
+
+/// Replaces logarithms by linear functions around the prediction. The mean of a logarithm is too small where
+/// noise is large relative to the brightness, so dark colors would seem to follow a curve.
+void make_linear(tone_samples& samples, const value_column& brightness) {
+    for (std::size_t i = 0; i < brightness.size(); ++i)
+        samples.y[i] = std::log(brightness[i]) + std::exp(samples.y[i]) / brightness[i] - 1;
+}
+
 /// Samples with the terms of the predicted brightness.
 struct tone_fit {
     tone_samples samples;
@@ -122,12 +139,14 @@ bool tone_response::is_clear() const {
 double tone_response::at(double x) const { return x * std::exp(terms[0] * (x - 1) + terms[1] * (x * x - 1)); }
 
 tone_response estimate_response(const scene& of, observed_points points) {
-    constexpr double darkest = 0.04, brightest = 0.94;
     tone_response found;
-    const tone_samples all = tone_samples_of(of, points);
+    tone_samples all = tone_samples_of(of, points);
     if (all.y.empty()) return found;
     const value_column brightness = predicted(all);
+    const double margin = 2 * noise_of(all, brightness);
+    const double darkest = 0.04 + margin, brightest = 0.94 - margin;
     const auto is_gray = [&](std::size_t i) { return brightness[i] > darkest && brightness[i] < brightest; };
+    make_linear(all, brightness);
     const tone_fit whole(all.filtered(least_samples, is_gray));
     found.points = whole.samples.groups.points.size() / channels;
     if (whole.samples.y.empty()) return found;

@@ -92,7 +92,7 @@ class Program(unittest.TestCase):
             self.assertEqual(os.listdir(folder), ["decisions.json"])
             result = json.loads(file.read_text())
             text = subprocess.run([*SCRIPT, "table", file], check=True, capture_output=True, text=True).stdout
-        self.assertEqual([r["kind"] for r in result["runs"]], ["pure"] * 25 + ["mixture"])
+        self.assertEqual([r["kind"] for r in result["runs"]], ["pure"] * 27 + ["mixture"])
         for one in result["runs"]:
             judged = [name for name in one["effects"] if name != "poses"]  # photos do not tell whether poses are right
             self.assertEqual(judged, list(one["truth"]))

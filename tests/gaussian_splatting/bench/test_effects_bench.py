@@ -21,7 +21,8 @@ def one(scene, options, seed=0, psnr=30.0, speed=1000.0, on=(), **more):
 
 def result(changed=(), scenes=()):
     """All that a table needs, alike but for the runs that are `changed`."""
-    pairs = [(scene, options) for effect, both in effects.SCENES.items() for scene in both for options in ("none", effect)]
+    pairs = [(scene, options) for effect, both in effects.SCENES.items() for scene in both
+             for options in effects.selections(effect)]
     pairs += [(scene, options) for scene in (*effects.LITTLE, *effects.MUCH, *scenes) for options in effects.SELECTIONS]
     runs = {key: [one(*key)] for key in pairs}
     for run in changed:
@@ -43,6 +44,12 @@ class Tables(unittest.TestCase):
         self.assertEqual(row[3:6], ["1.25", "2, 2", "20.00, 24.50 (+4.50)"])
         self.assertEqual(row[6], "21.00, 25.50 (+4.50)")
         self.assertEqual(row[7:], [f"{20 - d:.2f}, {24.5 - d:.2f} (+4.50)" for d in effects.DISTANCES])
+
+    def test_an_effect_that_needs_another_is_compared_with_it(self):
+        called, _ = effects.SCENES["response"]
+        runs = [one(called, "exposure", psnr=24), one(called, "exposure,response", psnr=26)]
+        row = cells(effects.table(result(runs)), f"| `response` | yes | `{called}`")
+        self.assertEqual(row[5], "24.00, 26.00 (+2.00)")
 
     def test_medians_of_seeds(self):
         called, _ = effects.SCENES["masks"]
