@@ -126,7 +126,8 @@ struct tone_fit {
 }  // namespace
 
 double tone_response::errors() const {
-    return (halves[0].value + halves[1].value) / std::hypot(halves[0].error, halves[1].error);
+    const double error = std::hypot(halves[0].error, halves[1].error);
+    return error > 0 ? (halves[0].value + halves[1].value) / error : 0;
 }
 
 bool tone_response::is_clear() const {

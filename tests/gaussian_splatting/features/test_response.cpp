@@ -430,6 +430,27 @@ TEST_CASE("response: detection finds the curve if exposures differ") {
     CHECK(response_in("spheres,response=0.8,exposure=0.5,points=40,views=8").recommended == std::nullopt);
 }
 
+TEST_CASE("response: the chart shows a curve that is flat at its end if the photos have one") {
+    gs::load_options o;
+    o.data = "synthetic:spheres,response=0.8,exposure=0.5";
+    const gs::scene scene = gs::load_scene(o, {});
+    const gs::scene_statistics statistics(scene);
+    const response_feature feature;
+    const explanation made = feature.explain(statistics, feature.analyze(statistics));
+    CHECK(made.condition.find("at least 1.0 %") != std::string::npos);
+    REQUIRE(made.charts.size() == 1);
+    REQUIRE(made.charts[0].curves.size() == 2);
+    const auto& points = made.charts[0].curves[0].points;
+    REQUIRE(points.size() == 21);
+    CHECK(points[20].second == doctest::Approx(100));
+    const auto exponent = [&](std::size_t i) {  // of the power that is the curve around this sample
+        return std::log(points[i + 1].second / points[i - 1].second) /
+               std::log(points[i + 1].first / points[i - 1].first);
+    };
+    // The S is flat where colors saturate, and so is not a power.
+    CHECK(exponent(8) > exponent(17) + 0.1);
+}
+
 TEST_CASE("long: response: detection decides right on scenes with many causes of different brightness") {
     for (const char* scene :
          {"spheres,response=0.5,exposure=0.5", "spheres,response=0.8,exposure=0.3,noise=0.03",

@@ -78,8 +78,9 @@ explanation response_feature::explain(const scene_statistics& statistics, const 
         measured.points.emplace_back(percent, 100 * found.at(percent / 100.0));
         none.points.emplace_back(percent, percent);
     }
-    made.charts.push_back(
-        {"Brightness in the photo (%)", "exposed brightness (%)", {std::move(measured), std::move(none)}});
+    made.charts.push_back({"Brightness in the photo (%)",
+                           "brightness that colors and exposures predict (%)",
+                           {std::move(measured), std::move(none)}});
     return made;
 }
 

@@ -117,9 +117,9 @@ struct respond_backward {
                 const real x = w.load_row(render, c * plane + first, patch.inside);
                 const real g = w.load_row(by_shown, c * plane + first, patch.inside);
                 const response_basis<real> basis(warpagg::math::min(warpagg::math::max(x, real(0)), real(1)));
-                const auto leaves = (x < real(0) && g > real(0)) || (x > real(1) && g < real(0));
+                const auto points_away = (x < real(0) && g > real(0)) || (x > real(1) && g < real(0));
                 const real by = g * weighted(basis.slope, own);
-                w.store_row(by_render, c * plane + first, warpagg::math::select(leaves, real(0), by),
+                w.store_row(by_render, c * plane + first, warpagg::math::select(points_away, real(0), by),
                             patch.inside);
                 const real shown = weighted(basis.curve, own);
                 WARPAGG_UNROLL
