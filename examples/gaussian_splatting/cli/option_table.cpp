@@ -330,7 +330,7 @@ rows effect_options(settings& s) {
              .commands = {train},
              .value = effect_list(s.effects),
              .help = "Effects to simulate: auto (see inspect), all, none, or names (" + names +
-                     "); auto,+exposure,-sky adds one and leaves out another"},
+                     "); auto,+exposure,-sky adds one and omits another"},
             {.names = "--sh-degree",
              .commands = {train},
              .value = whole(s.sh_degree, 0, 3),
