@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -42,6 +43,21 @@ bool exposures_differ(const scene_statistics& statistics) {
     return exposure_feature().analyze(statistics).recommended == true;
 }
 
+/// Adds the photos that differ most in brightness.
+void add_extremes(const scene_statistics& statistics, explanation& made) {
+    const std::vector<double>& brightness = statistics.brightness().log2;
+    if (brightness.empty()) return;
+    const auto [darkest, brightest] = std::ranges::minmax_element(brightness);
+    const auto add = [&](auto photo, const char* label) {
+        const auto view = static_cast<std::size_t>(photo - brightness.begin());
+        made.photos.push_back(
+            shown_photo(statistics.scene().train[view], label,
+                        text("Points in it: %+.1f %% brightness.", 100 * (std::exp2(*photo) - 1))));
+    };
+    add(darkest, "Darkest photo");
+    add(brightest, "Brightest photo");
+}
+
 }  // namespace
 
 finding response_feature::analyze(const scene_statistics& statistics) const {
@@ -71,6 +87,7 @@ explanation response_feature::explain(const scene_statistics& statistics, const 
                  "other half",
                  100 * tone_response::least_strength, tone_response::least_errors)};
     if (!obstacle(statistics.scene(), {}).empty() || statistics.smooth_points().empty()) return made;
+    add_extremes(statistics, made);
     const tone_response& found = statistics.response();
     if (found.points < enough_points) return made;
     pages::curve measured{"measured at points", {}}, none{"without a response", {}};
