@@ -96,8 +96,8 @@ class Program(unittest.TestCase):
         for one in result["runs"]:
             judged = [name for name in one["effects"] if name != "poses"]  # photos do not tell whether poses are right
             self.assertEqual(judged, list(one["truth"]))
-        self.assertIn("| `alpha,exposure=0.3` | right: no | right: no | right: yes |" + " right: no |" * 7 + " right: yes |", text)
-        self.assertIn("| `spheres,walls=0.8` |" + " right: no |" * 11, text)
+        self.assertIn("| `alpha,exposure=0.3` | right: no | right: no | right: yes |" + " right: no |" * 8 + " right: yes |", text)
+        self.assertIn("| `spheres,walls=0.8` |" + " right: no |" * 12, text)
         self.assertNotIn("Photos", text)
 
     def test_decisions_of_a_training(self):
