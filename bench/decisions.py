@@ -28,16 +28,18 @@ from scenes import by
 WORLDS = ["spheres", "alpha"]
 BACKGROUND = "background"
 CAUSES = {"direction": "gloss", "vignetting": "vignetting", "exposure": "exposure", "response": "response",
-          "antialiasing": "scales", "sky": "sky", "motion": "blur", "moving": "moving", "masks": "passers", "depth": "depths", "lens": "fisheye"}
+          "antialiasing": "scales", "sky": "sky", "poses": "poses", "motion": "blur", "moving": "moving", "masks": "passers",
+          "depth": "depths", "lens": "fisheye"}
 EFFECTS = [*CAUSES, BACKGROUND]
 PURE = [{}, {"gloss": 1}, {"vignetting": 0.4}, {"exposure": 0.3}, {"exposure": 0.5, "response": 0.8},
-        {"response": 0.8}, {"scales": 4}, {"sky": 0.8}, {"walls": 0.8}, {"blur": 8}, {"moving": 0.2}, {"passers": 0.1},
+        {"response": 0.8}, {"scales": 4}, {"sky": 0.8}, {"walls": 0.8}, {"poses": 1}, {"blur": 8}, {"moving": 0.2},
+        {"passers": 0.1},
         {"depths": 0.05}, {"depths": 2}, {"fisheye": 60}, {"noise": 0.03}]
 SKYLESS = "alpha"  # pixels without a surface are transparent
 LACKED = {"sky", "walls", "vignetting", "response"}  # parameters that SKYLESS lacks
 RIGHT_DEPTHS = 0.05  # more noise hides the order of depths
 MIXED = {"gloss": (0.3, 1), "vignetting": (0.2, 0.6), "exposure": (0.15, 0.5), "response": (0.6, 1), "scales": (3, 8),
-         "sky": (0.3, 1), "blur": (6, 12), "moving": (0.1, 0.5), "passers": (0.05, 0.2),
+         "sky": (0.3, 1), "poses": (0.6, 2), "blur": (6, 12), "moving": (0.1, 0.5), "passers": (0.05, 0.2),
          "depths": (0.01, 0.02), "fisheye": (50, 70)}
 
 

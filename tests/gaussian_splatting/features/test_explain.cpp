@@ -63,7 +63,6 @@ TEST_CASE("explain: each effect names its condition, and shows photos of the sce
         const explanation found = f->explain(statistics, f->analyze(statistics));
         CHECK(!found.condition.empty());
         if (f->name() == "background") continue;  // all photos are opaque
-        if (f->name() == "poses") continue;       // photos do not show their errors
         CHECK(!found.charts.empty());
         REQUIRE(!found.photos.empty());
         for (const gs::pages::marked_photo& photo : found.photos) {
@@ -83,7 +82,7 @@ TEST_CASE("explain: a scene without points has no photos of effects that need po
     gs::scene scene = explained_scene("spheres,views=3,points=300");
     scene.points.clear();
     for (const char* name : {"direction", "vignetting", "exposure", "response", "antialiasing", "sky",
-                             "moving", "masks", "depth"}) {
+                             "poses", "moving", "masks", "depth"}) {
         CAPTURE(name);
         const explanation found = explained(name, scene);
         CHECK(!found.condition.empty());

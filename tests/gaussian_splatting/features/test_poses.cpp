@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "../training/engines.hpp"
+#include "features/poses/pose_evidence.hpp"
 #include "features/poses/poses_feature.hpp"
 #include "features/resolve.hpp"
 #include "scene/look_at.hpp"
@@ -57,6 +58,47 @@ std::unique_ptr<gs::train::engine> trained(make_engine make, const gs::scene& sc
 }
 
 }  // namespace
+
+TEST_CASE("poses: a turned camera shifts its photo against the points, by the angle of the turn") {
+    gs::scene scene = small_scene("synthetic:spheres,views=12", 128);
+    constexpr double degrees = 1.5;
+    gs::camera& turned = scene.train[4].camera;
+    const glm::dmat3 turn(
+        glm::mat3_cast(glm::angleAxis(degrees * std::numbers::pi / 180, glm::dvec3(0, 1, 0))));
+    turned.rotation = turn * turned.rotation;
+    turned.translation = turn * turned.translation;
+    const pose_evidence found = find_shifted_photos(gs::scene_statistics(scene));
+    CHECK(found.judged() >= 10);
+    CHECK(!found.is_clear());  // a single photo does not call for the effect
+    CHECK(found.median_shift() < 0.7);
+    REQUIRE(found.photos[4].is_judged);
+    const double expected = turned.fx * std::tan(degrees * std::numbers::pi / 180);
+    // The points moved to the right in the image, so their colors lie to the left.
+    CHECK(found.photos[4].shift.x == doctest::Approx(-expected).epsilon(0.25));
+    CHECK(std::abs(found.photos[4].shift.y) < 0.7);
+}
+
+TEST_CASE("poses: photos do not seem shifted for other reasons") {
+    for (const char* world :
+         {"spheres", "spheres,noise=0.05", "spheres,exposure=0.5,vignetting=0.5", "spheres,gloss=1",
+          "spheres,scales=6", "spheres,sky=0.8", "spheres,walls=0.8", "spheres,moving=0.5",
+          "spheres,passers=0.2", "spheres,blur=8", "spheres,shutter=8", "spheres,fisheye=60"}) {
+        CAPTURE(world);
+        const gs::scene scene = small_scene((std::string("synthetic:") + world).c_str(), 128);
+        const pose_evidence found = find_shifted_photos(gs::scene_statistics(scene));
+        CHECK(found.judged() >= pose_evidence::least_photos);
+        CHECK(found.median_shift() < 0.8);
+    }
+}
+
+TEST_CASE("poses: photos that do not show the colors of points are not judged") {
+    gs::scene scene = small_scene("synthetic:spheres,views=8", 128);
+    for (gs::colored_point& p : scene.points) p.color = {128, 128, 128};
+    CHECK(find_shifted_photos(gs::scene_statistics(scene)).judged() == 0);
+    CHECK(!poses_feature().analyze(gs::scene_statistics(scene)).recommended);
+    scene.points.clear();
+    CHECK(find_shifted_photos(gs::scene_statistics(scene)).judged() == 0);
+}
 
 TEST_CASE("poses: any finite change gives a valid pose, at singular angles, too") {
     for (const double angle :

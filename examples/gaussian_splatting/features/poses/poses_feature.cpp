@@ -9,9 +9,13 @@
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "../../core/atomic_file_write.hpp"
 #include "../../training/training.hpp"
+#include "../text.hpp"
+#include "pose_evidence.hpp"
 
 namespace gs::features {
 namespace {
@@ -38,16 +42,47 @@ nlohmann::ordered_json to_json(const camera& given, const camera& learned, const
 
 }  // namespace
 
-finding poses_feature::analyze(const scene_statistics&) const {
-    return {
-        {},
-        "photos alone do not tell how exact poses are; add +poses if renders of held-out photos are blurred "
-        "or shifted",
-        "off"};
+finding poses_feature::analyze(const scene_statistics& statistics) const {
+    const scene& scene = statistics.scene();
+    if (const std::string reason = obstacle(scene, {}); !reason.empty()) return {false, reason, "off"};
+    std::vector<float> values = neutral_values(scene);
+    const pose_evidence found = find_shifted_photos(statistics);
+    if (found.judged() < pose_evidence::least_photos)
+        return {{},
+                text("cannot decide: only %zu photos clearly show the colors of points", found.judged()),
+                "off",
+                std::move(values)};
+    return {found.is_clear(),
+            text("the median of %zu photos shows the colors of points %.2f pixels beside their places",
+                 found.judged(), found.median_shift()),
+            found.is_clear() ? "on" : "off", std::move(values)};
 }
 
-explanation poses_feature::explain(const scene_statistics&, const finding&) const {
-    return {.condition = "none: only training shows whether poses are exact"};
+explanation poses_feature::explain(const scene_statistics& statistics, const finding&) const {
+    explanation made{.condition = text("the median photo shows the colors of points at least %.2f pixels "
+                                       "beside their places",
+                                       pose_evidence::least_shift)};
+    const scene& scene = statistics.scene();
+    const pose_evidence found = find_shifted_photos(statistics);
+    if (found.judged() == 0) return made;
+    std::vector<double> lengths;
+    for (const photo_shift& p : found.photos)
+        lengths.push_back(p.is_judged ? glm::length(p.shift) : std::nan(""));
+    made.charts.push_back({"Shift of photos against the points (pixels)",
+                           "photo",
+                           {curve_of_photos("photo", lengths),
+                            level_line("shift that calls for the effect, if the median photo has it",
+                                       static_cast<double>(lengths.size()), pose_evidence::least_shift)},
+                           true});
+    const auto most = static_cast<std::size_t>(
+        std::ranges::max_element(lengths, {}, [](double x) { return std::isnan(x) ? -1 : x; }) -
+        lengths.begin());
+    const glm::dvec2 shift = found.photos[most].shift;
+    made.photos.push_back(shown_photo(
+        scene.train[most], "Largest shift",
+        text("Points lie %.1f pixels to the %s and %.1f pixels %s of their colors.", std::abs(shift.x),
+             shift.x > 0 ? "left" : "right", std::abs(shift.y), shift.y > 0 ? "above" : "below")));
+    return made;
 }
 
 std::vector<float> poses_feature::neutral_values(const scene& scene) const {

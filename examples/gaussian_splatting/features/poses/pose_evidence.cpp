@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#include "pose_evidence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+
+#include "../../core/median.hpp"
+#include "../../core/parallel.hpp"
+#include "../../scene/view_photo.hpp"
+
+namespace gs::features {
+namespace {
+
+constexpr std::size_t most_photos = 60, most_points = 600;
+constexpr double largest_shift = 0.02;  ///< in widths or heights of the photo, whichever is larger
+constexpr int least_radius = 3, most_radius = 32;
+constexpr double least_correlation = 0.3;
+constexpr double agreement = 1.5;  ///< of two halves of the points, in pixels
+
+/// The brightness of a photo: the mean of 3×3 pixels. Negative where a pixel is masked or transparent.
+class smooth_brightness {
+  public:
+    explicit smooth_brightness(const image& photo) : width_(photo.width), values_(photo.rgba.size() / 4, -1) {
+        for (int y = 1; y + 1 < photo.height; ++y)
+            for (int x = 1; x + 1 < photo.width; ++x) values_[index(x, y)] = mean_around(photo, x, y);
+    }
+    float at(int x, int y) const { return values_[index(x, y)]; }
+
+  private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    }
+    float mean_around(const image& photo, int x, int y) const {
+        int sum = 0;
+        for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx) {
+                const std::uint8_t* rgba = &photo.rgba[4 * index(x + dx, y + dy)];
+                if (rgba[3] != 255) return -1;
+                sum += rgba[0] + rgba[1] + rgba[2];
+            }
+        return static_cast<float>(sum) / (9 * 765);
+    }
+
+    int width_;
+    std::vector<float> values_;
+};
+
+/// The sums from which a correlation follows.
+struct moments {
+    double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+
+    void add(double x, double y) {
+        n += 1;
+        a += x;
+        b += y;
+        aa += x * x;
+        bb += y * y;
+        ab += x * y;
+    }
+    moments operator+(const moments& other) const {
+        return {n + other.n, a + other.a, b + other.b, aa + other.aa, bb + other.bb, ab + other.ab};
+    }
+    double correlation() const {
+        const double scale = (n * aa - a * a) * (n * bb - b * b);
+        return scale > 0 ? (n * ab - a * b) / std::sqrt(scale) : 0;
+    }
+};
+
+struct point_in_photo {
+    int x, y;
+    double brightness;  ///< of the point, in any unit
+};
+
+/// The correlation between points and photo for each shift of up to `radius` pixels in x and y.
+class correlations {
+  public:
+    correlations(int radius, const std::vector<moments>& of_shifts) : radius_(radius) {
+        for (const moments& m : of_shifts) values_.push_back(m.correlation());
+    }
+    /// Returns the best shift. Interpolates between pixels.
+    glm::dvec2 best() const {
+        const int across = 2 * radius_ + 1;
+        const int i = static_cast<int>(std::ranges::max_element(values_) - values_.begin());
+        const int x = i % across - radius_, y = i / across - radius_;
+        return {x + vertex(at(x - 1, y), at(x, y), at(x + 1, y)),
+                y + vertex(at(x, y - 1), at(x, y), at(x, y + 1))};
+    }
+    double highest() const { return *std::ranges::max_element(values_); }
+
+  private:
+    double at(int x, int y) const {
+        x = std::clamp(x, -radius_, radius_);
+        y = std::clamp(y, -radius_, radius_);
+        return values_[static_cast<std::size_t>((y + radius_) * (2 * radius_ + 1) + x + radius_)];
+    }
+    /// Returns the place of the vertex of a parabola through the values at -1, 0 and 1.
+    static double vertex(double before, double middle, double after) {
+        const double curvature = before - 2 * middle + after;
+        return curvature < 0 ? std::clamp((before - after) / (2 * curvature), -0.5, 0.5) : 0;
+    }
+
+    int radius_;
+    std::vector<double> values_;
+};
+
+/// Returns a sample of the points in sight whose surroundings are in the photo.
+std::vector<point_in_photo> points_to_compare(const scene& of, const camera& c, int radius) {
+    std::vector<place_in_photo> seen = points_in_sight(c, of.points);
+    std::erase_if(seen, [&](const place_in_photo& p) {
+        return p.x < radius + 1 || p.y < radius + 1 || p.x >= c.width - radius - 1 ||
+               p.y >= c.height - radius - 1;
+    });
+    const std::size_t step = seen.size() / most_points + 1;
+    std::vector<point_in_photo> points;
+    for (std::size_t i = 0; i < seen.size(); i += step) {
+        const auto& color = of.points[seen[i].point].color;
+        points.push_back(
+            {static_cast<int>(seen[i].x), static_cast<int>(seen[i].y), double(color.r + color.g + color.b)});
+    }
+    return points;
+}
+
+photo_shift shift_of(const scene& of, const view& v) {
+    const camera& c = v.camera;
+    const int radius =
+        std::clamp(static_cast<int>(largest_shift * std::max(c.width, c.height)), least_radius, most_radius);
+    const std::vector<point_in_photo> points = points_to_compare(of, c, radius);
+    if (points.size() < pose_evidence::least_points) return {};
+    const view_photo photo(v);
+    const smooth_brightness light(photo.pixels());
+    std::array<std::vector<moments>, 2> halves;
+    std::vector<moments> all;
+    for (int dy = -radius; dy <= radius; ++dy)
+        for (int dx = -radius; dx <= radius; ++dx) {
+            std::array<moments, 2> sums;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                const float seen = light.at(points[i].x + dx, points[i].y + dy);
+                if (seen >= 0) sums[i % 2].add(points[i].brightness, static_cast<double>(seen));
+            }
+            for (std::size_t half = 0; half < 2; ++half) halves[half].push_back(sums[half]);
+            all.push_back(sums[0] + sums[1]);
+        }
+    const correlations whole(radius, all), first(radius, halves[0]), second(radius, halves[1]);
+    return {whole.highest() >= least_correlation && glm::length(first.best() - second.best()) <= agreement,
+            whole.best()};
+}
+
+}  // namespace
+
+std::size_t pose_evidence::judged() const {
+    return static_cast<std::size_t>(std::ranges::count_if(photos, &photo_shift::is_judged));
+}
+
+double pose_evidence::median_shift() const {
+    std::vector<double> lengths;
+    for (const photo_shift& p : photos)
+        if (p.is_judged) lengths.push_back(glm::length(p.shift));
+    return lengths.empty() ? 0 : median(lengths);
+}
+
+pose_evidence find_shifted_photos(const scene_statistics& statistics) {
+    const scene& scene = statistics.scene();
+    pose_evidence found{std::vector<photo_shift>(scene.train.size())};
+    const std::size_t step = scene.train.size() / most_photos + 1;
+    for_each_in_parallel((scene.train.size() + step - 1) / step, [&](std::size_t i) {
+        found.photos[i * step] = shift_of(scene, scene.train[i * step]);
+    });
+    return found;
+}
+
+}  // namespace gs::features

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The warpagg authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <vector>
+
+#include "../../scene/scene_statistics.hpp"
+
+namespace gs::features {
+
+/// The shift of a photo against the points of its scene.
+struct photo_shift {
+    bool is_judged = false;  ///< whether two halves of the points agree about the shift
+    glm::dvec2 shift{0};     ///< in pixels
+};
+
+/// The evidence for poses that are not exact: points do not lie where the photos show their colors.
+struct pose_evidence {
+    static constexpr std::size_t least_points = 60;  ///< of a photo that is judged
+    static constexpr std::size_t least_photos = 5;   ///< that are judged
+    static constexpr double least_shift = 1;         ///< of the median photo, in pixels
+
+    std::vector<photo_shift> photos;  ///< one per training photo; a sample of them is judged
+
+    std::size_t judged() const;
+    /// Returns the length of the shift of the median photo that is judged, in pixels.
+    double median_shift() const;
+    bool is_clear() const { return judged() >= least_photos && median_shift() >= least_shift; }
+};
+
+/// Measures how far each photo is shifted: by the shift with the largest correlation between the brightness
+/// of the points and that of the photo at their places. A small error of a camera's rotation shifts its whole
+/// photo; one of its position does so for points at about one distance. Exposure does not matter. Cost:
+/// some milliseconds for each of up to 60 photos.
+pose_evidence find_shifted_photos(const scene_statistics& statistics);
+
+}  // namespace gs::features
