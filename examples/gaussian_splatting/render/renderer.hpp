@@ -269,6 +269,7 @@ class renderer {
     template <class Warp>
     ranks::share own_warps() const {
         const ranks::share own = own_gaussians();
+        if (own.count() == 0) return {};  // a share may begin at the end
         return {own.first / Warp::size, (own.last + Warp::size - 1) / Warp::size};
     }
 

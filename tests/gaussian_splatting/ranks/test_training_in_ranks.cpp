@@ -117,6 +117,21 @@ TEST_CASE("ranks: any number of them writes the same model, with another strateg
                         "--eval", "--test-iterations", "60"});
 }
 
+TEST_CASE("ranks: one has no Gaussians if there are few, and the poses and models of all are the same") {
+    const temporary_folder folder;
+    const auto output = [&](int ranks) { return folder / std::to_string(ranks); };
+    for (int ranks = 1; ranks <= 3; ++ranks) {
+        CAPTURE(ranks);
+        check_success(short_training("synthetic:spheres,views=8,points=20", output(ranks), ranks) +
+                          words{"-i", "90", "--init", "given", "--max-cap", "20", "--eval", "--effects",
+                                "poses", "--test-iterations", "30", "60"},
+                      "2");
+        CHECK(read_json(output(ranks) / "metrics.json").at("gaussians") == 20);
+        CHECK(final_model(output(ranks)) == final_model(output(1)));
+        CHECK(read_file(output(ranks) / "poses.json") == read_file(output(1) / "poses.json"));
+    }
+}
+
 TEST_CASE("ranks: without --deterministic they agree about the model, too") {
     const temporary_folder folder;
     words options = short_training("synthetic:spheres,views=8", folder / "out", 3) + density_control;
