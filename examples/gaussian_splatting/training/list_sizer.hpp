@@ -69,9 +69,9 @@ class list_sizer {
                     std::max(expected, static_cast<double>(lengths[v]) * static_cast<double>(gaussians) /
                                            static_cast<double>(counts_[v]));
         }
-        // The new reserve exceeds the tested one, so that the memory seldom changes.
+        // The new memory exceeds the tested one, so that it seldom changes.
         if (static_cast<double>(renderer.reserved_instances()) < 1.5 * expected + 1024)
-            renderer.reserve_instances(longest, static_cast<std::uint64_t>(expected) + 4096);
+            renderer.reserve_instances(longest, static_cast<std::uint64_t>(2 * expected) - longest + 4096);
     }
 
   private:
