@@ -204,10 +204,7 @@ TEST_CASE("inspect prints and writes the effects that a scene needs") {
     REQUIRE(json.at("effects").size() == 13);
     for (const auto& effect : json.at("effects")) {
         const auto name = effect.at("name").get<std::string>();
-        if (name == "poses")
-            CHECK(effect.at("recommended").is_null());
-        else
-            CHECK(effect.at("recommended").get<bool>() == (name == "direction" || name == "exposure"));
+        CHECK(effect.at("recommended").get<bool>() == (name == "direction" || name == "exposure"));
         CHECK(says(o.out, {name, effect.at("evidence").get<std::string>(),
                            effect.at("expected").get<std::string>()}));
     }

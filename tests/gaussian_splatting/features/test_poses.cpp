@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "../training/engines.hpp"
+#include "core/random.hpp"
 #include "features/poses/pose_evidence.hpp"
 #include "features/poses/poses_feature.hpp"
 #include "features/resolve.hpp"
@@ -89,6 +90,16 @@ TEST_CASE("poses: photos do not seem shifted for other reasons") {
         CHECK(found.judged() >= pose_evidence::least_photos);
         CHECK(found.median_shift() < 0.8);
     }
+}
+
+TEST_CASE("poses: a few points of random colors do not seem shifted") {
+    gs::scene scene = small_scene("synthetic:spheres,views=24,points=300", 128);
+    gs::train::counter_random random(5, 0, 0);
+    for (gs::colored_point& p : scene.points)
+        p.color = glm::u8vec3(static_cast<std::uint8_t>(random.below(256)));
+    const pose_evidence found = find_shifted_photos(gs::scene_statistics(scene));
+    CHECK(found.examined == scene.train.size());
+    CHECK(!found.is_clear());
 }
 
 TEST_CASE("poses: photos that do not show the colors of points are not judged") {

@@ -64,9 +64,11 @@ struct moments {
     moments operator+(const moments& other) const {
         return {n + other.n, a + other.a, b + other.b, aa + other.aa, bb + other.bb, ab + other.ab};
     }
+    /// Returns zero if there are few points, whose correlation may be chance.
     double correlation() const {
+        constexpr double least = pose_evidence::least_points / 2;  // half of the points
         const double scale = (n * aa - a * a) * (n * bb - b * b);
-        return scale > 0 ? (n * ab - a * b) / std::sqrt(scale) : 0;
+        return n >= least && scale > 0 ? (n * ab - a * b) / std::sqrt(scale) : 0;
     }
 };
 
@@ -114,7 +116,7 @@ std::vector<point_in_photo> points_to_compare(const scene& of, const camera& c, 
         return p.x < radius + 1 || p.y < radius + 1 || p.x >= c.width - radius - 1 ||
                p.y >= c.height - radius - 1;
     });
-    const std::size_t step = seen.size() / most_points + 1;
+    const std::size_t step = std::max<std::size_t>((seen.size() + most_points - 1) / most_points, 1);
     std::vector<point_in_photo> points;
     for (std::size_t i = 0; i < seen.size(); i += step) {
         const auto& color = of.points[seen[i].point].color;
@@ -145,7 +147,8 @@ photo_shift shift_of(const scene& of, const view& v) {
             all.push_back(sums[0] + sums[1]);
         }
     const correlations whole(radius, all), first(radius, halves[0]), second(radius, halves[1]);
-    return {whole.highest() >= least_correlation && glm::length(first.best() - second.best()) <= agreement,
+    return {whole.highest() >= least_correlation && std::min(first.highest(), second.highest()) > 0 &&
+                glm::length(first.best() - second.best()) <= agreement,
             whole.best()};
 }
 
@@ -165,8 +168,9 @@ double pose_evidence::median_shift() const {
 pose_evidence find_shifted_photos(const scene_statistics& statistics) {
     const scene& scene = statistics.scene();
     pose_evidence found{std::vector<photo_shift>(scene.train.size())};
-    const std::size_t step = scene.train.size() / most_photos + 1;
-    for_each_in_parallel((scene.train.size() + step - 1) / step, [&](std::size_t i) {
+    const std::size_t step = std::max<std::size_t>((scene.train.size() + most_photos - 1) / most_photos, 1);
+    found.examined = (scene.train.size() + step - 1) / step;
+    for_each_in_parallel(found.examined, [&](std::size_t i) {
         found.photos[i * step] = shift_of(scene, scene.train[i * step]);
     });
     return found;

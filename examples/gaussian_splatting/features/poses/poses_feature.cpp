@@ -47,9 +47,10 @@ finding poses_feature::analyze(const scene_statistics& statistics) const {
     if (const std::string reason = obstacle(scene, {}); !reason.empty()) return {false, reason, "off"};
     std::vector<float> values = neutral_values(scene);
     const pose_evidence found = find_shifted_photos(statistics);
-    if (found.judged() < pose_evidence::least_photos)
+    if (!found.is_decided())
         return {{},
-                text("cannot decide: only %zu photos clearly show the colors of points", found.judged()),
+                text("cannot decide: only %zu of %zu photos clearly show the colors of points",
+                     found.judged(), found.examined),
                 "off",
                 std::move(values)};
     return {found.is_clear(),
@@ -59,9 +60,11 @@ finding poses_feature::analyze(const scene_statistics& statistics) const {
 }
 
 explanation poses_feature::explain(const scene_statistics& statistics, const finding&) const {
-    explanation made{.condition = text("the median photo shows the colors of points at least %.2f pixels "
-                                       "beside their places",
-                                       pose_evidence::least_shift)};
+    explanation made{
+        .condition =
+            text("the median photo shows the colors of points at least %.0f pixel beside their places, "
+                 "and at least %zu photos and a third of all clearly show them",
+                 pose_evidence::least_shift, pose_evidence::least_photos)};
     const scene& scene = statistics.scene();
     const pose_evidence found = find_shifted_photos(statistics);
     if (found.judged() == 0) return made;
@@ -80,7 +83,7 @@ explanation poses_feature::explain(const scene_statistics& statistics, const fin
     const glm::dvec2 shift = found.photos[most].shift;
     made.photos.push_back(shown_photo(
         scene.train[most], "Largest shift",
-        text("Points lie %.1f pixels to the %s and %.1f pixels %s of their colors.", std::abs(shift.x),
+        text("The points lie %.1f pixels %s of their colors and %.1f pixels %s them.", std::abs(shift.x),
              shift.x > 0 ? "left" : "right", std::abs(shift.y), shift.y > 0 ? "above" : "below")));
     return made;
 }
