@@ -113,6 +113,7 @@ class training_run {
         return features::first_sh_degree(options_.features.values_if_on("direction"));
     }
     void warn(const std::string& line);
+    gaussians saved_model();
     void save(int iteration);
     /// Sets aside the earlier run that --overwrite replaces. Call it before the first result is
     /// written. `write_reports` removes that run, so that a training that fails loses nothing.
@@ -268,12 +269,18 @@ void training_run::replace_earlier_run() {
     replaces_ = false;
 }
 
+gaussians training_run::saved_model() {
+    gaussians model = engine_->get_model();
+    options_.features.before_saving(*engine_, scene_, model);
+    return to_world(scene_.normalization, model);
+}
+
 void training_run::save(int iteration) {
     if (!ranks_.is_first()) return;
     replace_earlier_run();
     const fs::path file = model_file(iteration);
     fs::create_directories(file.parent_path());
-    write_model(file, to_world(scene_.normalization, engine_->get_model()));
+    write_model(file, saved_model());
 }
 
 void training_run::test(int iteration) {
@@ -347,7 +354,7 @@ bool training_run::train() {
 
 void training_run::measure() {
     const stopwatch evaluating;
-    // Measures the model as the file stores it, with floats that are rounded in world coordinates.
+    // Measures the model with floats that are rounded in world coordinates, as the file stores them.
     engine_->set_model(
         to_internal(scene_.normalization, to_world(scene_.normalization, engine_->get_model())));
     options_.features.before_evaluation(*engine_, scene_);
@@ -387,7 +394,7 @@ void training_run::write_pages() {
     atomic_file_write(output_->path() / "report.html",
                       [&](std::ostream& out) { pages::write_report_page(out, report); });
     if (!s_.no_viewer)
-        write_viewer(output_->path() / "viewer.html", to_world(scene_.normalization, engine_->get_model()),
+        write_viewer(output_->path() / "viewer.html", saved_model(),
                      viewer_scene_of(scene_, name, background), *s_.viewer_size,
                      [this](const std::string& line) { context_.say(line); });
 }

@@ -79,6 +79,9 @@ class feature {
     /// Sets the effect's values for held-out views. Called before they are measured, if the effect
     /// is on.
     virtual void before_evaluation(train::engine&, const scene&) const {}
+    /// Changes the model that is written to a file, which lacks the effect, so that it looks like the photos.
+    /// Called if the effect is on.
+    virtual void before_saving(train::engine&, const scene&, gaussians&) const {}
     /// Writes the effect's files to the output folder. If it is off, removes those of an earlier
     /// run.
     virtual void write_results(const selected_feature&, train::engine&, const scene&,

@@ -136,6 +136,11 @@ void feature_set::before_evaluation(train::engine& engine, const scene& scene) c
         if (is_on(f->name())) f->before_evaluation(engine, scene);
 }
 
+void feature_set::before_saving(train::engine& engine, const scene& scene, gaussians& model) const {
+    for (const auto& f : all_features())
+        if (is_on(f->name())) f->before_saving(engine, scene, model);
+}
+
 void feature_set::write_results(train::engine& engine, const scene& scene,
                                 const std::filesystem::path& folder) const {
     for (const auto& f : all_features())

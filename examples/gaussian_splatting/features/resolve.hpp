@@ -53,6 +53,7 @@ class feature_set {
     void prepare(scene& scene, gaussians& model) const;
     void schedule(train::training& training) const;
     void before_evaluation(train::engine& engine, const scene& scene) const;
+    void before_saving(train::engine& engine, const scene& scene, gaussians& model) const;
     /// Returns a function that applies all features that are on to the render of a training view.
     show_function show_on_host(train::engine& engine, const scene& scene) const;
     void write_results(train::engine& engine, const scene& scene, const std::filesystem::path& folder) const;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
+#include "../core/counter_hash.hpp"
 #include "../core/median.hpp"
 
 namespace gs {
@@ -152,13 +154,16 @@ tone_response estimate_response(const scene& of, observed_points points) {
     found.points = whole.samples.groups.points.size() / channels;
     if (whole.samples.y.empty()) return found;
     found.terms = whole.solve(&found.strength);
-    const auto half = [&](std::size_t rest) {
-        return tone_fit(all.filtered(
-            least_in_half, [&](std::size_t i) { return is_gray(i) && all.groups.photo(i) % 2 == rest; }));
+    // Photos are divided at random, because exposures may alternate.
+    const auto half = [&](std::uint32_t which) {
+        return tone_fit(all.filtered(least_in_half, [&](std::size_t i) {
+            return is_gray(i) &&
+                   counter_hash(static_cast<std::uint32_t>(all.groups.photo(i)), 0) % 2 == which;
+        }));
     };
-    const tone_fit even = half(0), odd = half(1);
-    if (even.samples.y.empty() || odd.samples.y.empty()) return found;
-    found.halves = {odd.multiple_of(even.solve()), even.multiple_of(odd.solve())};
+    const tone_fit first = half(0), second = half(1);
+    if (first.samples.y.empty() || second.samples.y.empty()) return found;
+    found.halves = {second.multiple_of(first.solve()), first.multiple_of(second.solve())};
     return found;
 }
 

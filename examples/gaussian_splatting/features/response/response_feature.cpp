@@ -7,12 +7,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
 #include "../../core/atomic_file_write.hpp"
 #include "../../engine/engine.hpp"
 #include "../exposure/exposure_feature.hpp"
 #include "../text.hpp"
 #include "../vignetting/lens_groups.hpp"
+#include "respond_in_model.hpp"
 
 namespace gs::features {
 namespace {
@@ -46,16 +48,19 @@ bool exposures_differ(const scene_statistics& statistics) {
 /// Adds the photos that differ most in brightness.
 void add_extremes(const scene_statistics& statistics, explanation& made) {
     const std::vector<double>& brightness = statistics.brightness().log2;
-    if (brightness.empty()) return;
-    const auto [darkest, brightest] = std::ranges::minmax_element(brightness);
-    const auto add = [&](auto photo, const char* label) {
-        const auto view = static_cast<std::size_t>(photo - brightness.begin());
+    std::vector<std::size_t> measured;
+    for (std::size_t v = 0; v < brightness.size(); ++v)
+        if (statistics.brightness().error[v] > 0) measured.push_back(v);
+    if (measured.size() < 2) return;
+    const auto [darkest, brightest] =
+        std::ranges::minmax_element(measured, {}, [&](std::size_t v) { return brightness[v]; });
+    const auto add = [&](std::size_t view, const char* label) {
         made.photos.push_back(
             shown_photo(statistics.scene().train[view], label,
-                        text("Points in it: %+.1f %% brightness.", 100 * (std::exp2(*photo) - 1))));
+                        text("Points in it: %+.1f %% brightness.", 100 * (std::exp2(brightness[view]) - 1))));
     };
-    add(darkest, "Darkest photo");
-    add(brightest, "Brightest photo");
+    add(*darkest, "Darkest photo");
+    add(*brightest, "Brightest photo");
 }
 
 }  // namespace
@@ -140,6 +145,15 @@ void response_feature::before_evaluation(train::engine& engine, const scene& sce
             std::copy_n(values.of(static_cast<int>(*lens)), response_width,
                         held_out.begin() + static_cast<std::ptrdiff_t>(v * response_width));
     state.set_held_out_values(held_out);
+}
+
+void response_feature::before_saving(train::engine& engine, const scene& scene, gaussians& model) const {
+    const response_values values(engine.feature(name()).values(), scene.train.size());
+    std::vector<std::size_t> photos(lens_groups(scene.train).count());
+    for (const int lens : values.lens_of_view)
+        if (lens >= 0) ++photos[static_cast<std::size_t>(lens)];
+    const auto most = std::ranges::max_element(photos) - photos.begin();
+    respond_in_model(values.of(static_cast<int>(most)), model);
 }
 
 void response_feature::write_results(const selected_feature& selected, train::engine& engine,

@@ -25,6 +25,8 @@ class response_feature final : public feature {
     std::string obstacle(const scene& scene, const std::vector<float>& values) const override;
     show_function show_on_host(train::engine& engine, const scene& scene) const override;
     void before_evaluation(train::engine& engine, const scene& scene) const override;
+    /// Changes the colors to those that the response of most photos shows: see `respond_in_model`.
+    void before_saving(train::engine& engine, const scene& scene, gaussians& model) const override;
     /// Writes response.json: for each lens, samples of the curves of the channels.
     void write_results(const selected_feature& selected, train::engine& engine, const scene& scene,
                        const std::filesystem::path& folder) const override;
