@@ -62,6 +62,9 @@ class feature {
     /// Returns whether the initial values come from `analyze` even if the user adds the effect to
     /// the recommended effects.
     virtual bool begins_from_photos() const { return false; }
+    /// Returns the name of an effect without which this one is never recommended, or nothing. That effect
+    /// comes earlier in the table.
+    virtual std::string_view needs() const { return {}; }
     /// Returns the initial values if `analyze` is not called.
     virtual std::vector<float> neutral_values(const scene&) const { return {}; }
     /// Returns the reason why this scene cannot be trained with the effect on, or an empty string.

@@ -32,7 +32,8 @@ const selected_feature* find(const std::vector<selected_feature>& all, std::stri
 
 /// Decides whether a feature is on, from the selection and the scene statistics, and sets its
 /// initial values.
-selected_feature decide(const feature& f, const scene_statistics& statistics, const selection& selection) {
+selected_feature decide(const feature& f, const scene_statistics& statistics, const selection& selection,
+                        const std::vector<selected_feature>& earlier) {
     const bool automatic = selection.from == selection::base::recommended;
     const auto choice = selection.explicit_choice(f.name());
     selected_feature decided{std::string(f.name()), choice.value_or(selection.from == selection::base::all),
@@ -48,6 +49,12 @@ selected_feature decide(const feature& f, const scene_statistics& statistics, co
         decided.values = f.neutral_values(statistics.scene());
     }
     if (!decided.on) return decided;
+    if (const selected_feature* needed = find(earlier, f.needs());
+        needed != nullptr && !needed->on && !choice) {
+        decided.on = false;
+        decided.reason = "the effect " + needed->name + " is off";
+        return decided;
+    }
     if (const std::string obstacle = f.obstacle(statistics.scene(), decided.values); !obstacle.empty()) {
         decided.on = false;
         decided.reason = obstacle;
@@ -155,7 +162,7 @@ feature_set resolve(const scene& scene, const selection& selection,
     for (const auto& f : all_features()) {
         if (!f->is_selectable()) continue;
         const selected_feature* fixed = find(explicit_features, f->name());
-        all.push_back(fixed != nullptr ? *fixed : decide(*f, statistics, selection));
+        all.push_back(fixed != nullptr ? *fixed : decide(*f, statistics, selection, all));
     }
     return feature_set(std::move(all));
 }

@@ -67,6 +67,21 @@ std::vector<float> gains_of(const feature_set& features) {
 
 }  // namespace
 
+TEST_CASE("a response without exposures is left out, unless it is named") {
+    gs::load_options o;
+    o.data = "synthetic:spheres,exposure=0.5,response=0.8";
+    const gs::scene scene = gs::load_scene(o, {});
+    const auto has = [&](const char* selection) {
+        return resolve(scene, parse_selection(selection)).is_on("response");
+    };
+    CHECK(has("auto"));
+    CHECK(!has("auto,-exposure"));
+    CHECK(has("auto,-exposure,+response"));
+    CHECK(has("all"));
+    CHECK(!has("all,-exposure"));
+    CHECK(has("response"));
+}
+
 TEST_CASE("long: training simulates the recommended effects, or those that --effects names") {
     const gs::scene spheres = made("spheres"), glossy = made("spheres,gloss=0.6,exposure=0.3");
     const auto simulated = [](const gs::scene& scene, const char* selection, std::optional<int> degree = {}) {

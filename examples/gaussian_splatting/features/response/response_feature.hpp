@@ -19,6 +19,7 @@ class response_feature final : public feature {
         return "helps if brighter photos change dark and bright colors by different factors, together with "
                "exposure; iterations are slightly slower";
     }
+    std::string_view needs() const override { return "exposure"; }
     finding analyze(const scene_statistics& statistics) const override;
     explanation explain(const scene_statistics& statistics, const finding& found) const override;
     std::vector<float> neutral_values(const scene& scene) const override;
