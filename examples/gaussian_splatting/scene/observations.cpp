@@ -20,11 +20,16 @@ constexpr double spacings = 2.5;                  ///< points this close may hid
 constexpr double nearer = 0.03;                   ///< relative difference in depth
 constexpr int least_value = 6, most_value = 249;  ///< of a channel that is not saturated
 
+/// Returns whether the photo shows the surroundings of these pixel coordinates.
+bool is_inside(const camera& c, double x, double y) {
+    return x >= 2 && y >= 2 && x < c.width - 2 && y < c.height - 2;
+}
+
 std::vector<place_in_photo> project(const camera& c, const std::vector<colored_point>& points) {
     std::vector<place_in_photo> seen;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto p = c.see(points[i].position);
-        if (p && p->x >= 2 && p->y >= 2 && p->x < c.width - 2 && p->y < c.height - 2)
+        if (p && is_inside(c, p->x, p->y))
             seen.push_back({static_cast<std::uint32_t>(i), p->x, p->y, p->depth});
     }
     return seen;
@@ -113,10 +118,13 @@ std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vec
 point_observer::point_observer(const scene& of)
     : scene_(of), step_(of.points.size() / most_points + 1), by_view_(of.train.size()) {}
 
-void point_observer::observe(std::size_t v, const image& photo) {
+void point_observer::observe(std::size_t v, const image& photo, const glm::dvec2& shift) {
     const camera& taken_with = scene_.train[v].camera;
-    for (const place_in_photo& p : points_in_sight(taken_with, scene_.points)) {
+    for (place_in_photo p : points_in_sight(taken_with, scene_.points)) {
         if (p.point % step_ != 0) continue;
+        p.x += shift.x;
+        p.y += shift.y;
+        if (!is_inside(taken_with, p.x, p.y)) continue;
         std::optional<observation> o = look(photo, p);
         if (!o) continue;
         o->view = static_cast<std::uint32_t>(v);
@@ -134,10 +142,12 @@ observed_points point_observer::observations() const {
     return by_point;
 }
 
-observed_points observe_points(const scene& of) {
+observed_points observe_points(const scene& of, std::span<const photo_shift> shifts) {
     point_observer observer(of);
-    for_each_in_parallel(of.train.size(),
-                         [&](std::size_t v) { observer.observe(v, view_photo(of.train[v]).pixels()); });
+    for_each_in_parallel(of.train.size(), [&](std::size_t v) {
+        const bool is_shifted = !shifts.empty() && shifts[v].is_judged;
+        observer.observe(v, view_photo(of.train[v]).pixels(), is_shifted ? shifts[v].pixels : glm::dvec2(0));
+    });
     return observer.observations();
 }
 

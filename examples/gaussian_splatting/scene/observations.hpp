@@ -4,10 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "photo_shifts.hpp"
 #include "scene.hpp"
 
 namespace gs {
@@ -46,9 +49,9 @@ class point_observer {
   public:
     /// The scene must outlive the object.
     explicit point_observer(const scene& of);
-    /// Observes the points in the photo of a training view, or in an image that replaces it. Several
-    /// threads may call it, for different views.
-    void observe(std::size_t view, const image& photo);
+    /// Observes the points in the photo of a training view, or in an image that replaces it. The photo is
+    /// shifted by this number of pixels. Several threads may call it, for different views.
+    void observe(std::size_t view, const image& photo, const glm::dvec2& shift = glm::dvec2(0));
     observed_points observations() const;
 
   private:
@@ -57,7 +60,7 @@ class point_observer {
     std::vector<std::vector<std::pair<std::uint32_t, observation>>> by_view_;
 };
 
-/// Returns the observations in all training photos: see `point_observer`.
-observed_points observe_points(const scene& of);
+/// Returns the observations in all training photos: see `point_observer`. `shifts`: of each photo, or empty.
+observed_points observe_points(const scene& of, std::span<const photo_shift> shifts = {});
 
 }  // namespace gs

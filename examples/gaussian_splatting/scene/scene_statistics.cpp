@@ -27,8 +27,20 @@ observed_points smooth_part(observed_points points) {
 
 }  // namespace
 
+const photo_shifts& scene_statistics::shifts() const {
+    constexpr std::size_t most_photos = 60;
+    if (!shifts_) shifts_ = measure_shifts(scene_, most_photos);
+    return *shifts_;
+}
+
 const observed_points& scene_statistics::points() const {
-    if (!points_) points_ = observe_points(scene_);
+    if (points_) return *points_;
+    if (!shifts().are_clear())
+        points_ = observe_points(scene_);
+    else if (shifts().examined == scene_.train.size())
+        points_ = observe_points(scene_, shifts().photos);
+    else
+        points_ = observe_points(scene_, measure_shifts(scene_, scene_.train.size()).photos);
     return *points_;
 }
 

@@ -10,6 +10,7 @@
 
 #include "lens_falloff.hpp"
 #include "photo_brightness.hpp"
+#include "photo_shifts.hpp"
 #include "scene.hpp"
 #include "tone_response.hpp"
 
@@ -27,7 +28,10 @@ class scene_statistics {
     scene_statistics(const scene& of, observed_points points) : scene_(of), points_(std::move(points)) {}
 
     const gs::scene& scene() const { return scene_; }
-    /// Returns the observations of each point: see `observe_points`.
+    /// Returns the shifts of at most 60 photos: see `measure_shifts`.
+    const photo_shifts& shifts() const;
+    /// Returns the observations of each point: see `observe_points`. If photos are clearly shifted, these are
+    /// at the shifted places.
     const observed_points& points() const;
     /// Returns the observations in smooth parts of the photos, of points that keep at least
     /// `least_photos_of_point` of them. In rough parts, the color depends too much on the exact
@@ -51,6 +55,7 @@ class scene_statistics {
     photo_brightness measure_brightness(observed_points points) const;
 
     const gs::scene& scene_;
+    mutable std::optional<photo_shifts> shifts_;
     mutable std::optional<observed_points> points_, smooth_;
     mutable std::optional<photo_brightness> brightness_, brightness_of_smooth_;
     mutable std::optional<lens_falloff> falloff_;

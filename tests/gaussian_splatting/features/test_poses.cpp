@@ -16,10 +16,10 @@
 
 #include "../training/engines.hpp"
 #include "core/random.hpp"
-#include "features/poses/pose_evidence.hpp"
 #include "features/poses/poses_feature.hpp"
 #include "features/resolve.hpp"
 #include "scene/look_at.hpp"
+#include "scene/photo_shifts.hpp"
 #include "training/initialize.hpp"
 #include "training/training.hpp"
 
@@ -68,15 +68,15 @@ TEST_CASE("poses: a turned camera shifts its photo against the points, by the an
         glm::mat3_cast(glm::angleAxis(degrees * std::numbers::pi / 180, glm::dvec3(0, 1, 0))));
     turned.rotation = turn * turned.rotation;
     turned.translation = turn * turned.translation;
-    const pose_evidence found = find_shifted_photos(gs::scene_statistics(scene));
+    const gs::photo_shifts found = gs::measure_shifts(scene, 60);
     CHECK(found.judged() >= 10);
-    CHECK(!found.is_clear());  // a single photo does not call for the effect
+    CHECK(!found.are_clear());  // a single photo does not call for the effect
     CHECK(found.median_shift() < 0.7);
     REQUIRE(found.photos[4].is_judged);
     const double expected = turned.fx * std::tan(degrees * std::numbers::pi / 180);
     // The points moved to the right in the image, so their colors lie to the left.
-    CHECK(found.photos[4].shift.x == doctest::Approx(-expected).epsilon(0.25));
-    CHECK(std::abs(found.photos[4].shift.y) < 0.7);
+    CHECK(found.photos[4].pixels.x == doctest::Approx(-expected).epsilon(0.25));
+    CHECK(std::abs(found.photos[4].pixels.y) < 0.7);
 }
 
 TEST_CASE("poses: photos do not seem shifted for other reasons") {
@@ -86,8 +86,8 @@ TEST_CASE("poses: photos do not seem shifted for other reasons") {
           "spheres,passers=0.2", "spheres,blur=8", "spheres,shutter=8", "spheres,fisheye=60"}) {
         CAPTURE(world);
         const gs::scene scene = small_scene((std::string("synthetic:") + world).c_str(), 128);
-        const pose_evidence found = find_shifted_photos(gs::scene_statistics(scene));
-        CHECK(found.judged() >= pose_evidence::least_photos);
+        const gs::photo_shifts found = gs::measure_shifts(scene, 60);
+        CHECK(found.judged() >= gs::photo_shifts::least_photos);
         CHECK(found.median_shift() < 0.8);
     }
 }
@@ -97,18 +97,18 @@ TEST_CASE("poses: a few points of random colors do not seem shifted") {
     gs::train::counter_random random(5, 0, 0);
     for (gs::colored_point& p : scene.points)
         p.color = glm::u8vec3(static_cast<std::uint8_t>(random.below(256)));
-    const pose_evidence found = find_shifted_photos(gs::scene_statistics(scene));
+    const gs::photo_shifts found = gs::measure_shifts(scene, 60);
     CHECK(found.examined == scene.train.size());
-    CHECK(!found.is_clear());
+    CHECK(!found.are_clear());
 }
 
 TEST_CASE("poses: photos that do not show the colors of points are not judged") {
     gs::scene scene = small_scene("synthetic:spheres,views=8", 128);
     for (gs::colored_point& p : scene.points) p.color = {128, 128, 128};
-    CHECK(find_shifted_photos(gs::scene_statistics(scene)).judged() == 0);
+    CHECK(gs::measure_shifts(scene, 60).judged() == 0);
     CHECK(!poses_feature().analyze(gs::scene_statistics(scene)).recommended);
     scene.points.clear();
-    CHECK(find_shifted_photos(gs::scene_statistics(scene)).judged() == 0);
+    CHECK(gs::measure_shifts(scene, 60).judged() == 0);
 }
 
 TEST_CASE("poses: any finite change gives a valid pose, at singular angles, too") {

@@ -15,7 +15,6 @@
 #include "../../core/atomic_file_write.hpp"
 #include "../../training/training.hpp"
 #include "../text.hpp"
-#include "pose_evidence.hpp"
 
 namespace gs::features {
 namespace {
@@ -46,17 +45,17 @@ finding poses_feature::analyze(const scene_statistics& statistics) const {
     const scene& scene = statistics.scene();
     if (const std::string reason = obstacle(scene, {}); !reason.empty()) return {false, reason, "off"};
     std::vector<float> values = neutral_values(scene);
-    const pose_evidence found = find_shifted_photos(statistics);
-    if (!found.is_decided())
+    const photo_shifts& found = statistics.shifts();
+    if (!found.are_decided())
         return {{},
                 text("cannot decide: only %zu of %zu photos clearly show the colors of points",
                      found.judged(), found.examined),
                 "off",
                 std::move(values)};
-    return {found.is_clear(),
+    return {found.are_clear(),
             text("the median of %zu photos shows the colors of points %.2f pixels beside their places",
                  found.judged(), found.median_shift()),
-            found.is_clear() ? "on" : "off", std::move(values)};
+            found.are_clear() ? "on" : "off", std::move(values)};
 }
 
 explanation poses_feature::explain(const scene_statistics& statistics, const finding&) const {
@@ -64,23 +63,23 @@ explanation poses_feature::explain(const scene_statistics& statistics, const fin
         .condition =
             text("the median photo shows the colors of points at least %.0f pixel beside their places, "
                  "and at least %zu photos and a third of all clearly show them",
-                 pose_evidence::least_shift, pose_evidence::least_photos)};
+                 photo_shifts::least_shift, photo_shifts::least_photos)};
     const scene& scene = statistics.scene();
-    const pose_evidence found = find_shifted_photos(statistics);
+    const photo_shifts& found = statistics.shifts();
     if (found.judged() == 0) return made;
     std::vector<double> lengths;
     for (const photo_shift& p : found.photos)
-        lengths.push_back(p.is_judged ? glm::length(p.shift) : std::nan(""));
+        lengths.push_back(p.is_judged ? glm::length(p.pixels) : std::nan(""));
     made.charts.push_back({"Shift of photos against the points (pixels)",
                            "photo",
                            {curve_of_photos("photo", lengths),
                             level_line("shift that calls for the effect, if the median photo has it",
-                                       static_cast<double>(lengths.size()), pose_evidence::least_shift)},
+                                       static_cast<double>(lengths.size()), photo_shifts::least_shift)},
                            true});
     const auto most = static_cast<std::size_t>(
         std::ranges::max_element(lengths, {}, [](double x) { return std::isnan(x) ? -1 : x; }) -
         lengths.begin());
-    const glm::dvec2 shift = found.photos[most].shift;
+    const glm::dvec2 shift = found.photos[most].pixels;
     made.photos.push_back(shown_photo(
         scene.train[most], "Largest shift",
         text("The points lie %.1f pixels %s of their colors and %.1f pixels %s them.", std::abs(shift.x),

@@ -6,18 +6,18 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
-#include "../../scene/scene_statistics.hpp"
+#include "scene.hpp"
 
-namespace gs::features {
+namespace gs {
 
 /// The shift of a photo against the points of its scene.
 struct photo_shift {
     bool is_judged = false;  ///< whether two halves of the points agree about the shift
-    glm::dvec2 shift{0};     ///< in pixels
+    glm::dvec2 pixels{0};
 };
 
-/// The evidence for poses that are not exact: points do not lie where the photos show their colors.
-struct pose_evidence {
+/// How far photos are shifted. If poses are not exact, points do not lie where photos show their colors.
+struct photo_shifts {
     static constexpr std::size_t least_points = 60;  ///< of a photo that is judged
     static constexpr std::size_t least_photos = 5;   ///< that are judged
     static constexpr double least_share = 1.0 / 3;   ///< of the examined photos that are judged
@@ -28,19 +28,19 @@ struct pose_evidence {
 
     std::size_t judged() const;
     /// Returns whether enough photos are judged. The halves of a photo may agree by chance.
-    bool is_decided() const {
+    bool are_decided() const {
         return judged() >= least_photos &&
                static_cast<double>(judged()) >= least_share * static_cast<double>(examined);
     }
     /// Returns the length of the shift of the median photo that is judged, in pixels.
     double median_shift() const;
-    bool is_clear() const { return is_decided() && median_shift() >= least_shift; }
+    bool are_clear() const { return are_decided() && median_shift() >= least_shift; }
 };
 
-/// Measures how far each photo is shifted: by the shift with the largest correlation between the brightness
-/// of the points and that of the photo at their places. A small error of a camera's rotation shifts its whole
-/// photo; one of its position does so for points at about one distance. Exposure does not matter. Cost:
-/// decodes up to 60 photos, and takes up to ten milliseconds for each.
-pose_evidence find_shifted_photos(const scene_statistics& statistics);
+/// Measures how far photos are shifted: by the shift with the largest correlation between the brightness of
+/// the points and that of the photo at their places. A small error of a camera's rotation shifts its whole
+/// photo; one of its position does so for points at about one distance. Exposure does not matter. Examines
+/// at most `most_photos`. Cost: decodes these, and takes up to ten milliseconds for each.
+photo_shifts measure_shifts(const scene& of, std::size_t most_photos);
 
-}  // namespace gs::features
+}  // namespace gs

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The warpagg authors
 // SPDX-License-Identifier: MIT
-#include "pose_evidence.hpp"
+#include "photo_shifts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,16 +8,17 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 
-#include "../../core/median.hpp"
-#include "../../core/parallel.hpp"
-#include "../../scene/view_photo.hpp"
+#include "../core/median.hpp"
+#include "../core/parallel.hpp"
+#include "observations.hpp"
+#include "view_photo.hpp"
 
-namespace gs::features {
+namespace gs {
 namespace {
 
-constexpr std::size_t most_photos = 60, most_points = 600;
-constexpr double largest_shift = 0.02;  ///< in widths or heights of the photo, whichever is larger
-constexpr int least_radius = 3, most_radius = 32;
+constexpr std::size_t most_compared = 600;  ///< points of a photo
+constexpr double largest_shift = 0.05;      ///< in widths or heights of the photo, whichever is larger
+constexpr int smallest_reach = 3, largest_reach = 40;
 constexpr double least_correlation = 0.3;
 constexpr double agreement = 1.5;  ///< of two halves of the points, in pixels
 
@@ -66,7 +67,7 @@ struct moments {
     }
     /// Returns zero if there are few points, whose correlation may be chance.
     double correlation() const {
-        constexpr double least = pose_evidence::least_points / 2;  // half of the points
+        constexpr double least = photo_shifts::least_points / 2;  // half of the points
         const double scale = (n * aa - a * a) * (n * bb - b * b);
         return n >= least && scale > 0 ? (n * ab - a * b) / std::sqrt(scale) : 0;
     }
@@ -116,7 +117,7 @@ std::vector<point_in_photo> points_to_compare(const scene& of, const camera& c, 
         return p.x < radius + 1 || p.y < radius + 1 || p.x >= c.width - radius - 1 ||
                p.y >= c.height - radius - 1;
     });
-    const std::size_t step = std::max<std::size_t>((seen.size() + most_points - 1) / most_points, 1);
+    const std::size_t step = std::max<std::size_t>((seen.size() + most_compared - 1) / most_compared, 1);
     std::vector<point_in_photo> points;
     for (std::size_t i = 0; i < seen.size(); i += step) {
         const auto& color = of.points[seen[i].point].color;
@@ -128,10 +129,10 @@ std::vector<point_in_photo> points_to_compare(const scene& of, const camera& c, 
 
 photo_shift shift_of(const scene& of, const view& v) {
     const camera& c = v.camera;
-    const int radius =
-        std::clamp(static_cast<int>(largest_shift * std::max(c.width, c.height)), least_radius, most_radius);
+    const int radius = std::clamp(static_cast<int>(largest_shift * std::max(c.width, c.height)),
+                                  smallest_reach, largest_reach);
     const std::vector<point_in_photo> points = points_to_compare(of, c, radius);
-    if (points.size() < pose_evidence::least_points) return {};
+    if (points.size() < photo_shifts::least_points) return {};
     const view_photo photo(v);
     const smooth_brightness light(photo.pixels());
     std::array<std::vector<moments>, 2> halves;
@@ -154,26 +155,24 @@ photo_shift shift_of(const scene& of, const view& v) {
 
 }  // namespace
 
-std::size_t pose_evidence::judged() const {
+std::size_t photo_shifts::judged() const {
     return static_cast<std::size_t>(std::ranges::count_if(photos, &photo_shift::is_judged));
 }
 
-double pose_evidence::median_shift() const {
+double photo_shifts::median_shift() const {
     std::vector<double> lengths;
     for (const photo_shift& p : photos)
-        if (p.is_judged) lengths.push_back(glm::length(p.shift));
+        if (p.is_judged) lengths.push_back(glm::length(p.pixels));
     return lengths.empty() ? 0 : median(lengths);
 }
 
-pose_evidence find_shifted_photos(const scene_statistics& statistics) {
-    const scene& scene = statistics.scene();
-    pose_evidence found{std::vector<photo_shift>(scene.train.size())};
-    const std::size_t step = std::max<std::size_t>((scene.train.size() + most_photos - 1) / most_photos, 1);
-    found.examined = (scene.train.size() + step - 1) / step;
-    for_each_in_parallel(found.examined, [&](std::size_t i) {
-        found.photos[i * step] = shift_of(scene, scene.train[i * step]);
-    });
+photo_shifts measure_shifts(const scene& of, std::size_t most_photos) {
+    photo_shifts found{std::vector<photo_shift>(of.train.size())};
+    const std::size_t step = std::max<std::size_t>((of.train.size() + most_photos - 1) / most_photos, 1);
+    found.examined = (of.train.size() + step - 1) / step;
+    for_each_in_parallel(found.examined,
+                         [&](std::size_t i) { found.photos[i * step] = shift_of(of, of.train[i * step]); });
     return found;
 }
 
-}  // namespace gs::features
+}  // namespace gs
