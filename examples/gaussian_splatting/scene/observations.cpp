@@ -118,8 +118,8 @@ std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vec
 point_observer::point_observer(const scene& of)
     : scene_(of), step_(of.points.size() / most_points + 1), by_view_(of.train.size()) {}
 
-void point_observer::observe(std::size_t v, const image& photo, const glm::dvec2& shift) {
-    const camera& taken_with = scene_.train[v].camera;
+void point_observer::observe(std::size_t v, const image& photo, const camera& taken_with,
+                             const glm::dvec2& shift) {
     for (place_in_photo p : points_in_sight(taken_with, scene_.points)) {
         if (p.point % step_ != 0) continue;
         p.x += shift.x;
@@ -146,7 +146,8 @@ observed_points observe_points(const scene& of, std::span<const photo_shift> shi
     point_observer observer(of);
     for_each_in_parallel(of.train.size(), [&](std::size_t v) {
         const bool is_shifted = !shifts.empty() && shifts[v].is_judged;
-        observer.observe(v, view_photo(of.train[v]).pixels(), is_shifted ? shifts[v].pixels : glm::dvec2(0));
+        observer.observe(v, view_photo(of.train[v]).pixels(), of.train[v].camera,
+                         is_shifted ? shifts[v].pixels : glm::dvec2(0));
     });
     return observer.observations();
 }

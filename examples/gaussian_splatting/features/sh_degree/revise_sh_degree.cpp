@@ -35,15 +35,18 @@ observed_points observe_residuals(const scene& of, train::engine& engine, const 
                                   const std::array<float, 3>& background) {
     point_observer observer(of);
     std::vector<std::vector<float>> renders(static_cast<std::size_t>(omp_get_max_threads()));
+    std::vector<camera> cameras(renders.size());  // with the poses that training has learned
     for (std::size_t first = 0; first < of.train.size(); first += renders.size()) {
         const std::size_t count = std::min(renders.size(), of.train.size() - first);
-        for (std::size_t i = 0; i < count; ++i)
-            renders[i] = engine.render(of.train[first + i].camera, background);
+        for (std::size_t i = 0; i < count; ++i) {
+            cameras[i] = engine.cameras().training_camera(first + i, of.train[first + i].camera);
+            renders[i] = engine.render(cameras[i], background);
+        }
         for_each_in_parallel(count, [&](std::size_t i) {
             show(first + i, of.train[first + i].camera.width, renders[i]);
             image residual = view_photo(of.train[first + i]).pixels();
             leave_residual(residual, renders[i], background);
-            observer.observe(first + i, residual);
+            observer.observe(first + i, residual, cameras[i]);
         });
     }
     return observer.observations();
