@@ -49,9 +49,9 @@ class point_observer {
   public:
     /// The scene must outlive the object.
     explicit point_observer(const scene& of);
-    /// Observes the points in the photo of a training view, or in an image that replaces it. `taken_with`: the
-    /// camera with its exact pose. The photo is shifted by this number of pixels. Several threads may call it,
-    /// for different views.
+    /// Observes the points in the photo of a training view, or in an image that replaces it. `taken_with`:
+    /// the camera with its exact pose. The photo is shifted by this number of pixels. Several threads may
+    /// call it, for different views.
     void observe(std::size_t view, const image& photo, const camera& taken_with,
                  const glm::dvec2& shift = glm::dvec2(0));
     observed_points observations() const;
