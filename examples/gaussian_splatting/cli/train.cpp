@@ -167,6 +167,7 @@ training_run::training_run(const settings& s, const load_options& source,
     if (ranks_.is_first()) output_.emplace(s.output);
     options_.gradient = gradient;
     options_.ranks = &ranks_;
+    engine_->join(ranks_);
     gaussians model = first_model();
     options_.features.prepare(scene_, model);
     engine_->set_views(scene_.train, scene_.test, options_.schedule.num_downscales, photo_memory_);
@@ -276,11 +277,12 @@ gaussians training_run::saved_model() {
 }
 
 void training_run::save(int iteration) {
+    const gaussians model = saved_model();
     if (!ranks_.is_first()) return;
     replace_earlier_run();
     const fs::path file = model_file(iteration);
     fs::create_directories(file.parent_path());
-    write_model(file, saved_model());
+    write_model(file, model);
 }
 
 void training_run::test(int iteration) {
@@ -334,17 +336,14 @@ bool training_run::train() {
     measures_.result = train::train(*engine_, scene_, options_, events());
     const train::train_result& result = measures_.result;
     const bool is_complete = result.iterations >= result.plan.last();
-    if (!ranks_.is_first()) {
-        signals_.reset();
-        return is_complete;
-    }
-    if (!is_complete) end_early();
+    if (!is_complete && ranks_.is_first()) end_early();
     live_.reset();
+    if (is_complete && !options_.save_iterations.contains(result.iterations)) save(result.iterations);
+    signals_.reset();
+    if (!ranks_.is_first()) return is_complete;
     warn_of_missed_time();
     options_.schedule.iterations = result.plan;
     options_.seconds.reset();
-    if (!options_.save_iterations.contains(result.iterations)) save(result.iterations);
-    signals_.reset();
     measures_.stages = engine_->profile().times();
     measures_.pairs_per_iteration = static_cast<double>(engine_->profile().pairs()) / result.iterations;
     measures_.gaussians = engine_->count();

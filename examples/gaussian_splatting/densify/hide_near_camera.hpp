@@ -32,12 +32,12 @@ struct hide_near_camera {
     }
 };
 
-/// Runs `hide_near_camera` on all Gaussians.
+/// Runs `hide_near_camera` on the Gaussians of this rank.
 template <device::device Device>
 void hide_near_cameras(const trained_gaussians<Device>& g) {
     const auto values = g.parameters.values.write();
     g.device.for_each_index(
-        g.count, hide_near_camera{g.cameras, g.camera_count, values.mean, values.opacity, logit(0)});
+        g.own, hide_near_camera{g.cameras, g.camera_count, values.mean, values.opacity, logit(0)});
 }
 
 }  // namespace gs::train

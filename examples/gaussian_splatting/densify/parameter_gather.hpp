@@ -6,10 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <warpagg/core/compiler.hpp>
 
 #include "../device/device.hpp"
 #include "../model/aosoa.hpp"
+#include "../model/gaussian_shares.hpp"
 #include "../model/parameters.hpp"
 #include "../optimize/trained_parameters.hpp"
 
@@ -32,8 +34,19 @@ struct clear_ranked {
     WARPAGG_HD void operator()(std::size_t rank) const { flags[gaussian_of[rank]] = 0; }
 };
 
-/// Gathers an array of one parameter for the new generation, in whole blocks. One index per new element.
-/// Elements are zero if the origin does not have the parameter.
+/// Makes each Gaussian its own origin. One index per Gaussian.
+struct keep_gaussians {
+    std::uint32_t* origin;
+    birth* births;
+
+    WARPAGG_HD void operator()(std::size_t i) const {
+        origin[i] = static_cast<std::uint32_t>(i);
+        births[i] = birth::kept;
+    }
+};
+
+/// Gathers elements of an array of one parameter for the new generation, in whole blocks, from a piece of the
+/// old array. Elements without an origin that has the parameter are zero. One index per new element.
 template <class T>
 struct gather_array {
     std::size_t count;   ///< number of new Gaussians with the parameter, which come first
@@ -42,15 +55,23 @@ struct gather_array {
     const birth* births;
     std::size_t width;
     bool are_moments;
-    const T* from;
+    std::size_t first;    ///< the new element of index 0
+    ranks::share piece;   ///< old elements
+    bool is_first_piece;  ///< writes zeros; other pieces leave elements with origins elsewhere
+    const T* from;        ///< the piece
     T* to;
 
     WARPAGG_HD void operator()(std::size_t i) const {
-        const std::size_t gaussian = i / (block_length * width) * block_length + i % block_length;
+        const std::size_t at = first + i,
+                          gaussian = at / (block_length * width) * block_length + at % block_length;
         const bool exists = gaussian < count && origin[gaussian] < before;
         const bool keeps = exists && (!are_moments || births[gaussian] == birth::kept ||
                                       births[gaussian] == birth::original);
-        to[i] = keeps ? from[aosoa_index(origin[gaussian], i / block_length % width, width)] : T{0};
+        const std::size_t old = keeps ? aosoa_index(origin[gaussian], at / block_length % width, width) : 0;
+        if (keeps && old >= piece.first && old < piece.last)
+            to[i] = from[old - piece.first];
+        else if (is_first_piece)
+            to[i] = T{0};
     }
 };
 
@@ -71,7 +92,8 @@ class parameter_gather {
     using buffer = typename Device::template buffer<T>;
 
   public:
-    explicit parameter_gather(Device& device) : device_(device) {}
+    /// `shares` divides the new Gaussians among the ranks, and must exist as long as this object.
+    parameter_gather(Device& device, const gaussian_shares& shares) : device_(device), shares_(shares) {}
 
     /// Returns the size of the memory for each Gaussian of an SH degree.
     static std::size_t bytes_per_gaussian(int sh_degree) {
@@ -88,6 +110,11 @@ class parameter_gather {
         origin_.resize(most);
         births_.resize(most);
     }
+    /// Fills both arrays for a new generation of the same `count` Gaussians.
+    void keep_all(std::size_t count) {
+        reserve(count);
+        device_.for_each_index(count, keep_gaussians{origins(), births()});
+    }
     /// Returns the array with the index of each new Gaussian's origin. Fill it before `run`.
     std::uint32_t* origins() const { return origin_.data(); }
     /// Returns the array with the birth of each new Gaussian. Fill it before `run`.
@@ -99,20 +126,27 @@ class parameter_gather {
 
     /// Replaces the Gaussians with `count` new ones. The first `with_sh` of them, a multiple of the
     /// block length or all, have SH coefficients of degrees 1 to `sh_degree`, which are zero if the
-    /// origin has none. Does not wait for the device.
+    /// origin has none. If ranks divide the Gaussians, all must call this, with the present state of all
+    /// values that they do not divide. Does not wait for the device.
     void run(trained_parameters<Device>& all, std::size_t count, std::size_t with_sh, int sh_degree) {
         all.flush_cache(device_);
         const std::size_t with_sh_before = all.values.gaussians_with_sh();
+        const ranks::shares among = shares_.of(count, device_.ranks().count());
+        std::optional<ranks::share> own;
+        if (all.shares) own = among.of(device_.ranks().rank());
         const auto gather_all = [&](auto& memory, bool are_moments) {
-            for (std::size_t p = 0; p < parameter_count; ++p)
-                if (has_parameter(p, sh_degree))
-                    gather(memory, p, is_view_dependent(p) ? with_sh : count,
-                           is_view_dependent(p) ? with_sh_before : std::numeric_limits<std::size_t>::max(),
-                           are_moments);
+            for (std::size_t p = 0; p < parameter_count; ++p) {
+                if (!has_parameter(p, sh_degree)) continue;
+                const bool is_sh = is_view_dependent(p);
+                gather(all, memory, p, is_sh ? with_sh : count,
+                       is_sh ? with_sh_before : std::numeric_limits<std::size_t>::max(), are_moments, own);
+            }
+            memory.set_division(own);
             memory.set_gaussians_with_sh(with_sh);
         };
         gather_all(all.values, false);
         all.for_each_moment([&](auto& moments) { gather_all(moments, true); });
+        if (all.shares) all.shares = among;
         spare_steps_.resize(count);
         device_.for_each_index(count,
                                gather_last_steps{origin_.data(), all.last_step.data(), spare_steps_.data()});
@@ -124,30 +158,62 @@ class parameter_gather {
     void release() {
         spare_ = {};
         spare_words_ = {};
+        piece_ = {};
+        piece_words_ = {};
     }
 
   private:
     template <class T, const auto& Widths>
-    void gather(parameter_memory<Device, T, Widths>& memory, std::size_t p, std::size_t count,
-                std::size_t before, bool are_moments) {
-        buffer<T>& array = memory[p];
-        const std::size_t width = memory.width(p), n = in_whole_blocks(count) * width;
+    void gather(const trained_parameters<Device>& all, parameter_memory<Device, T, Widths>& memory,
+                std::size_t p, std::size_t count, std::size_t before, bool are_moments,
+                const std::optional<ranks::share>& own) {
+        const std::size_t width = memory.width(p), elements = in_whole_blocks(count) * width;
+        const ranks::share part = memory.part_of(p, elements, own);
         auto& spare = this->spare(T{});
-        spare.resize(n);
-        device_.for_each_index(n, gather_array<T>{count, before, origin_.data(), births(), width, are_moments,
-                                                  array.data(), spare.data()});
-        if (n < array.size()) memory.free(p);
-        array.resize(n);
-        device_.copy(array.data(), spare.data(), n);
+        spare.resize(part.count());
+        for_each_piece(all, memory, p, [&](const ranks::share& piece, const T* from) {
+            device_.for_each_index(
+                part.count(), gather_array<T>{count, before, origin_.data(), births(), width, are_moments,
+                                              part.first, piece, piece.first == 0, from, spare.data()});
+        });
+        memory.replace(device_, p, elements, spare);
+    }
+    /// Calls f(piece, elements) for pieces of an array that together have all its elements, of all ranks.
+    template <class T, const auto& Widths, class F>
+    void for_each_piece(const trained_parameters<Device>& all, parameter_memory<Device, T, Widths>& memory,
+                        std::size_t p, const F& f) {
+        const std::size_t elements = memory.elements(p);
+        if (!memory.is_divided(p)) return f(ranks::share{0, elements}, memory[p].data());
+        const std::size_t block = block_length * memory.width(p),
+                          length =
+                              std::max<std::size_t>(elements / block / 8, least_piece / block + 1) * block;
+        auto& copy = this->piece(T{});
+        for (std::size_t first = 0; first == 0 || first < elements; first += length) {
+            const ranks::share piece{first, std::min(first + length, elements)};
+            copy.resize(piece.count());
+            const ranks::shares of_ranks = all.shares->within(piece, block, elements);
+            const ranks::share own = of_ranks.of(device_.ranks().rank());
+            if (own.count() > 0)
+                device_.copy(copy.data() + own.first,
+                             memory[p].data() + (first + own.first - memory.part(p).first), own.count());
+            const ranks::shared_array array[] = {ranks::shared_array::of(copy.data(), 1, copy.size())};
+            device_.gather(of_ranks, array);
+            f(piece, copy.data());
+        }
     }
     buffer<float>& spare(float) { return spare_; }
     buffer<std::uint32_t>& spare(std::uint32_t) { return spare_words_; }
+    buffer<float>& piece(float) { return piece_; }
+    buffer<std::uint32_t>& piece(std::uint32_t) { return piece_words_; }
+
+    static constexpr std::size_t least_piece = std::size_t{1} << 22;  ///< elements; smaller ones waste time
 
     Device& device_;
+    const gaussian_shares& shares_;
     buffer<std::uint32_t> origin_;
     buffer<std::uint32_t> births_;  ///< each a `birth`
-    buffer<float> spare_;           ///< for an array of floats
-    buffer<std::uint32_t> spare_words_;
+    buffer<float> spare_, piece_;   ///< for new elements, and for a piece of an array of floats
+    buffer<std::uint32_t> spare_words_, piece_words_;
     buffer<std::uint32_t> spare_steps_;
 };
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "../metrics/target_image.hpp"
+#include "../ranks/shares.hpp"
 #include "../render/geometry/splat.hpp"
 
 namespace gs::train {
@@ -17,11 +18,12 @@ struct drawn_view {
     /// Three planes, not clamped, on black. With several ranks, each one renders some of the rows, and
     /// `sum_scores` uses the scores in these; the other rows are undefined.
     const float* render;
-    const raster::splat<float>* splats;  ///< one per Gaussian
-    const std::uint32_t* tiles;          ///< tiles that each Gaussian may touch; 0 if not drawn
+    const raster::splat<float>* splats;  ///< one per Gaussian of this rank
+    const std::uint32_t* tiles;          ///< tiles that each of these may touch; 0 if not drawn
 };
 
-/// Renders training views and sums scores of pixels for each Gaussian.
+/// Renders training views and sums scores of pixels for each Gaussian. Several ranks share this work, and
+/// all of them must call the functions that are not const.
 class score_views {
   public:
     virtual ~score_views() = default;
@@ -32,9 +34,12 @@ class score_views {
     /// values between -1 and 1. Gaussian i receives the sum of score times w_i, its alpha times the
     /// transmittance in that pixel. The result has `raster::record_stride` values per Gaussian:
     /// those at `raster::sum_red`, `sum_green` and `sum_blue` belong to the first, second and third
-    /// plane. It is valid until the next call or `draw`, and only for Gaussians that are drawn.
+    /// plane. It is valid until the next call or `draw`, and only for Gaussians of this rank that are drawn.
     /// Cost: one blend backward pass.
     virtual const float* sum_scores(const float* scores) = 0;
+    /// Gives all ranks the values that others have for their Gaussians. The array has a value, or a
+    /// structure, for each Gaussian.
+    virtual void gather(const ranks::shared_array& array) = 0;
 };
 
 }  // namespace gs::train

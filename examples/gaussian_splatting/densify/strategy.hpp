@@ -25,6 +25,9 @@ struct trained_gaussians {
     Device& device;
     trained_parameters<Device>& parameters;
     std::size_t count;
+    /// The Gaussians of this rank. Others have no moments here, and changes to their values are lost, unless
+    /// a function mentions them.
+    ranks::share own;
     int sh_degree;
     const glm::vec3* cameras;  ///< centers of the training cameras, in device memory
     std::size_t camera_count;
@@ -37,11 +40,10 @@ struct step_context : trained_gaussians<Device> {
     /// The capacity of the tile lists. If `capacity.exceeded()`, the step is skipped and kernels
     /// must change nothing.
     raster::list_capacity capacity;
-    /// The Gaussians of this rank. The parameters of others are old, and changes to them are lost.
-    ranks::share own;
 };
 
-/// The argument of `strategy::run`.
+/// The argument of `strategy::run`. All ranks call it alike. Each has the present values of all Gaussians,
+/// apart from SH coefficients above degree 0, and must change those of all.
 template <device::device Device>
 struct run_context : trained_gaussians<Device> {
     /// The statistics of each Gaussian from the steps since the last `run`.

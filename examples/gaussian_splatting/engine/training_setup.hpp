@@ -13,7 +13,6 @@
 #include "../densify/timetable.hpp"
 #include "../losses/loss.hpp"
 #include "../optimize/parameter_storage.hpp"
-#include "../ranks/communicator.hpp"
 #include "../render/gradients/accumulator.hpp"
 #include "step_plan.hpp"
 
@@ -26,8 +25,7 @@ struct training_setup {
     std::string loss = default_loss;
     parameter_storage storage{};
     std::uint64_t host_bytes =
-        0;  ///< host memory for parameters that `facts.max_device_bytes` has no room for
-    ranks::communicator* ranks = nullptr;  ///< the processes that train this model, or null for one
+        0;               ///< host memory for parameters that `facts.max_device_bytes` has no room for
     double dropout = 0;  ///< share of the Gaussians that each step leaves out: see `raster::dropout`
     /// The features that are on, by name, with their initial values.
     std::map<std::string, std::vector<float>, std::less<>> features;

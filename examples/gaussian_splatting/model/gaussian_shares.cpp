@@ -37,6 +37,13 @@ void gaussian_shares::note(const ranks::shares& shown, std::size_t gaussians, in
                                               work_of_hidden * static_cast<double>(all.of(r).count());
 }
 
+bool gaussian_shares::are_uneven() const {
+    constexpr double tolerance = 1.05;
+    const double whole = std::accumulate(work_.begin(), work_.end(), 0.0);
+    return whole > 0 &&
+           *std::ranges::max_element(work_) * static_cast<double>(work_.size()) > tolerance * whole;
+}
+
 void gaussian_shares::balance() {
     const double whole = std::accumulate(work_.begin(), work_.end(), 0.0);
     const std::size_t ranks = work_.size();

@@ -21,8 +21,10 @@ class gaussian_shares {
     ranks::shares of(std::size_t gaussians, int ranks) const;
     /// Adds a view that showed this many Gaussians of each rank.
     void note(const ranks::shares& shown, std::size_t gaussians, int ranks);
+    /// Returns whether a rank has had clearly more work than the mean since the last `balance`.
+    bool are_uneven() const;
     /// Moves the borders so that all ranks would have had about the same work in the views since the
-    /// last call. Precondition: each rank has the present state of all Gaussians.
+    /// last call.
     void balance();
 
   private:

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "../device/device.hpp"
@@ -16,10 +17,11 @@
 
 namespace gs::train {
 
-/// The parameters of the Gaussians in training, with the state of Adam.
+/// The parameters of the Gaussians in training, with the state of Adam. Several ranks divide most of them:
+/// each one has the SH coefficients above degree 0 and Adam's moments of its own Gaussians only.
 template <device::device Device>
 struct trained_parameters {
-    parameter_memory<Device> values;
+    parameter_memory<Device> values{divided_arrays::view_dependent};
     /// Adam's moments, in one of two forms: see `moment_precision`.
     /// @{
     parameter_memory<Device> first, second;
@@ -29,7 +31,31 @@ struct trained_parameters {
     /// The last step that updated each Gaussian.
     typename Device::template buffer<std::uint32_t> last_step;
     block_cache<Device> cache;
+    /// The Gaussians of each rank if the ranks divide them: see `divide`.
+    std::optional<ranks::shares> shares;
 
+    /// Returns the Gaussians of this rank, of `count`.
+    ranks::share own(Device& device, std::size_t count) const {
+        return shares ? shares->of(device.ranks().rank()) : ranks::share{0, count};
+    }
+    /// Leaves this rank only its own part of what ranks divide, until `set_values`. `among`: the Gaussians of
+    /// each rank. Moments, if there are any, must be divided so already.
+    void divide(Device& device, const ranks::shares& among) {
+        flush_cache(device);
+        shares = among;
+        divide_all(device, own(device, 0));
+    }
+    /// Gives this rank the values of all Gaussians, until `divide`. All ranks must call this.
+    void undivide_values(Device& device) {
+        if (!values.is_divided()) return;
+        values.divide(device, {});
+        gather_values(device, true);
+    }
+    /// Gives this rank the present values of all Gaussians that ranks do not divide. All ranks must call
+    /// this.
+    void update_values(Device& device) {
+        if (shares) gather_values(device, false);
+    }
     /// Calls f(array) for `values` and each array of moments that is in use.
     template <class F>
     void for_each(const F& f) {
@@ -49,9 +75,12 @@ struct trained_parameters {
     void set_values(Device& device, const gaussians& model) {
         drop_cache();
         free_moments();
+        shares.reset();
+        divide_all(device, {});
         values.upload(device, model);
     }
-    /// Returns the values of the first `count` Gaussians. Waits for the device.
+    /// Returns the values of the first `count` Gaussians. All ranks must call this if they divide them. Waits
+    /// for the device.
     gaussians get_values(Device& device, std::size_t count, int sh_degree) {
         flush_cache(device);
         return values.download(device, count, sh_degree);
@@ -132,13 +161,8 @@ struct trained_parameters {
                 (precision == moment_precision::compact && is_view_dependent(p) ? of_shared : 1));
         return step;
     }
-    /// Appends all arrays, for `device::gather`.
-    void share(Device& device, std::vector<ranks::shared_array>& arrays) {
-        flush_cache(device);
-        for_each([&](auto& memory) { memory.share(arrays); });
-        arrays.push_back(ranks::shared_array::of(last_step.data(), block_length, last_step.size()));
-    }
-    /// Saves or loads all parameters. Loading takes over the precision. Waits for the device.
+    /// Saves or loads all parameters. Loading takes over the precision. All ranks must call this. Waits for
+    /// the device.
     void exchange(state_archive& archive, Device& device) {
         flush_cache(device);
         const auto exchange_memory = [&](const char* name, auto& memory) {
@@ -161,6 +185,17 @@ struct trained_parameters {
     }
 
   private:
+    void divide_all(Device& device, const std::optional<ranks::share>& own) {
+        for (auto* floats : {&values, &first, &second}) floats->divide(device, own);
+        packed.divide(device, own);
+    }
+    void gather_values(Device& device, bool divided) {
+        std::vector<ranks::shared_array> arrays;
+        values.share(divided, arrays);
+        if (!divided)
+            arrays.push_back(ranks::shared_array::of(last_step.data(), block_length, last_step.size()));
+        device.gather(*shares, arrays);
+    }
     void drop_cache() {
         cache.drop();
         for_each([](auto& memory) { memory.reserve_cache(0, nullptr); });

@@ -47,6 +47,18 @@ class shares {
         const auto r = static_cast<std::size_t>(rank);
         return {std::min(borders_[r] * block_size, size), std::min(borders_[r + 1] * block_size, size)};
     }
+    /// Returns the parts of ranks in a piece of an array, counted from its beginning. The array has `size`
+    /// elements, and `block_size` elements per block of items.
+    shares within(const share& piece, std::size_t block_size, std::size_t size) const {
+        std::vector<std::size_t> counts;
+        for (std::size_t rank = 0; rank + 1 < borders_.size(); ++rank) {
+            const share part = of(static_cast<int>(rank), block_size, size);
+            const std::size_t first = std::clamp(part.first, piece.first, piece.last);
+            counts.push_back(std::clamp(part.last, piece.first, piece.last) - first);
+        }
+        return shares(counts);
+    }
+    bool operator==(const shares&) const = default;
 
   private:
     std::size_t items_ = 0, block_ = 1;

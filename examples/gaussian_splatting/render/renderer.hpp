@@ -44,16 +44,18 @@ class renderer {
 
     /// Sets the effects of all later draws; initially none. The lens comes from the view.
     void set_effects(const effect_set& effects) { effects_ = effects; }
-    /// Limits all later draws to the strip of this rank, or draws whole views. With a strip, `list`,
-    /// `blend_depths` and the backward pass are collective functions of all ranks, whose strips must
-    /// differ. If it `shares_gaussians`, a rank projects its own share of the Gaussians, needs the
-    /// parameters of these only, and passes only their gradients to the sink.
+    /// Limits all later draws to the strip of this rank, or draws whole views. With a strip, `measure`,
+    /// `list`, `blend_depths` and the backward pass are collective functions of all ranks, whose strips must
+    /// differ. A rank projects its own share of the Gaussians, needs the parameters of these only, and passes
+    /// only their gradients to the sink.
     void set_strip(const std::optional<view_strip>& strip) { strip_ = strip; }
 
     /// Counts the instances (Gaussian, tile) of a whole view: see `instances`.
     void measure(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
-        project_all(gaussians, count, view, sh_degree);
-        list_by_tile(0, boxes_, nullptr);
+        project_own(gaussians, count, view, sh_degree);
+        list_by_tile(own_gaussians().count(),
+                     {order_.data(), by_gaussian(splats_), by_gaussian(boxes_), tiles_across_}, 0, nullptr);
+        if (strip_) device_.sum_over_ranks(required_.data(), 1);
     }
     /// Returns the number of instances of the last view that was drawn or measured. Waits for the
     /// device.
@@ -104,7 +106,8 @@ class renderer {
               const dropout& dropped = {}) {
         using device::stage;
         device_.begin(stage::project);
-        project_all(gaussians, count, view, sh_degree, dropped);
+        project_own(gaussians, count, view, sh_degree, dropped);
+        if (strip_) exchange_splats();
         device_.begin(stage::bin);
         bin();
         device_.begin(stage::blend_forward);
@@ -141,9 +144,9 @@ class renderer {
         with_lens(camera_.lens(), [&]<lens_model Lens> {
             device_.for_each_index(own_gaussians(), depth_splats<Real, effect_set{.lens = Lens}>{
                                                         gaussians_.mean, for_device<Real>(camera_),
-                                                        splats_.data(), reserve(near_, count_).data()});
+                                                        by_gaussian(splats_), reserve_own(near_)});
         });
-        if (shares_gaussians()) {
+        if (strip_) {
             const auto scope = exchanging(ranks::purpose::splats);
             visible_.collect(near_.data(), near_visible_);
         }
@@ -175,7 +178,7 @@ class renderer {
     }
     /// The first part of `backward`. Returns the sums over pixels of each of the `own_gaussians`.
     const Real* backward_to_splats(const Real* render_gradient, float largest, accumulator how) {
-        const Real* sums = sums_by_pixel(render_gradient, largest, how);
+        const Real* sums = pixel_sums(render_gradient, largest, how);
         device_.begin(device::stage::project_backward);
         return sums;
     }
@@ -188,34 +191,51 @@ class renderer {
                 own_warps<narrow>(),
                 project_backward<narrow, Real, Sink, Effects>{
                     gaussians_, count_, camera_for<value_t<narrow, Real>, Effects>(camera_), sh_degree_,
-                    learned_sh_degree, splats_.data(), tiles_.data(), sums, sink, seen, capacity()});
+                    learned_sh_degree, by_gaussian(splats_), by_gaussian(tiles_), sums, sink, seen,
+                    capacity()});
         });
     }
 
-    /// Returns the sums over pixels of each Gaussian that was drawn. With a strip, these are the sums over
-    /// the strips of all ranks. Precondition: the strip does not `shares_gaussians`.
+    /// Returns the sums over pixels of each of the `own_gaussians` that was drawn.
     const Real* pixel_sums(const Real* render_gradient, float largest, accumulator how) {
-        return sums_by_pixel(render_gradient, largest, how);
+        const Real* sums = nullptr;
+        with_cut([&]<class Shape> {
+            Accumulators::visit(how, [&]<class Variant>(Variant) {
+                using kernel = typename Variant::template kernel<Real, Shape>;
+                if (background_image_.planes == nullptr) {
+                    sums = sums_by(kernel{}, render_gradient, largest);
+                } else if constexpr (Variant::supports_background_image) {
+                    using before_colors =
+                        typename Variant::template kernel<Real, Shape, image_background<Real>>;
+                    sums = sums_by(before_colors{}, render_gradient, largest);
+                } else {
+                    throw error(
+                        "this accumulator has no gradient for an image in front of a learned background");
+                }
+            });
+        });
+        return sums;
     }
 
     /// Runs the blending part of `backward` with this kernel, whose members it sets. Returns the
-    /// sums: see `project_backward`.
+    /// sums of the `own_gaussians`: see `project_backward`.
     template <class Kernel>
     const buffer<Real>& blend_backward_by(Kernel kernel, const Real* render_gradient, float largest) {
         sums_.begin(kernel, listed_count(), largest, kernel.template warps_of_sum<warp>(tiles()),
                     effects_.depth);
         device_.begin(device::stage::blend_backward);
         launch_backward(kernel, lists(), render_gradient);
-        return shares_gaussians() ? sums_.end_for_owners(kernel, visible_, count_)
-                                  : sums_.end(kernel, strip_.has_value());
+        if (!strip_) return sums_.end(kernel);
+        const auto scope = exchanging(ranks::purpose::gradients);
+        return sums_.end_for_owners(kernel, visible_);
     }
     /// See `gradient_sums`.
     std::uint32_t* fault() const { return sums_.fault(); }
 
-    /// The splats of the last view, one per Gaussian.
-    const splat<Real>* splats() const { return splats_.data(); }
-    /// The number of tiles that a Gaussian may touch; zero if it is not drawn.
-    const std::uint32_t* tiles_of() const { return tiles_.data(); }
+    /// The splats of the last view, by Gaussian, of the `own_gaussians`.
+    const splat<Real>* splats() const { return by_gaussian(splats_); }
+    /// The number of tiles that each of these may touch; zero if it is not drawn.
+    const std::uint32_t* tiles_of() const { return by_gaussian(tiles_); }
     const Real* render() const { return render_.data(); }
     /// The transmittance of each pixel behind all splats, of the last `forward`.
     const Real* transmittance() const { return transmittance_.data(); }
@@ -227,11 +247,10 @@ class renderer {
     std::size_t gaussians() const { return count_; }
     /// The Gaussians of the last view that this rank projects and passes to the sink of `backward`.
     ranks::share own_gaussians() const {
-        if (!shares_gaussians()) return {0, count_};
-        return visible_.shares_of(count_).of(device_.ranks().rank());
+        return strip_ ? strip_->gaussians.of(device_.ranks().rank()) : ranks::share{0, count_};
     }
-    /// The visible splats of the last view whose strip `shares_gaussians`.
-    visible_splats<Device, Real>& visible() { return visible_; }
+    /// The visible splats of the last view with a strip.
+    const visible_splats<Device, Real>& visible() const { return visible_; }
     /// The number of splats that sampled pixels of the last view blend, by tile row, on the device. Zero
     /// for rows of other ranks.
     std::span<const unsigned long long> row_work() const { return {work_.data(), tiles_down_}; }
@@ -241,30 +260,26 @@ class renderer {
     const unsigned long long* pairs() const { return pairs_.data(); }
 
   private:
-    const Real* sums_by_pixel(const Real* render_gradient, float largest, accumulator how) {
-        const Real* sums = nullptr;
-        with_cut([&]<class Shape> {
-            Accumulators::visit(how, [&]<class Variant>(Variant) {
-                using kernel = typename Variant::template kernel<Real, Shape>;
-                if (background_image_.planes == nullptr) {
-                    sums = blend_backward_by(kernel{}, render_gradient, largest).data();
-                } else if constexpr (Variant::supports_background_image) {
-                    using before_colors =
-                        typename Variant::template kernel<Real, Shape, image_background<Real>>;
-                    sums = blend_backward_by(before_colors{}, render_gradient, largest).data();
-                } else {
-                    throw error(
-                        "this accumulator has no gradient for an image in front of a learned background");
-                }
-            });
-        });
-        return sums;
+    template <class Kernel>
+    const Real* sums_by(const Kernel& kernel, const Real* render_gradient, float largest) {
+        return blend_backward_by(kernel, render_gradient, largest).data() -
+               own_gaussians().first * record_stride;
     }
 
-    ranks::traffic_counter::scope exchanging(ranks::purpose purpose) const {
-        return {device_.ranks().traffic(), purpose};
+    ranks::traffic_counter::scope exchanging(ranks::purpose of_step) const {
+        return {device_.ranks().traffic(), strip_->is_of_step ? of_step : ranks::purpose::scores};
     }
-    bool shares_gaussians() const { return strip_ && strip_->shares_gaussians; }
+    /// Reserves an array with a value for each of the `own_gaussians`. Returns a pointer that the indices of
+    /// Gaussians refer to.
+    template <class T>
+    T* reserve_own(buffer<T>& b) const {
+        b.resize(own_gaussians().count());
+        return by_gaussian(b);
+    }
+    template <class T>
+    T* by_gaussian(const buffer<T>& b) const {
+        return b.size() > 0 ? b.data() - own_gaussians().first : nullptr;
+    }
     /// Returns the warps that project this rank's Gaussians.
     template <class Warp>
     ranks::share own_warps() const {
@@ -275,10 +290,8 @@ class renderer {
 
     /// The splats that tile lists refer to, and their number.
     /// @{
-    const buffer<splat<Real>>& listed_splats() const {
-        return shares_gaussians() ? visible_.splats : splats_;
-    }
-    std::size_t listed_count() const { return shares_gaussians() ? visible_.count() : count_; }
+    const buffer<splat<Real>>& listed_splats() const { return strip_ ? visible_.splats : splats_; }
+    std::size_t listed_count() const { return strip_ ? visible_.count() : count_; }
     /// @}
 
     template <class T>
@@ -358,11 +371,11 @@ class renderer {
     }
     tile_lists<Real> depth_lists() const {
         tile_lists<Real> all = lists();
-        all.splats = shares_gaussians() ? near_visible_.data() : near_.data();
+        all.splats = strip_ ? near_visible_.data() : near_.data();
         return all;
     }
 
-    void project_all(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
+    void project_own(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
                      const dropout& dropped = {}) {
         require_drawable(view);
         camera_ = view;
@@ -376,25 +389,29 @@ class renderer {
             device_.template for_each_warp<narrow>(
                 own_warps<narrow>(),
                 projection{gaussians, count, camera_for<value_t<narrow, Real>, seen>(view), sh_degree,
-                           tiles_across_, tiles_down_, reserve(splats_, count).data(),
-                           reserve(boxes_, count).data(), reserve(depths_, count).data(),
-                           reserve(order_, count).data(), reserve(tiles_, count).data(), dropped});
+                           tiles_across_, tiles_down_, reserve_own(splats_), reserve_own(boxes_),
+                           reserve_own(depths_), reserve_own(order_), reserve_own(tiles_), dropped});
         });
-        if (shares_gaussians()) {
-            const auto scope = exchanging(ranks::purpose::splats);
-            visible_.collect(count, strip_->listed_by_all(static_cast<int>(tiles_down_)), splats_.data(),
-                             boxes_.data(), depths_.data(), tiles_.data());
-            device_.ranks().traffic().count_step(visible_.drawn(), visible_.moved());
-        }
+    }
+    /// Gives each rank the splats of its strip.
+    void exchange_splats() {
+        const auto scope = exchanging(ranks::purpose::splats);
+        visible_.collect(own_gaussians().count(), strip_->listed_by_all(static_cast<int>(tiles_down_)),
+                         splats_.data(), boxes_.data(), depths_.data(), tiles_.data());
+        if (strip_->is_of_step) device_.ranks().traffic().count_step(visible_.drawn(), visible_.moved());
     }
 
     /// Makes the list of Gaussians of each tile, front to back. Equal depths keep the order of the
     /// Gaussians.
     void bin() {
-        if (strip_) clip();
-        shares_gaussians() ? device_.sort_pairs(visible_.depths, visible_.order, visible_.count())
-                           : device_.sort_pairs(depths_, order_, count_);
-        strip_ ? list_strip() : list_by_tile(capacity_, boxes_, gaussian_of_.data());
+        if (strip_) {
+            clip();
+            device_.sort_pairs(visible_.depths, visible_.order, visible_.count());
+            list_strip();
+        } else {
+            device_.sort_pairs(depths_, order_, count_);
+            list_by_tile(count_, listed_by_depth(boxes_), capacity_, gaussian_of_.data());
+        }
         const row_range own = strip_ && strip_->own.count() > 0 ? strip_->own : all_rows();
         device_.for_each_index(
             segments(),
@@ -407,46 +424,47 @@ class renderer {
         device_.for_each_index(tiles_in(listed_rows()),
                                order_tiles{ranges_.data(), order(), first_tile(listed_rows())});
     }
-    /// Calls f with the splats in the order of their depth, as items of `device::distribute`.
+    splats_by_depth<Real> listed_by_depth(const buffer<tile_box>& boxes) const {
+        return {(strip_ ? visible_.order : order_).data(), listed_splats().data(), boxes.data(),
+                tiles_across_};
+    }
+    /// Calls f with the splats as items of `device::distribute`.
     template <class F>
-    void with_items(const buffer<tile_box>& boxes, const F& f) const {
-        const buffer<std::uint32_t>& order = shares_gaussians() ? visible_.order : order_;
-        const splats_by_depth<Real> splats{order.data(), listed_splats().data(), boxes.data(), tiles_across_};
+    void with_items(const splats_by_depth<Real>& splats, const F& f) const {
         camera_.is_panorama ? f(panorama_splats_by_depth<Real>{splats, {camera_.width, tiles_across_}})
                             : f(splats);
     }
-    void list_by_tile(std::uint64_t reserved, const buffer<tile_box>& boxes, std::uint32_t* listed) {
-        with_items(boxes, [&](const auto& items) {
-            device_.distribute(listed_count(), items, tiles(), reserved, listed,
-                               reserve(ranges_, tiles()).data(), required_.data());
+    void list_by_tile(std::size_t count, const splats_by_depth<Real>& splats, std::uint64_t reserved,
+                      std::uint32_t* listed) {
+        with_items(splats, [&](const auto& items) {
+            device_.distribute(count, items, tiles(), reserved, listed, reserve(ranges_, tiles()).data(),
+                               required_.data());
         });
     }
-    /// Limits the boxes of all splats to the tile rows with lists.
+    /// Limits the boxes of the visible splats to the tile rows with lists.
     void clip() {
-        const buffer<tile_box>& boxes = shares_gaussians() ? visible_.boxes : boxes_;
-        const buffer<std::uint32_t>& depths = shares_gaussians() ? visible_.depths : depths_;
-        device_.for_each_index(listed_count(),
-                               clip_boxes{boxes.data(), listed_rows(),
-                                          reserve(clipped_boxes_, listed_count()).data(), depths.data()});
+        device_.for_each_index(listed_count(), clip_boxes{visible_.boxes.data(), listed_rows(),
+                                                          reserve(clipped_boxes_, listed_count()).data(),
+                                                          visible_.depths.data()});
     }
     /// Makes the tile lists of a strip. Other ranks must call this, too. Lists begin at the same place
     /// of a segment as in the lists of a whole view, so that the backward pass cuts them at the same
     /// places and computes the same bits.
     void list_strip() {
         const row_range listed = listed_rows();
-        list_by_tile(capacity_, clipped_boxes_, reserve(unmoved_, capacity_).data());
+        list_by_tile(listed_count(), listed_by_depth(clipped_boxes_), capacity_,
+                     reserve(unmoved_, capacity_).data());
         lengths_.resize(tiles_down_ + 1);
         device_.for_each_index(lengths_.size(), measure_rows{ranges_.data(), tiles_across_, strip_->own,
                                                              tiles_down_, capacity(), lengths_.data()});
-        with_items(clipped_boxes_, [&]<class Items>(const Items& items) {
+        with_items(listed_by_depth(clipped_boxes_), [&]<class Items>(const Items& items) {
             const auto first = static_cast<std::uint32_t>(first_tile(strip_->own));
             const auto last = static_cast<std::uint32_t>(first + tiles_in(strip_->own));
             device_.for_each_index(listed_count(), count_unlisted<Items>{items, first, last, capacity(),
                                                                          lengths_.data() + tiles_down_});
         });
         {
-            const auto scope =
-                exchanging(shares_gaussians() ? ranks::purpose::lists : ranks::purpose::scores);
+            const auto scope = exchanging(ranks::purpose::lists);
             device_.sum_over_ranks(lengths_.data(), lengths_.size());
         }
         device_.zero(reserve(place_, 1).data(), 1);
@@ -474,7 +492,7 @@ class renderer {
     buffer<strip_place> place_;
     buffer<tile_range> ranges_;
     buffer<Real> render_, transmittance_, checkpoints_;
-    visible_splats<Device, Real> visible_;  ///< if the strip `shares_gaussians`
+    visible_splats<Device, Real> visible_;  ///< with a strip
     gradient_sums<Device, Real> sums_;      // knob: renderer_members
     buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
     buffer<unsigned long long> work_;

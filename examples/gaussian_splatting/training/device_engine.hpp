@@ -20,6 +20,7 @@
 #include "../render/renderer.hpp"
 #include "clamp_render.hpp"
 #include "device_views.hpp"
+#include "drawn_views.hpp"
 #include "engine_memory.hpp"
 #include "engine_parts.hpp"
 #include "list_sizer.hpp"
@@ -52,12 +53,14 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
           lists_(device_),
           row_work_(device_),
           monitor_(device_),
-          gather_(device_) {
+          gather_(device_, shares_) {
         profiler_ = this;
         state_ = this;
         cameras_ = this;
         start({});
     }
+
+    void join(ranks::communicator& ranks) override { device_.join(ranks); }
 
     void set_views(const std::vector<view>& train, const std::vector<view>& test, int downscales,
                    const photos::photo_plan& memory) override {
@@ -81,6 +84,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     }
 
     gaussians get_model() override {
+        update_gaussians();
         gaussians model = trained_.get_values(device_, count_, sh_degree_);
         model.antialiased = effects_.antialiasing;
         features_.get_model(model);
@@ -93,48 +97,61 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     }
 
     void reserve(int downscales) override {
-        complete_parameters();
         if (static_cast<std::size_t>(downscales) != level_) set_level(static_cast<std::size_t>(downscales));
-        renderer_.set_strip({});
+        divide_gaussians();
+        set_strip(trained_.shares ? std::optional<raster::view_strip>(raster::view_strip{}) : std::nullopt,
+                  false);
         lists_.reserve(renderer_, trained_.values.read(), count_, views_.train(level_));
     }
 
     void step(const step_plan& plan) override {
+        divide_gaussians();
         trained_.require_memory(device_, count_, sh_degree_);
         const photo& shot = views_.train(level_)[plan.view];
         const camera seen = features_.seen_by(plan.view, shot.camera);
         const auto loaded = views_.load(shot);
         target_image target = loaded.target(plan.background);
-        auto strip = strips_.of(plan.view, shot.camera, loss_->reach(), device_.ranks());
-        if (strip) strip->shares_gaussians = true;
-        renderer_.set_strip(strip);
+        const auto strip = strips_.of(plan.view, shot.camera, loss_->reach(), device_.ranks());
+        set_strip(strip, true);
         if (strip) target.rows = strip->own_pixels(shot.camera.height);
         loss_->set_target(target);
         step_type s{plan, seen, target, loaded.depths(), renderer_, 0, setup_.facts.gradient};
         s.gradient_scale = std::max(loss_->gradient_scale(), features_.gradient_scale(s));
         device_.iteration(key_of(s, target), [&] { iterate(s); });
         lists_.was_noted(plan.view, count_);
-        if (strip) row_work_.keep(plan.view, renderer_.row_work());
+        if (strip) {
+            row_work_.keep(plan.view, renderer_.row_work());
+            shares_.note(renderer_.visible().drawn(), count_, device_.ranks().count());
+        }
         is_complete_ = !strip;
         if (views_.cache() != nullptr) views_.cache()->upload_ahead();
     }
 
     std::uint64_t densify(int iteration) override {
-        complete_parameters();
-        drawn_views views(*this, views_.train(level_));
+        update_gaussians();
+        shares_.balance();
+        auto views = drawn(views_.train(level_));
         const std::size_t most = growth_limit();
         const densify_report report =
             strategy_->run(iteration, {in_training(), seen_.data(), gather_, views, most});
         begin_generation(report.count);
+        move_gaussians();
         lacks_memory_ = report.count >= most && !move_sh_to_host();
         return report.without_gradient;
     }
 
-    void adjust(int iteration) override { strategy_->adjust(iteration, in_training()); }
+    void adjust(int iteration) override {
+        strategy_->adjust(iteration, in_training());
+        is_complete_ = is_complete_ && !trained_.shares;
+    }
 
     step_report take_report() override {
-        complete_parameters();
         row_work_.take(strips_);
+        if (shares_.are_uneven()) {
+            update_gaussians();
+            shares_.balance();
+            move_gaussians();
+        }
         const std::uint64_t skipped = monitor_.skipped();
         const auto sums = loss_->sums();
         device_.sum_over_ranks(sums.data(), sums.size());
@@ -149,9 +166,13 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         return features_.named(name);
     }
 
+    void prepare_renders() override {
+        update_gaussians();
+        trained_.undivide_values(device_);
+    }
+
     std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
                               const render_options& options) override {
-        complete_parameters();
         renderer_.set_strip({});
         if (!options.separate_memory) {
             draw(renderer_, camera, background, options);
@@ -189,10 +210,10 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
             on_.sh_degree_ = degree;
         }
         std::size_t prune(double change) override {
-            on_.complete_parameters();
             if (on_.count_ > 0 && on_.sh_degree_ > 0) {
+                on_.update_gaussians();
                 on_.trained_.require_memory(on_.device_, on_.count_, on_.sh_degree_);
-                drawn_views views(on_, on_.views_.smallest());
+                auto views = on_.drawn(on_.views_.smallest());
                 sh_pruner<Device>(on_.device_, on_.gather_)
                     .run(on_.trained_, on_.count_, on_.sh_degree_, views, change);
                 on_.begin_generation(on_.count_);
@@ -204,30 +225,19 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         device_engine& on_;
     };
 
-    /// Renders the training views of one size for scores. These renders are not timed or counted as
-    /// steps. Each rank renders a strip.
-    class drawn_views final : public score_views {
-      public:
-        drawn_views(device_engine& on, const std::vector<photo>& views) : on_(on), views_(views) {}
-        std::size_t count() const override { return views_.size(); }
-        drawn_view draw(std::size_t view) override {
-            const photo& shot = views_[view];
-            on_.renderer_.set_strip(on_.strips_.of(view, shot.camera, 0, on_.device_.ranks()));
-            on_.draw(on_.renderer_, on_.features_.seen_by(view, shot.camera), {});
-            return {on_.views_.load_in_order(views_, view).target({}), on_.renderer_.render(),
-                    on_.renderer_.splats(), on_.renderer_.tiles_of()};
-        }
-        const float* sum_scores(const float* scores) override {
-            on_.device_.pause_times(true);
-            const float* sums = on_.renderer_.pixel_sums(scores, 1, on_.setup_.facts.gradient);
-            on_.device_.pause_times(false);
-            return sums;
-        }
-
-      private:
-        device_engine& on_;
-        const std::vector<photo>& views_;
-    };
+    /// Returns the training views of one size, to be rendered for scores.
+    drawn_views<renderer_type> drawn(const std::vector<photo>& views) {
+        return {device_,
+                renderer_,
+                views_,
+                views,
+                setup_.facts.gradient,
+                trained_.shares,
+                [this](std::size_t view, const photo& shot) {
+                    set_strip(strips_.of(view, shot.camera, 0, device_.ranks()), false);
+                    draw(renderer_, features_.seen_by(view, shot.camera), {});
+                }};
+    }
 
     camera training_camera(std::size_t view, const camera& given) override {
         return features_.seen_by(view, given);
@@ -299,7 +309,13 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         archive.exchange("gaussians", count_);
         archive.exchange("sh_degree", sh_degree_);
         archive.exchange("steps", steps_);
-        if (!archive.loads()) trained_.require_memory(device_, count_, sh_degree_);
+        if (archive.loads()) {
+            if (device_.ranks().count() > 1)
+                trained_.divide(device_, shares_.of(count_, device_.ranks().count()));
+        } else {
+            update_gaussians();
+            trained_.require_memory(device_, count_, sh_degree_);
+        }
         trained_.exchange(archive, device_);
         is_complete_ = true;
         exchange_buffer(archive, device_, "statistics", seen_);
@@ -339,7 +355,6 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     }
 
     void start(const training_setup& setup) {
-        if (setup.ranks != nullptr) device_.join(*setup.ranks);
         auto strategy = parts_.make_strategy(device_, setup.densification, setup.facts);
         if (const auto columns = strategy->gradient_columns(); !columns.empty())
             throw error("the densification strategy '" + setup.densification.name +
@@ -365,20 +380,39 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         row_work_.reset(heights);
     }
 
-    /// Gives all ranks the Gaussians of the others, of which they have no present state after a step.
-    void complete_parameters() {
+    /// Limits later draws to the strip of this rank.
+    void set_strip(std::optional<raster::view_strip> strip, bool is_of_step) {
+        if (strip) {
+            strip->gaussians = *trained_.shares;
+            strip->is_of_step = is_of_step;
+        }
+        renderer_.set_strip(strip);
+    }
+    /// Divides the Gaussians if there are several ranks.
+    void divide_gaussians() {
+        const int ranks = device_.ranks().count();
+        if (ranks > 1 && !trained_.values.is_divided())
+            trained_.divide(device_, trained_.shares.value_or(shares_.of(count_, ranks)));
+    }
+    /// Gives all ranks what the others have learned about their Gaussians, except what they divide.
+    void update_gaussians() {
         if (is_complete_) return;
-        std::vector<ranks::shared_array> arrays;
-        trained_.share(device_, arrays);
-        arrays.push_back(ranks::shared_array::of(seen_.data(), block_length, count_));
-        device_.gather(renderer_.visible().shares_of(count_), arrays);
-        renderer_.visible().balance();
+        trained_.update_values(device_);
+        const ranks::shared_array array[] = {ranks::shared_array::of(seen_.data(), block_length, count_)};
+        device_.gather(*trained_.shares, array);
         is_complete_ = true;
+    }
+    /// Moves the Gaussians to the ranks that `shares_` gives them. Precondition: `update_gaussians`.
+    void move_gaussians() {
+        if (!trained_.shares || *trained_.shares == shares_.of(count_, device_.ranks().count())) return;
+        gather_.keep_all(count_);
+        gather_.run(trained_, count_, trained_.values.gaussians_with_sh(), sh_degree_);
     }
 
     trained_gaussians<Device> in_training() {
         trained_.require_memory(device_, count_, sh_degree_);
-        return {device_, trained_, count_, sh_degree_, views_.centers(), views_.count()};
+        return {device_,    trained_,         count_,        trained_.own(device_, count_),
+                sh_degree_, views_.centers(), views_.count()};
     }
 
     /// Sets the number of Gaussians and clears their statistics. Precondition: `trained_` has them.
@@ -420,8 +454,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
             trained_.descent(++steps_, plan.rates, renderer_.capacity(), monitor_.check_of(plan.iteration));
         renderer_.backward_from_splats(sums, plan.updates_sh ? plan.sh_degree : 0, descent,
                                        strategy_->wants(plan.iteration) ? seen_.data() : nullptr);
-        strategy_->after_step(plan.iteration,
-                              {in_training(), plan.rates, renderer_.capacity(), renderer_.own_gaussians()});
+        strategy_->after_step(plan.iteration, {in_training(), plan.rates, renderer_.capacity()});
         monitor_.close(renderer_, loss_->sums(), lists_.length(plan.view), plan.iteration);
     }
 
@@ -478,6 +511,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     view_strips strips_;
     row_work<Device> row_work_;
     step_monitor<Device> monitor_;
+    gaussian_shares shares_;
     parameter_gather<Device> gather_;
     std::unique_ptr<loss<float>> loss_;
     std::unique_ptr<strategy<Device>> strategy_;
@@ -488,7 +522,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     int sh_degree_ = 0;
     effect_set effects_;
     std::uint32_t steps_ = 0;
-    bool is_complete_ = true;  ///< whether this rank has the present state of all Gaussians
+    bool is_complete_ = true;  ///< whether this rank has all that `update_gaussians` gives it
     std::uint64_t drawn_pairs_ = 0, pairs_of_others_ = 0;
     std::optional<renderer_type> apart_;  ///< see `render_options::separate_memory`
     std::size_t bytes_apart_ = 0;         ///< device memory that such renders have allocated

@@ -51,7 +51,6 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     setup.storage = options.storage;
     setup.host_bytes = options.host_bytes;
     setup.dropout = schedule.dropout_share();
-    setup.ranks = options.ranks;
     for (const auto& feature : options.features.all())
         if (feature.on) setup.features[feature.name] = feature.values;
     return setup;

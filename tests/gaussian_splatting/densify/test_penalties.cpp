@@ -81,7 +81,7 @@ TEST_CASE("penalties: the weights are those of means over Gaussians and axes") {
     all.second.upload(device, moments);
     all.last_step.resize(40);
     std::fill_n(all.last_step.data(), 40, 9u);
-    gs::train::step_context<cpu> step{{device, all, 40, 0, nullptr, 0}, {}, {}, {0, 40}};
+    gs::train::step_context<cpu> step{{device, all, 40, {0, 40}, 0, nullptr, 0}, {}, {}};
     step.rates[static_cast<std::size_t>(gs::parameter::opacity)] = 0.5f;
     step.rates[static_cast<std::size_t>(gs::parameter::log_scale)] = 0.25f;
     gs::train::apply_penalties<cpu>({0.04, 0.06}, 2, 9, step);

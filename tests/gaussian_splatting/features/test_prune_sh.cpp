@@ -261,7 +261,8 @@ TEST_CASE("prune_sh: frees the memory of the smallest errors, in values and mome
         of.last_step.data()[i] = static_cast<std::uint32_t>(i);
         errors[i] = {1, {0.5f, 0.5f, 0.5f}, static_cast<float>((7 * i) % count)};
     }
-    gs::train::parameter_gather<device> gather(d);
+    const gs::gaussian_shares shares;
+    gs::train::parameter_gather<device> gather(d, shares);
     gs::train::sh_pruner<device> pruner(d, gather);
     pruner.prune(of, count, 3, errors.data(), 97 * 96 / 2);  // 97 Gaussians: errors 0 to 96
     CHECK(of.values.gaussians_with_sh() == count);

@@ -47,6 +47,8 @@ class recorder final : public gs::train::engine, gs::device::profiler {
     void set_views(const std::vector<gs::view>&, const std::vector<gs::view>&, int,
                    const gs::photos::photo_plan&) override {}
     void set_model(const gs::gaussians&) override {}
+    void join(gs::ranks::communicator&) override {}
+    void prepare_renders() override {}
     gs::gaussians get_model() override { return {}; }
     void begin(const gs::train::training_setup& setup) override {
         dropout = setup.dropout;

@@ -55,7 +55,7 @@ class adaptive final : public strategy<Device> {
         constexpr float reset_opacity = 0.01f;
         if (schedule_.resets_opacity(iteration))
             g.device.for_each_index(
-                g.count, lower_opacity{values.opacity, g.parameters.moments(), logit(reset_opacity)});
+                g.own, lower_opacity{values.opacity, g.parameters.moments(), logit(reset_opacity)});
         if (schedule_.hides_near_cameras(iteration)) hide_near_cameras(g);
     }
 

@@ -78,6 +78,7 @@ class error_driven final : public strategy<Device> {
         counter_random random(facts_.seed, static_cast<std::uint64_t>(iteration), 0);
         const auto first = static_cast<std::size_t>(random.below(views));
         for (std::size_t k = 0; k < n; ++k) score_view((first + k * views / n) % views, c);
+        c.views.gather(ranks::shared_array::of(scores_.data(), block_length, c.count));
     }
 
     void score_view(std::size_t view, const run_context<Device>& c) {
@@ -88,7 +89,7 @@ class error_driven final : public strategy<Device> {
         device_.for_each_index(pixels, score_pixels{drawn.target, drawn.render, pixels,
                                                     static_cast<float>(config_.level), pixel_scores_.data()});
         const float* sums = c.views.sum_scores(pixel_scores_.data());
-        device_.for_each_index(c.count, add_error_score{drawn.tiles, sums, scores_.data()});
+        device_.for_each_index(c.own, add_error_score{drawn.tiles, sums, scores_.data()});
     }
 
     Device& device_;

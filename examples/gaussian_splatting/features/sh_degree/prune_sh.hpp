@@ -85,9 +85,11 @@ class sh_pruner {
             ones.resize(n);
             device_.for_each_index(n, make_one{ones.data()});
             device_.for_each_index(
-                count, add_sh_error{drawn.splats, drawn.tiles, views.sum_scores(ones.data()), errors.data()});
+                all.own(device_, count),
+                add_sh_error{drawn.splats, drawn.tiles, views.sum_scores(ones.data()), errors.data()});
             values += n;
         }
+        views.gather(ranks::shared_array::of(errors.data(), block_length, count));
         prune(all, count, sh_degree, errors.data(), change * change * static_cast<double>(values));
     }
 

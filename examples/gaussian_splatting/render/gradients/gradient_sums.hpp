@@ -96,31 +96,23 @@ class gradient_sums {
         using in_memory = std::remove_pointer_t<decltype(kernel.sums)>;
         device_.for_each_index(sums_.size() / record_stride, set_red_aside<in_memory>{kernel.sums});
     }
-    /// Called after the kernel. Returns the sums as `Real`. If `adds_ranks`, first adds those of all ranks.
+    /// Called after the kernel. Returns the sums as `Real`.
     template <class Kernel>
-    const buffer<Real>& end(const Kernel& kernel, bool adds_ranks) {
-        const std::size_t n = sums_.size();
-        const ranks::traffic_counter::scope scope(device_.ranks().traffic(), ranks::purpose::scores);
-        if constexpr (are_real<Kernel>) {
-            if (adds_ranks) device_.sum_over_ranks(sums_.data(), n);
-        } else {
-            if constexpr (are_fixed<Kernel>)
-                if (adds_ranks) device_.sum_over_ranks(fixed(), n);
-            device_.for_each_index(n,
+    const buffer<Real>& end(const Kernel& kernel) {
+        if constexpr (!are_real<Kernel>)
+            device_.for_each_index(sums_.size(),
                                    round_sums<kept_by<Kernel>>{kernel.sums, unit_of(kernel), sums_.data()});
-        }
         return sums_;
     }
     /// Called after the kernel if each rank has sums of the `splats` that it lists. Returns the sums of
     /// this rank's share of the Gaussians: see `visible_splats::add_ranks`. Precondition: the sums are `Real`
     /// or in fixed point.
     template <class Kernel, class Splats>
-    const buffer<Real>& end_for_owners(const Kernel& kernel, Splats& splats, std::size_t gaussians) {
-        const ranks::traffic_counter::scope scope(device_.ranks().traffic(), ranks::purpose::gradients);
+    const buffer<Real>& end_for_owners(const Kernel& kernel, Splats& splats) {
         if constexpr (are_real<Kernel>)
-            return splats.add_ranks(sums_.data(), keep_sum{}, gaussians);
+            return splats.add_ranks(sums_.data(), keep_sum{});
         else if constexpr (are_fixed<Kernel>)
-            return splats.add_ranks(fixed(), round_fixed<kept_by<Kernel>>{unit_of(kernel)}, gaussians);
+            return splats.add_ranks(fixed(), round_fixed<kept_by<Kernel>>{unit_of(kernel)});
         else
             throw error("ranks cannot add the sums of this accumulator");
     }

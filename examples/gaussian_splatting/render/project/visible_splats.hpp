@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "../../device/device.hpp"
-#include "../../model/gaussian_shares.hpp"
 #include "../geometry/splat.hpp"
 #include "../tiles/tile_reach.hpp"
 #include "../tiles/view_strip.hpp"
@@ -129,28 +128,25 @@ class visible_splats {
   public:
     explicit visible_splats(Device& device) : device_(device) {}
 
-    /// Collects the splats of this rank's strip. The arguments have a value for each of the `gaussians`;
-    /// those of this rank's share are set. `rows`: the tile rows that each rank lists. All ranks must call
-    /// this. Waits for the device.
-    void collect(std::size_t gaussians, const listed_tile_rows& rows, const splat<Real>* all_splats,
-                 const tile_box* all_boxes, const std::uint32_t* all_depths, const std::uint32_t* all_tiles) {
-        own_ = shares_of(gaussians).of(rank());
-        const ranks::share own = own_;
-        const std::size_t ranks = rows.ranks, marks = (ranks + 1) * own.count();
+    /// Collects the splats of this rank's strip. The arrays have a value for each of the `own` Gaussians of
+    /// this rank: see `project`. `rows`: the tile rows that each rank lists. All ranks must call this. Waits
+    /// for the device.
+    void collect(std::size_t own, const listed_tile_rows& rows, const splat<Real>* own_splats,
+                 const tile_box* own_boxes, const std::uint32_t* own_depths, const std::uint32_t* own_tiles) {
+        own_ = own;
+        const std::size_t ranks = rows.ranks, marks = (ranks + 1) * own;
         marks_.resize(marks);
         places_.resize(marks + 1);
-        device_.for_each_index(own.count(), mark_listed{rows, own.count(), all_tiles + own.first,
-                                                        all_boxes + own.first, marks_.data()});
+        device_.for_each_index(own, mark_listed{rows, own, own_tiles, own_boxes, marks_.data()});
         device_.prefix_sum(marks_, places_, marks);
         counts_.resize(ranks + 1);
-        device_.for_each_index(ranks + 1, count_marks{places_.data(), own.count(), counts_.data()});
+        device_.for_each_index(ranks + 1, count_marks{places_.data(), own, counts_.data()});
         exchange_counts(ranks);
-        shares_.note(drawn_, gaussians, device_.ranks().count());
 
         device_.for_each_index(
-            own.count(), fill_windows<splat<Real>, tile_box, std::uint32_t>{
-                             filled(all_splats, sent_splats_, splats), filled(all_boxes, sent_boxes_, boxes),
-                             filled(all_depths, sent_depths_, depths), places()});
+            own, fill_windows<splat<Real>, tile_box, std::uint32_t>{
+                     filled(own_splats, sent_splats_, splats), filled(own_boxes, sent_boxes_, boxes),
+                     filled(own_depths, sent_depths_, depths), places()});
         order.resize(count());
         device_.for_each_index(count(), count_up{order.data()});
         const ranks::window_array arrays[] = {array(sent_splats_, splats), array(sent_boxes_, boxes),
@@ -158,35 +154,28 @@ class visible_splats {
         device_.exchange(windows_, arrays);
     }
     /// Collects other splats of the same Gaussians. All ranks must call this.
-    void collect(const splat<Real>* all_splats, buffer<splat<Real>>& to) {
-        device_.for_each_index(own_.count(),
-                               fill_windows<splat<Real>>{filled(all_splats, sent_splats_, to), places()});
+    void collect(const splat<Real>* own_splats, buffer<splat<Real>>& to) {
+        device_.for_each_index(own_,
+                               fill_windows<splat<Real>>{filled(own_splats, sent_splats_, to), places()});
         const ranks::window_array arrays[] = {array(sent_splats_, to)};
         device_.exchange(windows_, arrays);
     }
-    /// Returns the sums of each drawn Gaussian of this rank's share, from those that all ranks have for the
-    /// splats they list. Others are unspecified. `gaussians`: the number of all Gaussians. All ranks must
-    /// call this.
+    /// Returns the sums of each drawn Gaussian of this rank, from those that all ranks have for the splats
+    /// they list. Those of other Gaussians are unspecified. All ranks must call this.
     template <class T, class Round>
-    const buffer<Real>& add_ranks(const T* of_listed, const Round& round, std::size_t gaussians) {
+    const buffer<Real>& add_ranks(const T* of_listed, const Round& round) {
         returned_.resize(windows_.sent_by(rank()).items() * record_stride * sizeof(T));
         T* const returned = reinterpret_cast<T*>(returned_.data());
         const ranks::window_array arrays[] = {ranks::window_array::of(of_listed, returned, record_stride)};
         device_.exchange(windows_.reversed(), arrays);
-        sums_.resize(gaussians * record_stride);
+        sums_.resize(own_ * record_stride);
         device_.for_each_index(
-            own_.count(), add_windows<T, Real, Round>{places(), returned,
-                                                      of_listed + kept_in_received().first * record_stride,
-                                                      round, sums_.data() + own_.first * record_stride});
+            own_, add_windows<T, Real, Round>{places(), returned,
+                                              of_listed + kept_in_received().first * record_stride, round,
+                                              sums_.data()});
         return sums_;
     }
 
-    /// Returns the shares of the ranks of this number of Gaussians.
-    ranks::shares shares_of(std::size_t gaussians) const {
-        return shares_.of(gaussians, device_.ranks().count());
-    }
-    /// See `gaussian_shares`.
-    void balance() { shares_.balance(); }
     /// The number of splats that this rank lists.
     std::size_t count() const { return windows_.received_by(rank()).items(); }
     /// The drawn splats of all ranks, by owner.
@@ -222,7 +211,7 @@ class visible_splats {
     sent_windows places() const {
         return {marks_.data(),
                 places_.data(),
-                own_.count(),
+                own_,
                 static_cast<unsigned>(rank()),
                 static_cast<unsigned>(windows_.ranks()),
                 kept_in_sent().first};
@@ -231,7 +220,7 @@ class visible_splats {
     filled_array<T> filled(const T* from, buffer<T>& to_others, buffer<T>& to) const {
         to_others.resize(windows_.sent_by(rank()).items());
         to.resize(count());
-        return {from + own_.first, to_others.data(), to.data() + kept_in_received().first};
+        return {from, to_others.data(), to.data() + kept_in_received().first};
     }
     template <class T>
     static ranks::window_array array(const buffer<T>& from, const buffer<T>& to) {
@@ -239,8 +228,7 @@ class visible_splats {
     }
 
     Device& device_;
-    gaussian_shares shares_;
-    ranks::share own_;
+    std::size_t own_ = 0;  ///< number of this rank's Gaussians
     ranks::shares drawn_{0, 1, 1};
     ranks::windows windows_{std::vector<std::size_t>{0}, 1};
     buffer<std::uint32_t> marks_, sent_depths_;

@@ -25,12 +25,13 @@ struct listed_tile_rows {
 struct view_strip {
     row_range own;
     int reach = 0;  ///< number of pixel rows beyond its own that it only renders, see `loss::reach`
-    bool shares_gaussians = false;           ///< whether the rank projects its own Gaussians only
-    std::vector<row_range> own_of_all = {};  ///< the own rows of each rank; needed if it `shares_gaussians`
+    std::vector<row_range> own_of_all = {};  ///< the own rows of each rank
+    ranks::shares gaussians = {0, 1, 1};     ///< the Gaussians that each rank projects
+    bool is_of_step = true;                  ///< whether traffic counts for a training step, or for scores
 
     /// Returns the tile rows with tile lists, of a view with `down` tile rows.
     row_range listed(int down) const { return listed(own, down); }
-    /// The same for each rank. Precondition: `own_of_all` is set.
+    /// The same for each rank.
     listed_tile_rows listed_by_all(int down) const {
         listed_tile_rows all{static_cast<unsigned>(own_of_all.size()), {}};
         for (std::size_t rank = 0; rank < own_of_all.size(); ++rank)
