@@ -95,13 +95,16 @@ class parameter_gather {
     /// `shares` divides the new Gaussians among the ranks, and must exist as long as this object.
     parameter_gather(Device& device, const gaussian_shares& shares) : device_(device), shares_(shares) {}
 
-    /// Returns the size of the memory for each Gaussian of an SH degree.
-    static std::size_t bytes_per_gaussian(int sh_degree) {
+    /// Returns the size of the memory for each Gaussian of an SH degree, if this number of ranks divides
+    /// them.
+    static std::size_t bytes_per_gaussian(int sh_degree, std::size_t ranks) {
         std::size_t widest = 0;
         for (std::size_t p = 0; p < parameter_count; ++p)
             if (has_parameter(p, sh_degree))
                 widest = std::max<std::size_t>(widest, width_of(static_cast<parameter>(p)));
-        return widest * sizeof(float) + sizeof(birth) + 2 * sizeof(std::uint32_t);
+        const std::size_t spare = std::max(widest / ranks, width_of(parameter::quaternion)),
+                          piece = ranks > 1 ? (widest + pieces - 1) / pieces : 0;
+        return (spare + piece) * sizeof(float) + sizeof(birth) + 2 * sizeof(std::uint32_t);
     }
 
     /// Sets the capacity of `origins` and `births` to `most` new Gaussians. Both lose their
@@ -185,8 +188,8 @@ class parameter_gather {
         const std::size_t elements = memory.elements(p);
         if (!memory.is_divided(p)) return f(ranks::share{0, elements}, memory[p].data());
         const std::size_t block = block_length * memory.width(p),
-                          length =
-                              std::max<std::size_t>(elements / block / 8, least_piece / block + 1) * block;
+                          length = std::max<std::size_t>(elements / block / pieces, least_piece / block + 1) *
+                                   block;
         auto& copy = this->piece(T{});
         for (std::size_t first = 0; first == 0 || first < elements; first += length) {
             const ranks::share piece{first, std::min(first + length, elements)};
@@ -206,6 +209,8 @@ class parameter_gather {
     buffer<float>& piece(float) { return piece_; }
     buffer<std::uint32_t>& piece(std::uint32_t) { return piece_words_; }
 
+    /// The number of pieces of an array that is gathered from other ranks, unless it is small.
+    static constexpr std::size_t pieces = 8;
     static constexpr std::size_t least_piece = std::size_t{1} << 22;  ///< elements; smaller ones waste time
 
     Device& device_;

@@ -46,4 +46,12 @@ constexpr parameter_bytes bytes_per_gaussian(int sh_degree, const parameter_stor
     return bytes;
 }
 
+/// Returns the memory of a Gaussian's values that ranks do not divide: see `divided_arrays`.
+constexpr std::size_t undivided_bytes_per_gaussian() {
+    std::size_t bytes = 0;
+    for (std::size_t p = 0; p < parameter_count; ++p)
+        if (!is_view_dependent(p)) bytes += width_of(static_cast<parameter>(p)) * sizeof(float);
+    return bytes;
+}
+
 }  // namespace gs::train

@@ -19,6 +19,7 @@
 #include "project/project_backward.hpp"
 #include "project/visible_splats.hpp"
 #include "tiles/bin.hpp"
+#include "tiles/strip_lists.hpp"
 #include "tiles/view_strip.hpp"
 
 namespace gs::raster {
@@ -37,7 +38,8 @@ class renderer {
     using warp = typename Device::warp;
     using model = parameter_arrays<const Real>;
 
-    explicit renderer(Device& device) : device_(device), visible_(device), sums_(device) {
+    explicit renderer(Device& device)
+        : device_(device), visible_(device), strip_lists_(device), sums_(device) {
         device_.zero(reserve(pairs_, 2).data(), 2);
         device_.zero(reserve(required_, 1).data(), 1);
     }
@@ -405,8 +407,6 @@ class renderer {
     /// Gaussians.
     void bin() {
         if (strip_) {
-            clip();
-            device_.sort_pairs(visible_.depths, visible_.order, visible_.count());
             list_strip();
         } else {
             device_.sort_pairs(depths_, order_, count_);
@@ -441,41 +441,17 @@ class renderer {
                                required_.data());
         });
     }
-    /// Limits the boxes of the visible splats to the tile rows with lists.
-    void clip() {
-        device_.for_each_index(listed_count(), clip_boxes{visible_.boxes.data(), listed_rows(),
-                                                          reserve(clipped_boxes_, listed_count()).data(),
-                                                          visible_.depths.data()});
-    }
-    /// Makes the tile lists of a strip. Other ranks must call this, too. Lists begin at the same place
-    /// of a segment as in the lists of a whole view, so that the backward pass cuts them at the same
-    /// places and computes the same bits.
     void list_strip() {
-        const row_range listed = listed_rows();
-        list_by_tile(listed_count(), listed_by_depth(clipped_boxes_), capacity_,
-                     reserve(unmoved_, capacity_).data());
-        lengths_.resize(tiles_down_ + 1);
-        device_.for_each_index(lengths_.size(), measure_rows{ranges_.data(), tiles_across_, strip_->own,
-                                                             tiles_down_, capacity(), lengths_.data()});
-        with_items(listed_by_depth(clipped_boxes_), [&]<class Items>(const Items& items) {
-            const auto first = static_cast<std::uint32_t>(first_tile(strip_->own));
-            const auto last = static_cast<std::uint32_t>(first + tiles_in(strip_->own));
-            device_.for_each_index(listed_count(), count_unlisted<Items>{items, first, last, capacity(),
-                                                                         lengths_.data() + tiles_down_});
-        });
-        {
+        const auto& boxes =
+            strip_lists_.clip(visible_.boxes.data(), visible_.depths.data(), visible_.count(), listed_rows());
+        device_.sort_pairs(visible_.depths, visible_.order, visible_.count());
+        ranges_.resize(tiles());
+        with_items(listed_by_depth(boxes), [&](const auto& items) {
             const auto scope = exchanging(ranks::purpose::lists);
-            device_.sum_over_ranks(lengths_.data(), lengths_.size());
-        }
-        device_.zero(reserve(place_, 1).data(), 1);
-        device_.for_each_index(
-            lengths_.size(),
-            add_rows{lengths_.data(), static_cast<std::size_t>(listed.first), place_.data()});
-        device_.for_each_index(1, require_all{place_.data(), required_.data()});
-        const std::size_t threads = 32 * device_.resident_warps();
-        device_.for_each_index(threads, move_lists<Cut::segment>{
-                                            place_.data(), unmoved_.data(), gaussian_of_.data(), capacity_,
-                                            threads, ranges_.data() + first_tile(listed), tiles_in(listed)});
+            strip_lists_.make(items, visible_.count(),
+                              {strip_->own, listed_rows(), tiles_across_, tiles_down_, capacity_,
+                               gaussian_of_.data(), ranges_.data(), required_.data()});
+        });
     }
 
     tile_order order() const {
@@ -486,14 +462,14 @@ class renderer {
 
     Device& device_;
     buffer<splat<Real>> splats_, near_, near_visible_;  ///< the last two for `depth_splats`
-    buffer<tile_box> boxes_, clipped_boxes_;
-    buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_, unmoved_;
-    buffer<std::uint64_t> required_, lengths_;
-    buffer<strip_place> place_;
+    buffer<tile_box> boxes_;
+    buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_;
+    buffer<std::uint64_t> required_;
     buffer<tile_range> ranges_;
     buffer<Real> render_, transmittance_, checkpoints_;
-    visible_splats<Device, Real> visible_;  ///< with a strip
-    gradient_sums<Device, Real> sums_;      // knob: renderer_members
+    visible_splats<Device, Real> visible_;  ///< with a strip, like the next
+    strip_lists<Device, Cut::segment> strip_lists_;
+    gradient_sums<Device, Real> sums_;  // knob: renderer_members
     buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
     buffer<unsigned long long> work_;
     buffer<unsigned long long> pairs_;  ///< one counter for colors, and an unused one for depths

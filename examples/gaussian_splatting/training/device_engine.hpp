@@ -24,6 +24,7 @@
 #include "engine_memory.hpp"
 #include "engine_parts.hpp"
 #include "list_sizer.hpp"
+#include "rank_division.hpp"
 #include "refine_pose.hpp"
 #include "row_work.hpp"
 #include "step_monitor.hpp"
@@ -53,7 +54,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
           lists_(device_),
           row_work_(device_),
           monitor_(device_),
-          gather_(device_, shares_) {
+          division_(device_, trained_, seen_),
+          gather_(device_, division_.shares()) {
         profiler_ = this;
         state_ = this;
         cameras_ = this;
@@ -79,12 +81,12 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         begin_generation(model.count());
         lists_.reset(views_.count());
         device_.wait();
-        is_complete_ = true;
+        division_.reset();
         steps_ = 0;
     }
 
     gaussians get_model() override {
-        update_gaussians();
+        division_.update();
         gaussians model = trained_.get_values(device_, count_, sh_degree_);
         model.antialiased = effects_.antialiasing;
         features_.get_model(model);
@@ -98,14 +100,14 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
 
     void reserve(int downscales) override {
         if (static_cast<std::size_t>(downscales) != level_) set_level(static_cast<std::size_t>(downscales));
-        divide_gaussians();
+        division_.divide(count_);
         set_strip(trained_.shares ? std::optional<raster::view_strip>(raster::view_strip{}) : std::nullopt,
                   false);
         lists_.reserve(renderer_, trained_.values.read(), count_, views_.train(level_));
     }
 
     void step(const step_plan& plan) override {
-        divide_gaussians();
+        division_.divide(count_);
         trained_.require_memory(device_, count_, sh_degree_);
         const photo& shot = views_.train(level_)[plan.view];
         const camera seen = features_.seen_by(plan.view, shot.camera);
@@ -121,37 +123,32 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         lists_.was_noted(plan.view, count_);
         if (strip) {
             row_work_.keep(plan.view, renderer_.row_work());
-            shares_.note(renderer_.visible().drawn(), count_, device_.ranks().count());
+            division_.note_step(renderer_.visible().drawn(), count_);
         }
-        is_complete_ = !strip;
         if (views_.cache() != nullptr) views_.cache()->upload_ahead();
     }
 
     std::uint64_t densify(int iteration) override {
-        update_gaussians();
-        shares_.balance();
+        division_.update();
+        division_.balance();
         auto views = drawn(views_.train(level_));
-        const std::size_t most = growth_limit();
+        const std::size_t most = largest_count();
         const densify_report report =
             strategy_->run(iteration, {in_training(), seen_.data(), gather_, views, most});
         begin_generation(report.count);
-        move_gaussians();
+        division_.move(count_, sh_degree_, gather_);
         lacks_memory_ = report.count >= most && !move_sh_to_host();
         return report.without_gradient;
     }
 
     void adjust(int iteration) override {
         strategy_->adjust(iteration, in_training());
-        is_complete_ = is_complete_ && !trained_.shares;
+        division_.note_change();
     }
 
     step_report take_report() override {
         row_work_.take(strips_);
-        if (shares_.are_uneven()) {
-            update_gaussians();
-            shares_.balance();
-            move_gaussians();
-        }
+        division_.move_if_uneven(count_, sh_degree_, gather_);
         const std::uint64_t skipped = monitor_.skipped();
         const auto sums = loss_->sums();
         device_.sum_over_ranks(sums.data(), sums.size());
@@ -167,7 +164,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     }
 
     void prepare_renders() override {
-        update_gaussians();
+        division_.update();
         trained_.undivide_values(device_);
     }
 
@@ -211,7 +208,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         }
         std::size_t prune(double change) override {
             if (on_.count_ > 0 && on_.sh_degree_ > 0) {
-                on_.update_gaussians();
+                on_.division_.update();
                 on_.trained_.require_memory(on_.device_, on_.count_, on_.sh_degree_);
                 auto views = on_.drawn(on_.views_.smallest());
                 sh_pruner<Device>(on_.device_, on_.gather_)
@@ -265,7 +262,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     std::size_t free_device_bytes() const override { return device_.free_bytes(); }
     device::memory_forecast forecast(std::size_t gaussians, int sh_degree) const override {
         device::memory_forecast all =
-            forecast_of_gaussians<Device>(renderer_, count_, gaussians, sh_degree, setup_);
+            forecast_of_gaussians<Device>(renderer_, count_, gaussians, sh_degree, setup_, division_.ranks());
         all.photos = views_.photo_bytes();
         all.others += views_.most_pixels() * bytes_per_pixel<Device, renderer_type>();
         return all;
@@ -286,22 +283,13 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         setup_.storage = next;
         return true;
     }
-    /// Returns the largest number of Gaussians for which the limit of memory suffices.
-    std::size_t growth_limit() {
-        std::uint64_t limit = own_growth_limit();
+    /// Returns the largest number of Gaussians for which the limit of memory suffices, in all ranks.
+    std::size_t largest_count() {
+        std::uint64_t limit =
+            growth_limit(count_, setup_.facts.max_device_bytes, device_.used_bytes() - bytes_apart_,
+                         [&](std::size_t gaussians) { return forecast(gaussians, sh_degree_).total(); });
         device_.ranks().minimum(&limit, 1);
         return limit;
-    }
-    std::uint64_t own_growth_limit() const {
-        if (setup_.facts.max_device_bytes == 0) return std::numeric_limits<std::uint64_t>::max();
-        const std::uint64_t one = std::max<std::uint64_t>(
-            (forecast(2 * count_, sh_degree_).total() - forecast(count_, sh_degree_).total()) /
-                std::max<std::size_t>(count_, 1),
-            1);
-        const std::uint64_t in_use = std::max<std::uint64_t>(device_.used_bytes() - bytes_apart_,
-                                                             forecast(count_, sh_degree_).total());
-        if (in_use >= setup_.facts.max_device_bytes) return count_;
-        return count_ + (setup_.facts.max_device_bytes - in_use) / one;
     }
 
     void exchange(state_archive& archive) override {
@@ -310,14 +298,12 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         archive.exchange("sh_degree", sh_degree_);
         archive.exchange("steps", steps_);
         if (archive.loads()) {
-            if (device_.ranks().count() > 1)
-                trained_.divide(device_, shares_.of(count_, device_.ranks().count()));
+            division_.divide_for_loading(count_);
         } else {
-            update_gaussians();
+            division_.update();
             trained_.require_memory(device_, count_, sh_degree_);
         }
         trained_.exchange(archive, device_);
-        is_complete_ = true;
         exchange_buffer(archive, device_, "statistics", seen_);
         if (sh_degree_ < 0 || sh_degree_ > 3 || !trained_.fits(count_, sh_degree_) || seen_.size() != count_)
             throw error("the checkpoint has arrays that do not fit its number of Gaussians");
@@ -388,27 +374,6 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         }
         renderer_.set_strip(strip);
     }
-    /// Divides the Gaussians if there are several ranks.
-    void divide_gaussians() {
-        const int ranks = device_.ranks().count();
-        if (ranks > 1 && !trained_.values.is_divided())
-            trained_.divide(device_, trained_.shares.value_or(shares_.of(count_, ranks)));
-    }
-    /// Gives all ranks what the others have learned about their Gaussians, except what they divide.
-    void update_gaussians() {
-        if (is_complete_) return;
-        trained_.update_values(device_);
-        const ranks::shared_array array[] = {ranks::shared_array::of(seen_.data(), block_length, count_)};
-        device_.gather(*trained_.shares, array);
-        is_complete_ = true;
-    }
-    /// Moves the Gaussians to the ranks that `shares_` gives them. Precondition: `update_gaussians`.
-    void move_gaussians() {
-        if (!trained_.shares || *trained_.shares == shares_.of(count_, device_.ranks().count())) return;
-        gather_.keep_all(count_);
-        gather_.run(trained_, count_, trained_.values.gaussians_with_sh(), sh_degree_);
-    }
-
     trained_gaussians<Device> in_training() {
         trained_.require_memory(device_, count_, sh_degree_);
         return {device_,    trained_,         count_,        trained_.own(device_, count_),
@@ -511,7 +476,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     view_strips strips_;
     row_work<Device> row_work_;
     step_monitor<Device> monitor_;
-    gaussian_shares shares_;
+    rank_division<Device> division_;
     parameter_gather<Device> gather_;
     std::unique_ptr<loss<float>> loss_;
     std::unique_ptr<strategy<Device>> strategy_;
@@ -522,7 +487,6 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     int sh_degree_ = 0;
     effect_set effects_;
     std::uint32_t steps_ = 0;
-    bool is_complete_ = true;  ///< whether this rank has all that `update_gaussians` gives it
     std::uint64_t drawn_pairs_ = 0, pairs_of_others_ = 0;
     std::optional<renderer_type> apart_;  ///< see `render_options::separate_memory`
     std::size_t bytes_apart_ = 0;         ///< device memory that such renders have allocated

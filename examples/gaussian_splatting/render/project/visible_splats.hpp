@@ -183,6 +183,14 @@ class visible_splats {
     /// The number of splats that ranks have sent to others.
     std::size_t moved() const { return windows_.moved(); }
 
+    /// The size of all arrays, with sums for the splats that this rank lists.
+    std::size_t bytes() const {
+        constexpr std::size_t of_each = sizeof(splat<Real>) + sizeof(tile_box) + sizeof(std::uint32_t);
+        return count() * (of_each + sizeof(std::uint32_t) + sizeof(tile_box) + record_stride * sizeof(Real)) +
+               sent_boxes_.size() * of_each + returned_.size() + marks_.size() * sizeof(std::uint32_t) +
+               places_.size() * sizeof(std::uint64_t);
+    }
+
     /// The values of each splat: see `project`.
     buffer<splat<Real>> splats;
     buffer<tile_box> boxes;
