@@ -46,7 +46,6 @@ SPLAT, COUNT, LENGTH, SUMS = 60, 8, 8, 12  # bytes of a splat, of a number of sp
 SUM_BYTES = {"native": 4, "fixed": 8}
 CALLS = 5  # exchanges of a step: numbers of splats, splats, lists, gradients, and the agreement to go on
 GAUSSIAN = 4 * 59  # bytes of a Gaussian's gradients with SH degree 3
-GATHERED = 7.2  # bytes of a Gaussian that a step gathers with SH degree 3: 720 for each report, after 100 steps
 TILE = 16
 ROWS = 3  # tile rows in which a border between strips can lie so that both strips list a splat, if unmeasured
 # Colors of Okabe and Ito, which color-blind readers can tell apart.
@@ -198,7 +197,7 @@ class Model:
 
     def __init__(self, visible, rows, gathered, sum_bytes):
         """`visible`: the share of the Gaussians that a view shows. `rows`: see ROWS, by pixels and Gaussians of the
-        measured scenes. `gathered`: the bytes of a Gaussian, per step, that the devices gather for reports."""
+        measured scenes. `gathered`: the bytes of a Gaussian, per step, that the devices gather between steps."""
         self.visible, self.rows, self.gathered, self.sum_bytes = visible, rows, gathered, sum_bytes
         self.terms, self.largest_error = [0.0] * len(self.NAMES), 0.0
 
@@ -211,7 +210,7 @@ class Model:
         if not shared and None in (bandwidth, latency, visible):
             raise SystemExit("error: the file has no training with several ranks, which show the cost of exchanges: "
                              "measure with --ranks 1 2, or give --bandwidth, --latency and --visible")
-        gathered, rows = GATHERED, {}
+        gathered, rows = 0, {}
         for run in shared:
             rows.setdefault((run["pixels"], run["gaussians"]), []).append(rows_of_splats(run))
         if shared:
