@@ -93,7 +93,10 @@ class parameter_gather {
 
   public:
     /// `shares` divides the new Gaussians among the ranks, and must exist as long as this object.
-    parameter_gather(Device& device, const gaussian_shares& shares) : device_(device), shares_(shares) {}
+    /// `least_piece`: elements of an array that ranks gather at once; smaller pieces waste time.
+    parameter_gather(Device& device, const gaussian_shares& shares,
+                     std::size_t least_piece = std::size_t{1} << 22)
+        : device_(device), shares_(shares), least_piece_(least_piece) {}
 
     /// Returns the size of the memory for each Gaussian of an SH degree, if this number of ranks divides
     /// them.
@@ -188,8 +191,9 @@ class parameter_gather {
         const std::size_t elements = memory.elements(p);
         if (!memory.is_divided(p)) return f(ranks::share{0, elements}, memory[p].data());
         const std::size_t block = block_length * memory.width(p),
-                          length = std::max<std::size_t>(elements / block / pieces, least_piece / block + 1) *
-                                   block;
+                          length =
+                              std::max<std::size_t>(elements / block / pieces, least_piece_ / block + 1) *
+                              block;
         auto& copy = this->piece(T{});
         for (std::size_t first = 0; first == 0 || first < elements; first += length) {
             const ranks::share piece{first, std::min(first + length, elements)};
@@ -211,10 +215,10 @@ class parameter_gather {
 
     /// The number of pieces of an array that is gathered from other ranks, unless it is small.
     static constexpr std::size_t pieces = 8;
-    static constexpr std::size_t least_piece = std::size_t{1} << 22;  ///< elements; smaller ones waste time
 
     Device& device_;
     const gaussian_shares& shares_;
+    std::size_t least_piece_;
     buffer<std::uint32_t> origin_;
     buffer<std::uint32_t> births_;  ///< each a `birth`
     buffer<float> spare_, piece_;   ///< for new elements, and for a piece of an array of floats

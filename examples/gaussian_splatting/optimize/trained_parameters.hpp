@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "../checkpoint/exchange_buffer.hpp"
 #include "../device/device.hpp"
 #include "../model/parameter_memory.hpp"
 #include "../render/project/shown_blocks.hpp"

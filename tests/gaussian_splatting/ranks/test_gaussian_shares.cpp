@@ -85,3 +85,14 @@ TEST_CASE("shares of Gaussians: views that show none leave even shares") {
     shares.balance();
     CHECK(shares.of(6400, 2).of(0) == share{0, 3200});
 }
+
+TEST_CASE("shares of Gaussians: they are uneven if one rank has clearly more work") {
+    gaussian_shares shares;
+    CHECK_FALSE(shares.are_uneven());
+    shares.note(gs::ranks::shares(std::vector<std::size_t>{3200, 3100}), 6400, 2);
+    CHECK_FALSE(shares.are_uneven());
+    shares.note(gs::ranks::shares(std::vector<std::size_t>{3200, 1000}), 6400, 2);
+    CHECK(shares.are_uneven());
+    shares.balance();
+    CHECK_FALSE(shares.are_uneven());
+}

@@ -65,3 +65,15 @@ TEST_CASE("shares: parts of arrays with several values per item, padding, or few
     CHECK(array.part(all, 1).size() == 38 * 4);
     CHECK(array.part(all, 1).data() == reinterpret_cast<std::byte*>(values.data() + 32));
 }
+
+TEST_CASE("shares: the parts of a piece of an array follow each other from its beginning") {
+    const shares all(70, 32, 2);  // blocks 0 and 1 to 2
+    const std::size_t size = 3 * 96;
+    CHECK(all.within({0, size}, 96, size).of(1) == share{96, 288});
+    CHECK(all.within({48, 144}, 96, size).of(0) == share{0, 48});
+    CHECK(all.within({48, 144}, 96, size).of(1) == share{48, 96});
+    CHECK(all.within({0, 96}, 96, size).of(1) == share{96, 96});
+    CHECK(all.within({192, 288}, 96, size).of(0) == share{0, 0});
+    CHECK(all.within({192, 288}, 96, size).of(1) == share{0, 96});
+    CHECK(all.within({0, 0}, 96, 0).of(1) == share{0, 0});
+}
