@@ -160,8 +160,11 @@ class parameter_gather {
         device_.copy(all.last_step.data(), spare_steps_.data(), count);
     }
 
-    /// Frees temporary memory. Call it if another `run` is unlikely.
+    /// Frees all memory. Call it if another `run` is unlikely.
     void release() {
+        origin_ = {};
+        births_ = {};
+        spare_steps_ = {};
         spare_ = {};
         spare_words_ = {};
         piece_ = {};

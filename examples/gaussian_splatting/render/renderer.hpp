@@ -51,6 +51,8 @@ class renderer {
     /// differ. A rank projects its own share of the Gaussians, needs the parameters of these only, and passes
     /// only their gradients to the sink.
     void set_strip(const std::optional<view_strip>& strip) { strip_ = strip; }
+    /// Frees memory that only strips need, until the next draw of one.
+    void release_strips() { visible_.release(); }
 
     /// Counts the instances (Gaussian, tile) of a whole view: see `instances`.
     void measure(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {

@@ -82,6 +82,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         lists_.reset(views_.count());
         device_.wait();
         division_.reset();
+        gather_.release();
+        renderer_.release_strips();
         steps_ = 0;
     }
 

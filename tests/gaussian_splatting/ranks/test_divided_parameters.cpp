@@ -21,7 +21,7 @@ using parameters = gs::train::trained_parameters<cpu>;
 
 namespace {
 
-constexpr std::size_t count = 1000, with_sh = 640;
+constexpr std::size_t gaussians_before = 1000, with_sh_before = 640;
 
 std::uint32_t number(std::size_t seed, std::size_t i) {
     return static_cast<std::uint32_t>((i + 1) * 2654435761u + seed * 40503u) >> 8;
@@ -29,7 +29,7 @@ std::uint32_t number(std::size_t seed, std::size_t i) {
 
 template <class Memory>
 void fill(Memory& memory, std::size_t seed) {
-    memory.resize(count, with_sh, 3);
+    memory.resize(gaussians_before, with_sh_before, 3);
     for (std::size_t p = 0; p < gs::parameter_count; ++p)
         for (std::size_t i = 0; i < memory[p].size(); ++i)
             memory[p].data()[i] = static_cast<float>(number(seed + p, i));
@@ -52,10 +52,10 @@ void change(communicator& ranks, const fs::path& folder) {
     parameters all;
     std::size_t seed = 0;
     for (auto* memory : {&all.values, &all.first, &all.second}) fill(*memory, 10 * seed++);
-    all.last_step.resize(count);
-    for (std::size_t i = 0; i < count; ++i) all.last_step.data()[i] = number(7, i);
+    all.last_step.resize(gaussians_before);
+    for (std::size_t i = 0; i < gaussians_before; ++i) all.last_step.data()[i] = number(7, i);
     gs::gaussian_shares shares;
-    if (ranks.count() > 1) all.divide(d, shares.of(count, ranks.count()));
+    if (ranks.count() > 1) all.divide(d, shares.of(gaussians_before, ranks.count()));
     const auto write = [&](const std::string& name) {
         std::ofstream(folder / (name + std::to_string(ranks.rank())), std::ios::binary) << text_of(all, d);
     };
@@ -66,7 +66,7 @@ void change(communicator& ranks, const fs::path& folder) {
     constexpr std::size_t more = 1500, more_with_sh = 768;
     gather.reserve(more);
     for (std::size_t i = 0; i < more; ++i) {
-        gather.origins()[i] = number(3, i) % count;
+        gather.origins()[i] = number(3, i) % gaussians_before;
         gather.births()[i] = static_cast<birth>(number(4, i) % 4);
     }
     gather.run(all, more, more_with_sh, 3);

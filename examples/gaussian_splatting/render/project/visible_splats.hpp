@@ -128,6 +128,20 @@ class visible_splats {
   public:
     explicit visible_splats(Device& device) : device_(device) {}
 
+    /// Frees the memory, until the next `collect`.
+    void release() {
+        splats = {};
+        boxes = {};
+        depths = {};
+        order = {};
+        marks_ = {};
+        places_ = {};
+        exchanged_ = {};
+        sent_boxes_ = {};
+        sent_depths_ = {};
+        sums_ = {};
+    }
+
     /// Collects the splats of this rank's strip. The arrays have a value for each of the `own` Gaussians of
     /// this rank: see `project`. `rows`: the tile rows that each rank lists. All ranks must call this. Waits
     /// for the device.
@@ -143,29 +157,29 @@ class visible_splats {
         device_.for_each_index(ranks + 1, count_marks{places_.data(), own, counts_.data()});
         exchange_counts(ranks);
 
-        device_.for_each_index(
-            own, fill_windows<splat<Real>, tile_box, std::uint32_t>{
-                     filled(own_splats, sent_splats_, splats), filled(own_boxes, sent_boxes_, boxes),
-                     filled(own_depths, sent_depths_, depths), places()});
+        device_.for_each_index(own, fill_windows<splat<Real>, tile_box, std::uint32_t>{
+                                        filled(own_splats, exchanged<splat<Real>>(1), splats),
+                                        filled(own_boxes, sent(sent_boxes_), boxes),
+                                        filled(own_depths, sent(sent_depths_), depths), places()});
         order.resize(count());
         device_.for_each_index(count(), count_up{order.data()});
-        const ranks::window_array arrays[] = {array(sent_splats_, splats), array(sent_boxes_, boxes),
-                                              array(sent_depths_, depths)};
+        const ranks::window_array arrays[] = {array(exchanged<splat<Real>>(1), splats),
+                                              array(sent_boxes_.data(), boxes),
+                                              array(sent_depths_.data(), depths)};
         device_.exchange(windows_, arrays);
     }
     /// Collects other splats of the same Gaussians. All ranks must call this.
     void collect(const splat<Real>* own_splats, buffer<splat<Real>>& to) {
-        device_.for_each_index(own_,
-                               fill_windows<splat<Real>>{filled(own_splats, sent_splats_, to), places()});
-        const ranks::window_array arrays[] = {array(sent_splats_, to)};
+        splat<Real>* const sent = exchanged<splat<Real>>(1);
+        device_.for_each_index(own_, fill_windows<splat<Real>>{filled(own_splats, sent, to), places()});
+        const ranks::window_array arrays[] = {array(sent, to)};
         device_.exchange(windows_, arrays);
     }
     /// Returns the sums of each drawn Gaussian of this rank, from those that all ranks have for the splats
     /// they list. Those of other Gaussians are unspecified. All ranks must call this.
     template <class T, class Round>
     const buffer<Real>& add_ranks(const T* of_listed, const Round& round) {
-        returned_.resize(windows_.sent_by(rank()).items() * record_stride * sizeof(T));
-        T* const returned = reinterpret_cast<T*>(returned_.data());
+        T* const returned = exchanged<T>(record_stride);
         const ranks::window_array arrays[] = {ranks::window_array::of(of_listed, returned, record_stride)};
         device_.exchange(windows_.reversed(), arrays);
         sums_.resize(own_ * record_stride);
@@ -187,8 +201,8 @@ class visible_splats {
     std::size_t bytes() const {
         constexpr std::size_t of_each = sizeof(splat<Real>) + sizeof(tile_box) + sizeof(std::uint32_t);
         return count() * (of_each + sizeof(std::uint32_t) + sizeof(tile_box) + record_stride * sizeof(Real)) +
-               sent_boxes_.size() * of_each + returned_.size() + marks_.size() * sizeof(std::uint32_t) +
-               places_.size() * sizeof(std::uint64_t);
+               sent_boxes_.size() * (of_each - sizeof(splat<Real>)) + exchanged_.size() +
+               marks_.size() * sizeof(std::uint32_t) + places_.size() * sizeof(std::uint64_t);
     }
 
     /// The values of each splat: see `project`.
@@ -224,15 +238,27 @@ class visible_splats {
                 static_cast<unsigned>(windows_.ranks()),
                 kept_in_sent().first};
     }
+    /// Reserves a value for each splat that this rank sends, or several values of memory that they share.
+    /// @{
     template <class T>
-    filled_array<T> filled(const T* from, buffer<T>& to_others, buffer<T>& to) const {
-        to_others.resize(windows_.sent_by(rank()).items());
-        to.resize(count());
-        return {from, to_others.data(), to.data() + kept_in_received().first};
+    T* sent(buffer<T>& values) const {
+        values.resize(windows_.sent_by(rank()).items());
+        return values.data();
     }
     template <class T>
-    static ranks::window_array array(const buffer<T>& from, const buffer<T>& to) {
-        return ranks::window_array::of(from.data(), to.data(), 1);
+    T* exchanged(std::size_t values) {
+        exchanged_.resize(windows_.sent_by(rank()).items() * values * sizeof(T));
+        return reinterpret_cast<T*>(exchanged_.data());
+    }
+    /// @}
+    template <class T>
+    filled_array<T> filled(const T* from, T* to_others, buffer<T>& to) const {
+        to.resize(count());
+        return {from, to_others, to.data() + kept_in_received().first};
+    }
+    template <class T>
+    static ranks::window_array array(const T* from, const buffer<T>& to) {
+        return ranks::window_array::of(from, to.data(), 1);
     }
 
     Device& device_;
@@ -243,9 +269,8 @@ class visible_splats {
     buffer<std::uint64_t> places_, counts_;
     typename Device::template host_buffer<std::uint64_t> counts_on_host_;
     typename Device::transfer counted_;
-    buffer<splat<Real>> sent_splats_;
     buffer<tile_box> sent_boxes_;
-    buffer<char> returned_;  ///< sums that other ranks have sent back
+    buffer<char> exchanged_;  ///< splats for other ranks, and later the sums that these send back
     buffer<Real> sums_;
 };
 
