@@ -117,6 +117,20 @@ TEST_CASE("ranks: any number of them writes the same model, with another strateg
                         "--eval", "--test-iterations", "60"});
 }
 
+TEST_CASE("long: ranks: they score views together, and write the same model") {
+    const temporary_folder folder;
+    for (int ranks = 1; ranks <= 3; ++ranks) {
+        CAPTURE(ranks);
+        const fs::path output = folder / std::to_string(ranks);
+        check_success(short_training("synthetic:spheres,views=8,points=800", output, ranks, 32) +
+                          words{"-i", "1500", "--max-cap", "1500", "--strategy", "error"},
+                      "2");
+        CHECK(final_model(output) == final_model(folder / "1"));
+        const auto metrics = read_json(output / "metrics.json");
+        if (ranks > 1) CHECK(metrics.at("exchange").at("bytes").at("scores") > 0);
+    }
+}
+
 TEST_CASE("ranks: one has no Gaussians if there are few, and the poses and models of all are the same") {
     const temporary_folder folder;
     const auto output = [&](int ranks) { return folder / std::to_string(ranks); };
