@@ -18,9 +18,8 @@ pages::marked_photo shown_photo(const view& of, std::string label, std::string n
             .marks = std::move(marks)};
 }
 
-pages::mark ring_around(const observation& seen, const scene& of, int color) {
-    const auto place = of.train[seen.view].camera.see(of.points[seen.point].position).value();
-    return {.left = place.x, .top = place.y, .color = color};
+pages::mark ring_around(const observation& seen, int color) {
+    return {.left = seen.place.x, .top = seen.place.y, .color = color};
 }
 
 pages::curve curve_of_photos(std::string label, const std::vector<double>& values) {

@@ -26,7 +26,7 @@ pages::marked_photo shown_photo(const view& of, std::string label, std::string n
                                 std::vector<pages::mark> marks = {});
 
 /// Returns a ring around an observed point in its photo.
-pages::mark ring_around(const observation& seen, const scene& of, int color = 0);
+pages::mark ring_around(const observation& seen, int color = 0);
 
 /// Returns a curve of one value per photo. Values that are not finite are left out.
 pages::curve curve_of_photos(std::string label, const std::vector<double>& values);

@@ -37,10 +37,9 @@ lens_samples samples_of(const scene& of, observed_points& points) {
         const std::size_t first = made.square_radius.size();
         for (const observation& o : seen) {
             const camera& c = of.train[o.view].camera;
-            const auto place = c.see(of.points[o.point].position).value();
             made.groups.constant.push_back(o.view);
-            made.square_radius.push_back(square_radius(c, place.x, place.y));
-            const std::size_t own_side = side_of(place.x - c.cx, place.y - c.cy);
+            made.square_radius.push_back(square_radius(c, o.place.x, o.place.y));
+            const std::size_t own_side = side_of(o.place.x - c.cx, o.place.y - c.cy);
             for (std::size_t side = 0; side < 4; ++side)
                 made.by_side[side].push_back(side == own_side ? made.square_radius.back() : 0);
             std::array<double, 3> direction{};
@@ -121,8 +120,7 @@ void remove_falloff(const scene& of, const lens_falloff& falloff, observed_point
         for (observation& o : seen) {
             const camera& c = of.train[o.view].camera;
             if (c.is_panorama) continue;
-            const auto place = c.see(of.points[o.point].position).value();
-            const auto factors = falloff.at(square_radius(c, place.x, place.y));
+            const auto factors = falloff.at(square_radius(c, o.place.x, o.place.y));
             for (int k = 0; k < 3; ++k)
                 o.color[k] /= static_cast<float>(factors[static_cast<std::size_t>(k)]);
         }

@@ -118,17 +118,14 @@ std::vector<place_in_photo> points_in_sight(const camera& camera, const std::vec
 point_observer::point_observer(const scene& of)
     : scene_(of), step_(of.points.size() / most_points + 1), by_view_(of.train.size()) {}
 
-void point_observer::observe(std::size_t v, const image& photo, const camera& taken_with,
-                             const glm::dvec2& shift) {
-    for (place_in_photo p : points_in_sight(taken_with, scene_.points)) {
+void point_observer::observe(std::size_t v, const image& photo, const camera& taken_with) {
+    for (const place_in_photo& p : points_in_sight(taken_with, scene_.points)) {
         if (p.point % step_ != 0) continue;
-        p.x += shift.x;
-        p.y += shift.y;
-        if (!is_inside(taken_with, p.x, p.y)) continue;
         std::optional<observation> o = look(photo, p);
         if (!o) continue;
         o->view = static_cast<std::uint32_t>(v);
         o->point = p.point;
+        o->place = {p.x, p.y};
         o->direction = glm::vec3(glm::normalize(scene_.points[p.point].position - taken_with.center()));
         o->footprint = static_cast<float>(p.depth / std::sqrt(taken_with.fx * taken_with.fy));
         by_view_[v].emplace_back(p.point / static_cast<std::uint32_t>(step_), *o);
@@ -142,14 +139,18 @@ observed_points point_observer::observations() const {
     return by_point;
 }
 
-observed_points observe_points(const scene& of, std::span<const photo_shift> shifts) {
+observed_points observe_points(const scene& of, std::span<const camera> cameras) {
     point_observer observer(of);
     for_each_in_parallel(of.train.size(), [&](std::size_t v) {
-        const bool is_shifted = !shifts.empty() && shifts[v].is_judged;
-        observer.observe(v, view_photo(of.train[v]).pixels(), of.train[v].camera,
-                         is_shifted ? shifts[v].pixels : glm::dvec2(0));
+        observer.observe(v, view_photo(of.train[v]).pixels(), cameras[v]);
     });
     return observer.observations();
+}
+
+observed_points observe_points(const scene& of) {
+    std::vector<camera> cameras;
+    for (const view& v : of.train) cameras.push_back(v.camera);
+    return observe_points(of, cameras);
 }
 
 }  // namespace gs

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "photo_shifts.hpp"
 #include "scene.hpp"
 
 namespace gs {
@@ -19,6 +18,7 @@ namespace gs {
 struct observation {
     std::uint32_t view = 0;
     glm::vec3 color{0};       ///< mean of the 3×3 pixels around it, as displayed, in [0, 1]
+    glm::dvec2 place{0};      ///< in the photo, in pixels: see `camera::image_point`
     glm::vec3 direction{0};   ///< from the camera to the point, of length one
     float footprint = 0;      ///< width of a pixel at the point's depth, in units of the scene
     float roughness = 0;      ///< (brightest - darkest) / brightest of these pixels
@@ -50,10 +50,8 @@ class point_observer {
     /// The scene must outlive the object.
     explicit point_observer(const scene& of);
     /// Observes the points in the photo of a training view, or in an image that replaces it. `taken_with`:
-    /// the camera with its exact pose. The photo is shifted by this number of pixels. Several threads may
-    /// call it, for different views.
-    void observe(std::size_t view, const image& photo, const camera& taken_with,
-                 const glm::dvec2& shift = glm::dvec2(0));
+    /// the camera with its exact pose. Several threads may call it, for different views.
+    void observe(std::size_t view, const image& photo, const camera& taken_with);
     observed_points observations() const;
 
   private:
@@ -62,7 +60,9 @@ class point_observer {
     std::vector<std::vector<std::pair<std::uint32_t, observation>>> by_view_;
 };
 
-/// Returns the observations in all training photos: see `point_observer`. `shifts`: of each photo, or empty.
-observed_points observe_points(const scene& of, std::span<const photo_shift> shifts = {});
+/// Returns the observations in all training photos: see `point_observer`. `cameras`: of each photo.
+observed_points observe_points(const scene& of, std::span<const camera> cameras);
+/// Uses the cameras of the scene.
+observed_points observe_points(const scene& of);
 
 }  // namespace gs

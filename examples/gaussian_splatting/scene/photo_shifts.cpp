@@ -82,23 +82,33 @@ struct point_in_photo {
 class correlations {
   public:
     correlations(int radius, const std::vector<moments>& of_shifts) : radius_(radius) {
-        for (const moments& m : of_shifts) values_.push_back(m.correlation());
+        for (const moments& m : of_shifts) {
+            // The log-likelihood that brightness is linear in that of points, relative to none. A shift that
+            // moves points out of the photo's opaque part correlates fewer of them, maybe by chance.
+            const double r = std::clamp(m.correlation(), 0.0, 1 - 1e-9);
+            values_.push_back(-m.n * std::log1p(-r * r));
+        }
+        const auto best = static_cast<std::size_t>(std::ranges::max_element(values_) - values_.begin());
+        highest_ = of_shifts[best].correlation();
+        x_ = static_cast<int>(best) % across() - radius_;
+        y_ = static_cast<int>(best) / across() - radius_;
     }
     /// Returns the best shift. Interpolates between pixels.
     glm::dvec2 best() const {
-        const int across = 2 * radius_ + 1;
-        const int i = static_cast<int>(std::ranges::max_element(values_) - values_.begin());
-        const int x = i % across - radius_, y = i / across - radius_;
-        return {x + vertex(at(x - 1, y), at(x, y), at(x + 1, y)),
-                y + vertex(at(x, y - 1), at(x, y), at(x, y + 1))};
+        return {x_ + vertex(at(x_ - 1, y_), at(x_, y_), at(x_ + 1, y_)),
+                y_ + vertex(at(x_, y_ - 1), at(x_, y_), at(x_, y_ + 1))};
     }
-    double highest() const { return *std::ranges::max_element(values_); }
+    /// Returns whether all shifts around the best one are worse.
+    bool has_peak() const { return std::max(std::abs(x_), std::abs(y_)) < radius_; }
+    /// Returns the correlation of the best shift.
+    double highest() const { return highest_; }
 
   private:
+    int across() const { return 2 * radius_ + 1; }
     double at(int x, int y) const {
         x = std::clamp(x, -radius_, radius_);
         y = std::clamp(y, -radius_, radius_);
-        return values_[static_cast<std::size_t>((y + radius_) * (2 * radius_ + 1) + x + radius_)];
+        return values_[static_cast<std::size_t>((y + radius_) * across() + x + radius_)];
     }
     /// Returns the place of the vertex of a parabola through the values at -1, 0 and 1.
     static double vertex(double before, double middle, double after) {
@@ -106,13 +116,15 @@ class correlations {
         return curvature < 0 ? std::clamp((before - after) / (2 * curvature), -0.5, 0.5) : 0;
     }
 
-    int radius_;
+    int radius_, x_, y_;
+    double highest_;
     std::vector<double> values_;
 };
 
 /// Returns a sample of the points in sight whose surroundings are in the photo.
-std::vector<point_in_photo> points_to_compare(const scene& of, const camera& c, int radius) {
-    std::vector<place_in_photo> seen = points_in_sight(c, of.points);
+std::vector<point_in_photo> points_to_compare(const std::vector<colored_point>& all, const camera& c,
+                                              int radius) {
+    std::vector<place_in_photo> seen = points_in_sight(c, all);
     std::erase_if(seen, [&](const place_in_photo& p) {
         return p.x < radius + 1 || p.y < radius + 1 || p.x >= c.width - radius - 1 ||
                p.y >= c.height - radius - 1;
@@ -120,37 +132,11 @@ std::vector<point_in_photo> points_to_compare(const scene& of, const camera& c, 
     const std::size_t step = std::max<std::size_t>((seen.size() + most_compared - 1) / most_compared, 1);
     std::vector<point_in_photo> points;
     for (std::size_t i = 0; i < seen.size(); i += step) {
-        const auto& color = of.points[seen[i].point].color;
+        const auto& color = all[seen[i].point].color;
         points.push_back(
             {static_cast<int>(seen[i].x), static_cast<int>(seen[i].y), double(color.r + color.g + color.b)});
     }
     return points;
-}
-
-photo_shift shift_of(const scene& of, const view& v) {
-    const camera& c = v.camera;
-    const int radius = std::clamp(static_cast<int>(largest_shift * std::max(c.width, c.height)),
-                                  smallest_reach, largest_reach);
-    const std::vector<point_in_photo> points = points_to_compare(of, c, radius);
-    if (points.size() < photo_shifts::least_points) return {};
-    const view_photo photo(v);
-    const smooth_brightness light(photo.pixels());
-    std::array<std::vector<moments>, 2> halves;
-    std::vector<moments> all;
-    for (int dy = -radius; dy <= radius; ++dy)
-        for (int dx = -radius; dx <= radius; ++dx) {
-            std::array<moments, 2> sums;
-            for (std::size_t i = 0; i < points.size(); ++i) {
-                const float seen = light.at(points[i].x + dx, points[i].y + dy);
-                if (seen >= 0) sums[i % 2].add(points[i].brightness, static_cast<double>(seen));
-            }
-            for (std::size_t half = 0; half < 2; ++half) halves[half].push_back(sums[half]);
-            all.push_back(sums[0] + sums[1]);
-        }
-    const correlations whole(radius, all), first(radius, halves[0]), second(radius, halves[1]);
-    return {whole.highest() >= least_correlation && std::min(first.highest(), second.highest()) > 0 &&
-                glm::length(first.best() - second.best()) <= agreement,
-            whole.best()};
 }
 
 }  // namespace
@@ -166,12 +152,39 @@ double photo_shifts::median_shift() const {
     return lengths.empty() ? 0 : median(lengths);
 }
 
+photo_shift measure_shift(const std::vector<colored_point>& of, const camera& c, const image& photo) {
+    const int radius = std::clamp(static_cast<int>(largest_shift * std::max(c.width, c.height)),
+                                  smallest_reach, largest_reach);
+    const std::vector<point_in_photo> points = points_to_compare(of, c, radius);
+    if (points.size() < photo_shifts::least_points) return {};
+    const smooth_brightness light(photo);
+    std::array<std::vector<moments>, 2> halves;
+    std::vector<moments> all;
+    for (int dy = -radius; dy <= radius; ++dy)
+        for (int dx = -radius; dx <= radius; ++dx) {
+            std::array<moments, 2> sums;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                const float seen = light.at(points[i].x + dx, points[i].y + dy);
+                if (seen >= 0) sums[i % 2].add(points[i].brightness, static_cast<double>(seen));
+            }
+            for (std::size_t half = 0; half < 2; ++half) halves[half].push_back(sums[half]);
+            all.push_back(sums[0] + sums[1]);
+        }
+    const correlations whole(radius, all), first(radius, halves[0]), second(radius, halves[1]);
+    return {whole.has_peak() && whole.highest() >= least_correlation &&
+                std::min(first.highest(), second.highest()) > 0 &&
+                glm::length(first.best() - second.best()) <= agreement,
+            whole.best()};
+}
+
 photo_shifts measure_shifts(const scene& of, std::size_t most_photos) {
     photo_shifts found{std::vector<photo_shift>(of.train.size())};
     const std::size_t step = std::max<std::size_t>((of.train.size() + most_photos - 1) / most_photos, 1);
     found.examined = (of.train.size() + step - 1) / step;
-    for_each_in_parallel(found.examined,
-                         [&](std::size_t i) { found.photos[i * step] = shift_of(of, of.train[i * step]); });
+    for_each_in_parallel(found.examined, [&](std::size_t i) {
+        const view& v = of.train[i * step];
+        found.photos[i * step] = measure_shift(of.points, v.camera, view_photo(v).pixels());
+    });
     return found;
 }
 

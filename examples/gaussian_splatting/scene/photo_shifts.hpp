@@ -37,10 +37,14 @@ struct photo_shifts {
     bool are_clear() const { return are_decided() && median_shift() >= least_shift; }
 };
 
-/// Measures how far photos are shifted: by the shift with the largest correlation between the brightness of
-/// the points and that of the photo at their places. A small error of a camera's rotation shifts its whole
-/// photo; one of its position does so for points at about one distance. Exposure does not matter. Examines
-/// at most `most_photos`. Cost: decodes these, and takes up to ten milliseconds for each.
+/// Measures the shift of a photo: the one for which the brightness of the points and that of the photo at
+/// their places most likely depend on each other, by their correlation. Exposure does not matter. Cost: up to
+/// ten milliseconds.
+photo_shift measure_shift(const std::vector<colored_point>& points, const camera& c, const image& photo);
+
+/// Measures how far photos are shifted: see `measure_shift`. A small error of a camera's rotation shifts its
+/// whole photo; one of its position does so for points at about one distance. Examines at most `most_photos`.
+/// Cost: decodes these, and takes up to ten milliseconds for each.
 photo_shifts measure_shifts(const scene& of, std::size_t most_photos);
 
 }  // namespace gs

@@ -33,19 +33,33 @@ const photo_shifts& scene_statistics::shifts() const {
     return *shifts_;
 }
 
+const std::vector<corrected_camera>& scene_statistics::cameras() const {
+    if (cameras_) return *cameras_;
+    if (shifts().are_clear()) {
+        const bool has_all = shifts().examined == scene_.train.size();
+        cameras_ = correct_poses(scene_, has_all ? shifts() : measure_shifts(scene_, scene_.train.size()));
+    } else {
+        cameras_.emplace();
+        for (const view& v : scene_.train) cameras_->push_back({v.camera});
+    }
+    return *cameras_;
+}
+
 const observed_points& scene_statistics::points() const {
     if (points_) return *points_;
-    if (!shifts().are_clear())
-        points_ = observe_points(scene_);
-    else if (shifts().examined == scene_.train.size())
-        points_ = observe_points(scene_, shifts().photos);
-    else
-        points_ = observe_points(scene_, measure_shifts(scene_, scene_.train.size()).photos);
+    std::vector<camera> poses;
+    for (const corrected_camera& c : cameras()) poses.push_back(c.camera);
+    points_ = observe_points(scene_, poses);
     return *points_;
 }
 
 const observed_points& scene_statistics::smooth_points() const {
-    if (!smooth_) smooth_ = smooth_part(points());
+    if (smooth_) return *smooth_;
+    observed_points aligned = points();
+    if (cameras_)
+        for (auto& seen : aligned)
+            std::erase_if(seen, [&](const observation& o) { return !(*cameras_)[o.view].is_aligned; });
+    smooth_ = smooth_part(std::move(aligned));
     return *smooth_;
 }
 

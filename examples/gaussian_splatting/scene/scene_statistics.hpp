@@ -11,6 +11,7 @@
 #include "lens_falloff.hpp"
 #include "photo_brightness.hpp"
 #include "photo_shifts.hpp"
+#include "pose_correction.hpp"
 #include "scene.hpp"
 #include "tone_response.hpp"
 
@@ -30,10 +31,12 @@ class scene_statistics {
     const gs::scene& scene() const { return scene_; }
     /// Returns the shifts of at most 60 photos: see `measure_shifts`.
     const photo_shifts& shifts() const;
-    /// Returns the observations of each point: see `observe_points`. If photos are clearly shifted, these are
-    /// at the shifted places.
+    /// Returns the camera of each training photo: that of the scene, or if photos are clearly shifted, a
+    /// corrected one: see `correct_poses`.
+    const std::vector<corrected_camera>& cameras() const;
+    /// Returns the observations of each point from these cameras: see `observe_points`.
     const observed_points& points() const;
-    /// Returns the observations in smooth parts of the photos, of points that keep at least
+    /// Returns the observations in smooth parts of the photos that are aligned, of points that keep at least
     /// `least_photos_of_point` of them. In rough parts, the color depends too much on the exact
     /// position of the point. The threshold follows the noise, estimated from the smoothest tenth.
     const observed_points& smooth_points() const;
@@ -56,6 +59,7 @@ class scene_statistics {
 
     const gs::scene& scene_;
     mutable std::optional<photo_shifts> shifts_;
+    mutable std::optional<std::vector<corrected_camera>> cameras_;
     mutable std::optional<observed_points> points_, smooth_;
     mutable std::optional<photo_brightness> brightness_, brightness_of_smooth_;
     mutable std::optional<lens_falloff> falloff_;

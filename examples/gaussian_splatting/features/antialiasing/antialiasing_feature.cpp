@@ -65,10 +65,10 @@ explanation antialiasing_feature::explain(const scene_statistics& statistics, co
     const scene& scene = statistics.scene();
     const std::string note =
         text("The ring marks a typical point; its sizes differ by the factor %.1f.", median.ratio());
-    made.photos.push_back(shown_photo(scene.train[median.largest.view], "Near view", note,
-                                      {ring_around(median.largest, scene)}));
-    made.photos.push_back(shown_photo(scene.train[median.smallest.view], "Far view", note,
-                                      {ring_around(median.smallest, scene)}));
+    made.photos.push_back(
+        shown_photo(scene.train[median.largest.view], "Near view", note, {ring_around(median.largest)}));
+    made.photos.push_back(
+        shown_photo(scene.train[median.smallest.view], "Far view", note, {ring_around(median.smallest)}));
     return made;
 }
 

@@ -26,7 +26,6 @@ constexpr double most_differing = 0.6;  ///< share of the points in a photo
 /// A point in a photo.
 struct compared_point {
     observation seen;
-    double x, y;
     bool differs;
 };
 
@@ -81,7 +80,7 @@ hidden_points hidden_in(const std::vector<compared_point>& points) {
         if (!p.differs) continue;
         by_distance.clear();
         for (const compared_point& other : points)
-            by_distance.emplace_back(std::hypot(other.x - p.x, other.y - p.y), other.differs);
+            by_distance.emplace_back(glm::distance(other.seen.place, p.seen.place), other.differs);
         const auto end = by_distance.begin() + neighbors + 1;  // the nearest one is the point itself
         std::nth_element(by_distance.begin(), end - 1, by_distance.end());
         const auto around =
@@ -133,9 +132,7 @@ moving_evidence find_moving_things(const scene_statistics& statistics) {
         for (const observation& o : seen) differs.push_back(largest_difference(o.color, color) > limit);
         for (std::size_t i = 0; i < seen.size(); ++i) {
             const observation& o = seen[i];
-            const auto place = scene.train[o.view].camera.see(scene.points[o.point].position).value();
-            by_photo[o.view].push_back(
-                {o, place.x, place.y, differs[i] && is_usual_beside(seen, differs, i)});
+            by_photo[o.view].push_back({o, differs[i] && is_usual_beside(seen, differs, i)});
         }
     }
     for_each_in_parallel(by_photo.size(), [&](std::size_t v) { found.photos[v] = hidden_in(by_photo[v]); });

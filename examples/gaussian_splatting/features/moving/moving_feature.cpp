@@ -48,7 +48,7 @@ explanation moving_feature::explain(const scene_statistics& statistics, const fi
         const hidden_points& photo = found.photos[v];
         if (v != order.front() && photo.hidden.empty()) break;
         std::vector<pages::mark> marks;
-        for (const observation& o : photo.hidden) marks.push_back(ring_around(o, statistics.scene(), 1));
+        for (const observation& o : photo.hidden) marks.push_back(ring_around(o, 1));
         made.photos.push_back(shown_photo(
             statistics.scene().train[v], v == order.front() ? "Most hidden points" : "More hidden points",
             text("Rings: something hides %zu of %zu compared points.", photo.hidden.size(), photo.compared),

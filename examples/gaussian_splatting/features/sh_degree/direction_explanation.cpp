@@ -100,7 +100,7 @@ class contact_sheet {
 
     void draw_patch(const image& photo, std::size_t row, std::size_t column) {
         const observation& seen = rows_[row][column];
-        const auto place = scene_.train[seen.view].camera.see(scene_.points[seen.point].position).value();
+        const glm::dvec2& place = seen.place;
         const double half = std::max(4.0, std::max(photo.width, photo.height) / 60.0);
         const auto exposed = static_cast<float>(std::exp2(-brightness_.log2[seen.view]));
         const int left = static_cast<int>(column) * (patch_side + gap),
@@ -137,7 +137,7 @@ pages::marked_photo photo_with_most(const strong_points& points, const scene& of
     for (const auto* some : {&points.others, &points.listed})
         for (const point_views& seen : *some)
             for (const observation& o : seen)
-                marks[o.view].push_back(ring_around(o, of, some == &points.listed ? 1 : 0));
+                marks[o.view].push_back(ring_around(o, some == &points.listed ? 1 : 0));
     const auto most = std::ranges::max_element(marks, {}, [](const auto& rings) { return rings.size(); });
     const view& shown = of.train[static_cast<std::size_t>(most - marks.begin())];
     return shown_photo(shown, "Where color varies most with the direction",

@@ -70,7 +70,7 @@ pages::marked_photo widest_photo(const scene& scene, const observed_points& poin
         for (const observation& o : seen) {
             const camera& c = scene.train[o.view].camera;
             if (c.is_panorama) continue;
-            const pages::mark ring = ring_around(o, scene);
+            const pages::mark ring = ring_around(o);
             places.push_back({o.view, square_radius(c, ring.left, ring.top), ring});
             radii.push_back(places.back().square_radius);
         }
