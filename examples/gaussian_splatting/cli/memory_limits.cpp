@@ -56,7 +56,7 @@ train::parameter_storage storage_for(const model_memory& model, train::moment_pr
         return model.device_limit == 0 || model.forecast.total() <= model.device_limit + saved;
     };
     train::parameter_storage chosen{precision};
-    while (!fits(chosen) && chosen.first_degree_on_host > 1) {
+    while (model.host_limit > 0 && !fits(chosen) && chosen.first_degree_on_host > 1) {
         train::parameter_storage next = chosen;
         --next.first_degree_on_host;
         if (model.gaussians * bytes(next).on_host > model.host_limit) break;

@@ -95,9 +95,13 @@ class training_run {
         };
         if (s_.deterministic && !precision) precision = train::moment_precision::full;
         const std::uint64_t limit = options_.max_device_bytes;
-        return storage_for(
+        train::parameter_storage chosen = storage_for(
             {engine_->count(), first_sh_degree(), forecast(engine_->count()), limit, options_.host_bytes},
             precision_for(precision, forecast(options_.max_cap), limit));
+        // Ranks may have different amounts of free memory.
+        chosen.precision = static_cast<train::moment_precision>(
+            std::lround(ranks_.from_first(static_cast<double>(chosen.precision))));
+        return chosen;
     }
     /// Returns the Gaussians that training begins with. A checkpoint replaces them, so they need no stereo
     /// then.
@@ -113,7 +117,8 @@ class training_run {
         return features::first_sh_degree(options_.features.values_if_on("direction"));
     }
     void warn(const std::string& line);
-    gaussians saved_model();
+    /// Returns what files contain of a model.
+    gaussians saved_model(gaussians model);
     void save(int iteration);
     /// Sets aside the earlier run that --overwrite replaces. Call it before the first result is
     /// written. `write_reports` removes that run, so that a training that fails loses nothing.
@@ -167,7 +172,7 @@ training_run::training_run(const settings& s, const load_options& source,
     if (ranks_.is_first()) output_.emplace(s.output);
     options_.gradient = gradient;
     options_.ranks = &ranks_;
-    engine_->join(ranks_);
+    engine_->ranks().join(ranks_);
     gaussians model = first_model();
     options_.features.prepare(scene_, model);
     engine_->set_views(scene_.train, scene_.test, options_.schedule.num_downscales, photo_memory_);
@@ -270,19 +275,18 @@ void training_run::replace_earlier_run() {
     replaces_ = false;
 }
 
-gaussians training_run::saved_model() {
-    gaussians model = engine_->get_model();
+gaussians training_run::saved_model(gaussians model) {
     options_.features.before_saving(*engine_, scene_, model);
     return to_world(scene_.normalization, model);
 }
 
 void training_run::save(int iteration) {
-    const gaussians model = saved_model();
+    const gaussians model = engine_->get_model();
     if (!ranks_.is_first()) return;
     replace_earlier_run();
     const fs::path file = model_file(iteration);
     fs::create_directories(file.parent_path());
-    write_model(file, model);
+    write_model(file, saved_model(model));
 }
 
 void training_run::test(int iteration) {
@@ -393,7 +397,7 @@ void training_run::write_pages() {
     atomic_file_write(output_->path() / "report.html",
                       [&](std::ostream& out) { pages::write_report_page(out, report); });
     if (!s_.no_viewer)
-        write_viewer(output_->path() / "viewer.html", saved_model(),
+        write_viewer(output_->path() / "viewer.html", saved_model(engine_->get_model()),
                      viewer_scene_of(scene_, name, background), *s_.viewer_size,
                      [this](const std::string& line) { context_.say(line); });
 }

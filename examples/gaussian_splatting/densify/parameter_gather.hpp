@@ -98,15 +98,15 @@ class parameter_gather {
                      std::size_t least_piece = std::size_t{1} << 22)
         : device_(device), shares_(shares), least_piece_(least_piece) {}
 
-    /// Returns the size of the memory for each Gaussian of an SH degree, if this number of ranks divides
-    /// them.
-    static std::size_t bytes_per_gaussian(int sh_degree, std::size_t ranks) {
+    /// Returns the size of the memory for each Gaussian of an SH degree, if this rank has a part of all.
+    static std::size_t bytes_per_gaussian(int sh_degree, double part) {
         std::size_t widest = 0;
         for (std::size_t p = 0; p < parameter_count; ++p)
             if (has_parameter(p, sh_degree))
                 widest = std::max<std::size_t>(widest, width_of(static_cast<parameter>(p)));
-        const std::size_t spare = std::max(widest / ranks, width_of(parameter::quaternion)),
-                          piece = ranks > 1 ? (widest + pieces - 1) / pieces : 0;
+        const std::size_t spare = std::max(static_cast<std::size_t>(part * static_cast<double>(widest)),
+                                           width_of(parameter::quaternion)),
+                          piece = part < 1 ? (widest + pieces - 1) / pieces : 0;
         return (spare + piece) * sizeof(float) + sizeof(birth) + 2 * sizeof(std::uint32_t);
     }
 
@@ -147,12 +147,11 @@ class parameter_gather {
                 gather(all, memory, p, is_sh ? with_sh : count,
                        is_sh ? with_sh_before : std::numeric_limits<std::size_t>::max(), are_moments, own);
             }
-            memory.set_division(own);
             memory.set_gaussians_with_sh(with_sh);
         };
         gather_all(all.values, false);
         all.for_each_moment([&](auto& moments) { gather_all(moments, true); });
-        if (all.shares) all.shares = among;
+        if (all.shares) all.set_shares(device_, among);
         spare_steps_.resize(count);
         device_.for_each_index(count,
                                gather_last_steps{origin_.data(), all.last_step.data(), spare_steps_.data()});

@@ -13,11 +13,11 @@
 #include "../device/profiler.hpp"
 #include "../model/gaussians.hpp"
 #include "../photos/photo_plan.hpp"
-#include "../ranks/communicator.hpp"
 #include "../scene/scene.hpp"
 #include "feature_state.hpp"
 #include "learned_cameras.hpp"
 #include "photo_prefetch.hpp"
+#include "rank_member.hpp"
 #include "render_options.hpp"
 #include "step_report.hpp"
 #include "training_setup.hpp"
@@ -30,10 +30,6 @@ class engine {
   public:
     virtual ~engine() = default;
 
-    /// Makes this engine one of several ranks, which train one model together. All other functions that are
-    /// not const are collective then: all ranks must call them alike, except `render`, `measure`, and
-    /// `refined_camera` of `cameras`, after `prepare_renders`. At first it is the only one.
-    virtual void join(ranks::communicator& ranks) = 0;
     /// Sets the training views and the held-out views. Also stores each training view at
     /// `downscales` smaller sizes; each size halves the previous one. If the views are streamed,
     /// loads their photos within `memory` when they are needed.
@@ -65,9 +61,6 @@ class engine {
     /// device.
     virtual feature_state& feature(std::string_view name) = 0;
 
-    /// Gives each rank the values of all Gaussians, which `render` and `measure` need, until the next step.
-    /// With one rank, and after `set_model`, it does nothing.
-    virtual void prepare_renders() = 0;
     /// Renders the model. Returns three planes, red, green and blue, of the camera's size. The values
     /// are not clamped.
     virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
@@ -90,6 +83,7 @@ class engine {
     /// called, with the same training views.
     checkpointed& state() { return *state_; }
     learned_cameras& cameras() { return *cameras_; }
+    rank_member& ranks() { return *ranks_; }
     /// Returns the interface to streamed photos, or null if all photos are in device memory.
     photo_prefetch* streamed_photos() { return photos_; }
 
@@ -101,6 +95,7 @@ class engine {
     device::profiler* profiler_ = nullptr;
     checkpointed* state_ = nullptr;
     learned_cameras* cameras_ = nullptr;
+    rank_member* ranks_ = nullptr;
     photo_prefetch* photos_ = nullptr;
 };
 

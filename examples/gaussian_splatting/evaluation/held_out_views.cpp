@@ -145,7 +145,7 @@ held_out_report measure_held_out_views(train::engine& engine, const scene& scene
         std::filesystem::create_directories(options.folder / "gt");
     }
     if (writes) all.barrier();
-    engine.prepare_renders();
+    engine.ranks().prepare_renders();
     // Consecutive views, so that each rank loads streamed photos ahead for itself only.
     const ranks::shares shares(scene.test.size(), 1, all.count());
     const ranks::share own = shares.of(all.rank());

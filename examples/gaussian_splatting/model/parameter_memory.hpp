@@ -84,7 +84,7 @@ class parameter_memory {
     ranks::share part(std::size_t p) const { return part_of(p, whole_[p], own_); }
     ranks::share part_of(std::size_t p, std::size_t elements, const std::optional<ranks::share>& own) const {
         if (!own || !divides(p)) return {0, elements};
-        return {std::min(own->first * width(p), elements),
+        return {std::min(in_whole_blocks(own->first) * width(p), elements),
                 std::min(in_whole_blocks(own->last) * width(p), elements)};
     }
     /// @}
@@ -167,8 +167,8 @@ class parameter_memory {
     void zero(Device& device) {
         for (auto& a : arrays_) device.zero(a.data(), a.size());
     }
-    /// Appends the arrays that ranks divide, or the others, for `device::gather`. Precondition: none is
-    /// divided now.
+    /// Appends the arrays that ranks divide, or the others, for `device::gather`. Precondition: this
+    /// rank has all elements of these.
     void share(bool divided, std::vector<ranks::shared_array>& arrays) const {
         for (std::size_t p = 0; p < parameter_count; ++p)
             if (divides(p) == divided && arrays_[p].size() > 0)

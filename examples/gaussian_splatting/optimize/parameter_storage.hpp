@@ -46,12 +46,15 @@ constexpr parameter_bytes bytes_per_gaussian(int sh_degree, const parameter_stor
     return bytes;
 }
 
-/// Returns the memory of a Gaussian's values that ranks do not divide: see `divided_arrays`.
-constexpr std::size_t undivided_bytes_per_gaussian() {
+/// Returns the memory of a Gaussian's values, without moments.
+constexpr std::size_t value_bytes_per_gaussian(int sh_degree) {
     std::size_t bytes = 0;
     for (std::size_t p = 0; p < parameter_count; ++p)
-        if (!is_view_dependent(p)) bytes += width_of(static_cast<parameter>(p)) * sizeof(float);
+        if (has_parameter(p, sh_degree)) bytes += width_of(static_cast<parameter>(p)) * sizeof(float);
     return bytes;
 }
+
+/// Returns the memory of a Gaussian's values that ranks do not divide: see `divided_arrays`.
+constexpr std::size_t undivided_bytes_per_gaussian() { return value_bytes_per_gaussian(0); }
 
 }  // namespace gs::train

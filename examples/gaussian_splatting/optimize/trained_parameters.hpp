@@ -40,17 +40,25 @@ struct trained_parameters {
         return shares ? shares->of(device.ranks().rank()) : ranks::share{0, count};
     }
     /// Leaves this rank only its own part of what ranks divide, until `set_values`. `among`: the Gaussians of
-    /// each rank. Moments, if there are any, must be divided so already.
+    /// each rank. Moments, if there are any, must be whole, or divided so already.
     void divide(Device& device, const ranks::shares& among) {
         flush_cache(device);
         shares = among;
-        divide_all(device, own(device, 0));
+        for (auto* floats : {&values, &first, &second}) floats->divide(device, own(device, 0));
+        packed.divide(device, own(device, 0));
     }
     /// Gives this rank the values of all Gaussians, until `divide`. All ranks must call this.
     void undivide_values(Device& device) {
         if (!values.is_divided()) return;
+        flush_cache(device);
         values.divide(device, {});
         gather_values(device, true);
+    }
+    /// Records that all arrays are divided so now.
+    void set_shares(Device& device, const ranks::shares& among) {
+        shares = among;
+        for (auto* floats : {&values, &first, &second}) floats->set_division(own(device, 0));
+        packed.set_division(own(device, 0));
     }
     /// Gives this rank the present values of all Gaussians that ranks do not divide. All ranks must call
     /// this.
@@ -77,7 +85,8 @@ struct trained_parameters {
         drop_cache();
         free_moments();
         shares.reset();
-        divide_all(device, {});
+        for (auto* floats : {&first, &second}) floats->set_division({});
+        packed.set_division({});
         values.upload(device, model);
     }
     /// Returns the values of the first `count` Gaussians. All ranks must call this if they divide them. Waits
@@ -186,10 +195,6 @@ struct trained_parameters {
     }
 
   private:
-    void divide_all(Device& device, const std::optional<ranks::share>& own) {
-        for (auto* floats : {&values, &first, &second}) floats->divide(device, own);
-        packed.divide(device, own);
-    }
     void gather_values(Device& device, bool divided) {
         std::vector<ranks::shared_array> arrays;
         values.share(divided, arrays);

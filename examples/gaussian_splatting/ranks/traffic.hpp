@@ -21,7 +21,7 @@ enum class purpose : std::size_t {
     lists,       ///< the lengths of its tile lists
     gradients,   ///< the sums of its splats' gradients
     effects,     ///< the values that effects learn from a view
-    gaussians,   ///< the parameters of all Gaussians, after steps
+    gaussians,   ///< parameters and moments, for renders, new or moved Gaussians, and files
     scores,      ///< renders of several views, by which Gaussians are pruned or added
     other,       ///< losses, faults, the work of tile rows, measurements, and the agreement to go on
     connection,  ///< values by which the devices connect

@@ -48,11 +48,14 @@ class renderer {
     void set_effects(const effect_set& effects) { effects_ = effects; }
     /// Limits all later draws to the strip of this rank, or draws whole views. With a strip, `measure`,
     /// `list`, `blend_depths` and the backward pass are collective functions of all ranks, whose strips must
-    /// differ. A rank projects its own share of the Gaussians, needs the parameters of these only, and passes
-    /// only their gradients to the sink.
+    /// differ. `measure` uses `view_strip::gaussians` only. A rank projects its own share of the Gaussians,
+    /// needs the parameters of these only, and passes only their gradients to the sink.
     void set_strip(const std::optional<view_strip>& strip) { strip_ = strip; }
     /// Frees memory that only strips need, until the next draw of one.
-    void release_strips() { visible_.release(); }
+    void release_strips() {
+        visible_.release();
+        strip_lists_.release();
+    }
 
     /// Counts the instances (Gaussian, tile) of a whole view: see `instances`.
     void measure(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
@@ -277,7 +280,9 @@ class renderer {
     /// Gaussians refer to.
     template <class T>
     T* reserve_own(buffer<T>& b) const {
-        b.resize(own_gaussians().count());
+        const std::size_t own = own_gaussians().count();
+        if (strip_ && own < b.size()) b = {};  // a whole view needs more
+        b.resize(own);
         return by_gaussian(b);
     }
     template <class T>

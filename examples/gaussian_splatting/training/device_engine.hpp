@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,7 +34,7 @@ namespace gs::train {
 /// The engine for a device. It determines the order of the kernels and owns the memory that they
 /// share.
 template <device::device Device, class Accumulators = raster::product_accumulators>
-class device_engine final : public engine, device::profiler, learned_cameras, checkpointed {
+class device_engine final : public engine, device::profiler, learned_cameras, rank_member, checkpointed {
     using renderer_type =
         raster::renderer<Device, float, raster::cut_for<typename Device::warp>, Accumulators>;
     using step_type = features::step<renderer_type>;
@@ -59,10 +58,9 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         profiler_ = this;
         state_ = this;
         cameras_ = this;
+        ranks_ = this;
         start({});
     }
-
-    void join(ranks::communicator& ranks) override { device_.join(ranks); }
 
     void set_views(const std::vector<view>& train, const std::vector<view>& test, int downscales,
                    const photos::photo_plan& memory) override {
@@ -77,13 +75,13 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
         effects_.antialiasing = model.antialiased;
         renderer_.set_effects(effects_);
         features_.set_model(model);
+        gather_.release();
+        renderer_.release_strips();
         trained_.set_values(device_, model);
         begin_generation(model.count());
         lists_.reset(views_.count());
         device_.wait();
         division_.reset();
-        gather_.release();
-        renderer_.release_strips();
         steps_ = 0;
     }
 
@@ -102,14 +100,14 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
 
     void reserve(int downscales) override {
         if (static_cast<std::size_t>(downscales) != level_) set_level(static_cast<std::size_t>(downscales));
-        division_.divide(count_);
+        division_.divide(count_, renderer_);
         set_strip(trained_.shares ? std::optional<raster::view_strip>(raster::view_strip{}) : std::nullopt,
                   false);
         lists_.reserve(renderer_, trained_.values.read(), count_, views_.train(level_));
     }
 
     void step(const step_plan& plan) override {
-        division_.divide(count_);
+        division_.divide(count_, renderer_);
         trained_.require_memory(device_, count_, sh_degree_);
         const photo& shot = views_.train(level_)[plan.view];
         const camera seen = features_.seen_by(plan.view, shot.camera);
@@ -163,11 +161,6 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     feature_state& feature(std::string_view name) override {
         if (name == "direction") return sh_;
         return features_.named(name);
-    }
-
-    void prepare_renders() override {
-        division_.update();
-        trained_.undivide_values(device_);
     }
 
     std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
@@ -226,6 +219,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
 
     /// Returns the training views of one size, to be rendered for scores.
     drawn_views<renderer_type> drawn(const std::vector<photo>& views) {
+        division_.divide(count_, renderer_);
         return {device_,
                 renderer_,
                 views_,
@@ -252,6 +246,12 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
                            [&](const camera& seen) { draw(renderer_, seen, background); });
     }
 
+    void join(ranks::communicator& ranks) override { device_.join(ranks); }
+    void prepare_renders() override {
+        division_.update();
+        trained_.undivide_values(device_);
+    }
+
     /// @name device::profiler
     /// @{
     std::string device_name() const override { return device_.name(); }
@@ -263,8 +263,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ch
     std::size_t used_device_bytes() const override { return device_.used_bytes(); }
     std::size_t free_device_bytes() const override { return device_.free_bytes(); }
     device::memory_forecast forecast(std::size_t gaussians, int sh_degree) const override {
-        device::memory_forecast all =
-            forecast_of_gaussians<Device>(renderer_, count_, gaussians, sh_degree, setup_, division_.ranks());
+        device::memory_forecast all = forecast_of_gaussians<Device>(renderer_, count_, gaussians, sh_degree,
+                                                                    setup_, division_.own_part(count_));
         all.photos = views_.photo_bytes();
         all.others += views_.most_pixels() * bytes_per_pixel<Device, renderer_type>();
         return all;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "../densify/parameter_gather.hpp"
 #include "../device/memory_forecast.hpp"
@@ -15,31 +16,43 @@
 
 namespace gs::train {
 
-/// Returns the memory of one of several ranks for `gaussians` with their tile lists, if a renderer has
-/// reserved lists for `present` Gaussians: new ones are assumed to touch as many tiles.
+/// Returns the memory for `gaussians` with their tile lists, if a renderer has reserved lists for `present`
+/// Gaussians: new ones are assumed to touch as many tiles. `part`: the part of the Gaussians that this rank
+/// has, or one. Before the first step, views are assumed to show all of them.
 template <device::device Device, class Renderer>
 device::memory_forecast forecast_of_gaussians(const Renderer& renderer, std::size_t present,
                                               std::size_t gaussians, int sh_degree,
-                                              const training_setup& setup, int ranks) {
-    const auto parts = static_cast<std::size_t>(ranks);
+                                              const training_setup& setup, double part) {
     constexpr std::size_t of_step = sizeof(std::uint32_t), of_sort = 2 * sizeof(std::uint32_t),
                           of_distribution = sizeof(std::uint64_t),
                           of_strategy = 4 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
-    constexpr std::size_t of_all_ranks =
+    constexpr std::size_t beside =
         sizeof(raster::visibility) + of_step + of_sort + of_distribution + of_strategy;
-    const parameter_bytes of_parameters = bytes_per_gaussian(sh_degree, setup.storage);
-    const std::size_t undivided = ranks > 1 ? undivided_bytes_per_gaussian() : 0,
-                      divided = of_parameters.on_device - undivided +
-                                Renderer::bytes_per_gaussian(setup.facts.gradient);
-    const std::size_t each = of_all_ranks + undivided + divided / parts +
-                             parameter_gather<Device>::bytes_per_gaussian(sh_degree, parts);
+    using splats = std::remove_cvref_t<decltype(renderer.visible())>;
+    const bool is_divided = part < 1;
+    const auto own = [&](std::size_t bytes) {
+        return static_cast<std::size_t>(part * static_cast<double>(bytes));
+    };
     const double more =
         static_cast<double>(gaussians) / static_cast<double>(std::max<std::size_t>(present, 1));
     const auto grown = [&](std::size_t now) {
         return static_cast<std::uint64_t>(more * static_cast<double>(now));
     };
-    return {.gaussians = gaussians * each + grown(renderer.visible().bytes()),
-            .others = grown(renderer.reserved_instances()) * Renderer::bytes_per_instance(),
+    const parameter_bytes of_parameters = bytes_per_gaussian(sh_degree, setup.storage);
+    const std::size_t undivided = is_divided ? undivided_bytes_per_gaussian() : 0,
+                      of_render = Renderer::bytes_per_gaussian(setup.facts.gradient),
+                      in_training = undivided + own(of_parameters.on_device - undivided + of_render) +
+                                    parameter_gather<Device>::bytes_per_gaussian(sh_degree, part),
+                      in_measurement = value_bytes_per_gaussian(sh_degree) + of_render;
+    std::uint64_t of_strips = 0;
+    if (is_divided) {
+        const std::uint64_t known = renderer.visible().bytes();
+        of_strips = known > 0 ? grown(known) : gaussians * own(splats::bytes_per_listed_splat);
+    }
+    return {.gaussians = gaussians * beside +
+                         std::max(gaussians * in_training + of_strips, gaussians * in_measurement),
+            .others = grown(renderer.reserved_instances()) *
+                      (Renderer::bytes_per_instance() + (is_divided ? sizeof(std::uint32_t) : 0)),
             .on_host = gaussians * of_parameters.on_host};
 }
 

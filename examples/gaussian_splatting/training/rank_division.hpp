@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "../densify/parameter_gather.hpp"
 #include "../device/device.hpp"
@@ -22,16 +23,24 @@ class rank_division {
                   const typename Device::template buffer<raster::visibility>& seen)
         : device_(device), trained_(trained), seen_(seen) {}
 
-    /// The number of ranks.
-    int ranks() const { return device_.ranks().count(); }
+    /// Returns the part of `count` Gaussians that this rank has. One if it is the only rank.
+    double own_part(std::size_t count) const {
+        if (!trained_.shares || count == 0) return 1.0 / ranks();
+        return static_cast<double>(trained_.own(device_, count).count()) / static_cast<double>(count);
+    }
     /// Divides the Gaussians among the ranks.
     const gaussian_shares& shares() const { return shares_; }
     /// Forgets what this rank knows, because all ranks have the same new Gaussians.
     void reset() { is_up_to_date_ = true; }
-    /// Leaves this rank its own part of `count` Gaussians that it has.
-    void divide(std::size_t count) {
-        if (ranks() > 1 && !trained_.values.is_divided())
-            trained_.divide(device_, trained_.shares.value_or(shares_.of(count, ranks())));
+    /// Leaves this rank its own part of `count` Gaussians that it has. Also gives all renderers the same
+    /// capacity for tile lists, because ranks render different views when they have all Gaussians.
+    template <class Renderer>
+    void divide(std::size_t count, Renderer& renderer) {
+        if (ranks() == 1 || trained_.values.is_divided()) return;
+        std::uint64_t capacity = renderer.reserved_instances();
+        device_.ranks().maximum(&capacity, 1);
+        if (capacity > renderer.reserved_instances()) renderer.reserve_instances(capacity);
+        trained_.divide(device_, trained_.shares.value_or(shares_.of(count, ranks())));
     }
     /// Divides memory for other Gaussians, which a checkpoint contains. All ranks load it.
     void divide_for_loading(std::size_t count) {
@@ -71,6 +80,8 @@ class rank_division {
     }
 
   private:
+    int ranks() const { return device_.ranks().count(); }
+
     Device& device_;
     trained_parameters<Device>& trained_;
     const typename Device::template buffer<raster::visibility>& seen_;

@@ -36,7 +36,7 @@ memory train_in(communicator& all, const gs::scene& scene) {
     o.ranks = &all;
     const auto engine = gs::train::make_cpu_engine();
     const std::size_t before = engine->profile().used_device_bytes();
-    engine->join(all);
+    engine->ranks().join(all);
     engine->set_views(scene.train, {}, 0);
     engine->set_model(gs::from_points(scene.points, 3, 4000, 1));
     gs::train::train_events events{[](const gs::train::progress&) {}, [](int) {}, [](int) {}};

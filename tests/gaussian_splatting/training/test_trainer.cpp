@@ -21,7 +21,7 @@ using gs::train::densify_config;
 using gs::train::step_plan;
 
 /// An engine without kernels: it has a number of Gaussians, which grow, and records its calls.
-class recorder final : public gs::train::engine, gs::device::profiler {
+class recorder final : public gs::train::engine, gs::device::profiler, gs::train::rank_member {
   public:
     struct made_step {
         step_plan plan;
@@ -42,6 +42,7 @@ class recorder final : public gs::train::engine, gs::device::profiler {
     explicit recorder(std::size_t count) : sh_(*this) {
         count_ = count;
         profiler_ = this;
+        ranks_ = this;
     }
 
     void set_views(const std::vector<gs::view>&, const std::vector<gs::view>&, int,

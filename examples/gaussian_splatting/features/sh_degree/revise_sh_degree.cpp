@@ -76,7 +76,7 @@ double change_above(int degree, train::engine& engine, const scene& of,
 sh_review revise_sh_degree(train::engine& engine, const scene& scene, const show_function& show,
                            const std::array<float, 3>& background, int sh_degree) {
     sh_review review;
-    engine.prepare_renders();
+    engine.ranks().prepare_renders();
     direction_statistics left;
     if (!scene.points.empty())
         left = measure_direction(scene_statistics(scene, observe_residuals(scene, engine, show, background)));

@@ -197,13 +197,14 @@ class visible_splats {
     /// The number of splats that ranks have sent to others.
     std::size_t moved() const { return windows_.moved(); }
 
-    /// The size of all arrays, with sums for the splats that this rank lists.
+    /// The size of all arrays, with the gradient sums and boxes of the splats that this rank lists.
     std::size_t bytes() const {
-        constexpr std::size_t of_each = sizeof(splat<Real>) + sizeof(tile_box) + sizeof(std::uint32_t);
-        return count() * (of_each + sizeof(std::uint32_t) + sizeof(tile_box) + record_stride * sizeof(Real)) +
-               sent_boxes_.size() * (of_each - sizeof(splat<Real>)) + exchanged_.size() +
+        return splats.size() * bytes_per_listed_splat +
+               sent_boxes_.size() * (sizeof(tile_box) + sizeof(std::uint32_t)) + exchanged_.size() +
                marks_.size() * sizeof(std::uint32_t) + places_.size() * sizeof(std::uint64_t);
     }
+    static constexpr std::size_t bytes_per_listed_splat =
+        sizeof(splat<Real>) + 2 * sizeof(tile_box) + 2 * sizeof(std::uint32_t) + record_stride * sizeof(Real);
 
     /// The values of each splat: see `project`.
     buffer<splat<Real>> splats;

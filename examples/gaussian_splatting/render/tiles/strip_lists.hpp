@@ -130,6 +130,12 @@ class strip_lists {
   public:
     explicit strip_lists(Device& device) : device_(device) {}
 
+    /// Frees the memory, until the next `clip`.
+    void release() {
+        boxes_ = {};
+        unmoved_ = {};
+    }
+
     /// Limits the boxes of splats to the tile rows with lists: see `clip_boxes`. Returns the new boxes.
     const buffer<tile_box>& clip(const tile_box* boxes, std::uint32_t* depths, std::size_t count,
                                  const row_range& listed) {
