@@ -43,7 +43,7 @@ device::memory_forecast forecast_of_gaussians(const Renderer& renderer, std::siz
                       of_render = Renderer::bytes_per_gaussian(setup.facts.gradient),
                       in_training = undivided + own(of_parameters.on_device - undivided + of_render) +
                                     parameter_gather<Device>::bytes_per_gaussian(sh_degree, part),
-                      in_measurement = value_bytes_per_gaussian(sh_degree) + of_render;
+                      in_measurement = is_divided ? value_bytes_per_gaussian(sh_degree) + of_render : 0;
     std::uint64_t of_strips = 0;
     if (is_divided) {
         const std::uint64_t known = renderer.visible().bytes();
