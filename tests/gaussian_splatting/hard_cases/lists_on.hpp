@@ -131,7 +131,7 @@ class lists_on {
             sums.begin(backward, made.size(), largest_of(q.gradient),
                        backward.template warps_of_sum<warp>(tiles.size()));
             device.for_each_warp(backward.template warps<warp>(tiles.size(), segments), backward);
-            const auto& rounded = sums.end(backward, false);
+            const auto& rounded = sums.end(backward);
             records = on.get(rounded.data(), rounded.size());
         });
         static_assert(sum_count == 9);
@@ -208,7 +208,7 @@ class lists_on {
             const std::size_t warps = (values.size() + lanes - 1) / lanes;
             sums.begin(adds, 1, largest_of(values), warps);
             device.for_each_warp(warps, adds);
-            sum = on.get(sums.end(adds, false).data(), 1)[0];
+            sum = on.get(sums.end(adds).data(), 1)[0];
         });
         return sum;
     }
