@@ -117,7 +117,7 @@ class training_run {
         return features::first_sh_degree(options_.features.values_if_on("direction"));
     }
     void warn(const std::string& line);
-    /// Returns what files contain of a model.
+    /// Returns a model as files have it: in world coordinates, and with the colors of effects.
     gaussians saved_model(gaussians model);
     void save(int iteration);
     /// Sets aside the earlier run that --overwrite replaces. Call it before the first result is

@@ -23,14 +23,14 @@ class rank_division {
                   const typename Device::template buffer<raster::visibility>& seen)
         : device_(device), trained_(trained), seen_(seen) {}
 
-    /// Returns the part of `count` Gaussians that this rank has. One if it is the only rank.
+    /// Returns the part of `count` Gaussians that this rank has. It is 1 with one rank.
     double own_part(std::size_t count) const {
         if (!trained_.shares || count == 0) return 1.0 / ranks();
         return static_cast<double>(trained_.own(device_, count).count()) / static_cast<double>(count);
     }
-    /// Divides the Gaussians among the ranks.
+    /// Returns the object that decides which Gaussians each rank has.
     const gaussian_shares& shares() const { return shares_; }
-    /// Forgets what this rank knows, because all ranks have the same new Gaussians.
+    /// Records that all ranks have the same new Gaussians.
     void reset() { is_up_to_date_ = true; }
     /// Leaves this rank its own part of `count` Gaussians that it has. Also gives all renderers the same
     /// capacity for tile lists, because ranks render different views when they have all Gaussians.
@@ -54,7 +54,7 @@ class rank_division {
     }
     /// Records that each rank has changed its own Gaussians.
     void note_change() { is_up_to_date_ = !trained_.shares; }
-    /// Gives all ranks what the others have learned about their Gaussians, except what they divide.
+    /// Gives all ranks the present values and statistics of all Gaussians, apart from divided arrays.
     void update() {
         if (is_up_to_date_) return;
         trained_.update_values(device_);

@@ -5,7 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "../../device/atomic.hpp"
 #include "../../device/device.hpp"
+#include "../geometry/list_capacity.hpp"
+#include "tile_lists.hpp"
 #include "view_strip.hpp"
 
 namespace gs::raster {

@@ -8,9 +8,7 @@
 
 #include "../../device/atomic.hpp"
 #include "../../ranks/communicator.hpp"
-#include "../geometry/list_capacity.hpp"
 #include "../geometry/row_range.hpp"
-#include "tile_lists.hpp"
 #include "tile_reach.hpp"
 
 namespace gs::raster {
@@ -31,7 +29,7 @@ struct view_strip {
 
     /// Returns the tile rows with tile lists, of a view with `down` tile rows.
     row_range listed(int down) const { return listed(own, down); }
-    /// The same for each rank.
+    /// Returns the tile rows with tile lists of each rank.
     listed_tile_rows listed_by_all(int down) const {
         listed_tile_rows all{static_cast<unsigned>(own_of_all.size()), {}};
         for (std::size_t rank = 0; rank < own_of_all.size(); ++rank)
