@@ -113,10 +113,12 @@ concept placed_buffer = requires(B b) {
 /// - `prefix_sum(in, out, n)`: `out[i] = in[0] + ... + in[i - 1]` for i in [0, n].
 /// - `sort_pairs(keys, values, n)`: stable sort of the first n pairs by key; n < 2^30. May exchange
 ///   the memory of the buffers.
-/// - `distribute(n, items, buckets, capacity, listed, ranges, required)`: lists, for each bucket,
-///   the values of the `items` [0, n) that go there, in their order. Bucket b's list is
-///   `[ranges[b].begin, ranges[b].end)` of `listed`; buckets follow one another. Writes the length
-///   of all lists together to `*required`. Drops entries beyond `capacity`.
+/// - `place_lists(n, items, buckets, capacity, ranges, required)`: gives each bucket a list of the `items`
+///   [0, n) that go there. Bucket b's list is `[ranges[b].begin, ranges[b].end)`; buckets follow one
+///   another. Writes the length of all lists together to `*required`. Cuts them off at `capacity`.
+/// - `write_lists(n, items, buckets, places, listed, ranges)`: writes the values of the same items to their
+///   lists, which are parts of `listed`, in the order of the items. The ranges may all have moved by the
+///   same number. If lists have been cut off, `listed` may get other values behind them, up to `places`.
 ///
 /// Ranks: processes that train one model together, with a device each
 /// - `join(ranks)`: makes the device one of these. At first it is the only one.
@@ -164,7 +166,8 @@ float > &&requires(D d, const D c, std::size_t n, float* p, const float* from, s
     transfer.wait();
     d.prefix_sum(numbers, sums, n);
     d.sort_pairs(numbers, numbers, n);
-    d.distribute(n, archetype::item_list{}, n, std::uint64_t{}, listed, ranges, required);
+    d.place_lists(n, archetype::item_list{}, n, std::uint64_t{}, ranges, required);
+    d.write_lists(n, archetype::item_list{}, n, std::uint64_t{}, listed, ranges);
     d.iteration(graph_key{}, archetype::host_work{});
     d.join(ranks);
     { d.ranks() } -> std::same_as<ranks::communicator&>;

@@ -11,7 +11,8 @@ namespace gs::device {
 /// The bucket of a candidate that goes to no list.
 inline constexpr std::uint32_t no_bucket = 0xffffffffu;
 
-/// Items, each of which goes to any number of buckets: the input of `distribute`, see `device`.
+/// Items, each of which goes to any number of buckets: the input of `place_lists` and
+/// `write_lists`, see `device`.
 /// Item i is `all(i)`, with the members:
 /// - `size()`: number of its candidates.
 /// - `bucket(k)`: bucket of candidate k, or `no_bucket`. Depends only on i and k. The candidates of

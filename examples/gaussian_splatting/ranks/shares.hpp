@@ -40,6 +40,7 @@ class shares {
     }
 
     std::size_t items() const { return items_; }
+    int ranks() const { return static_cast<int>(borders_.size()) - 1; }
     share of(int rank) const { return of(rank, block_, items_); }
     /// Returns the part of an array that belongs to a rank. The array has `size` elements, and
     /// `block_size` elements per block of items. It may end early, or have a whole last block.

@@ -43,6 +43,13 @@ class windows {
             items += sent_by(rank).items() - sent_by(rank).of(rank).count();
         return items;
     }
+    /// Returns whether each window has as many items as that of other windows, or more.
+    bool have_places_for(const windows& others) const {
+        for (int from = 0; from < ranks(); ++from)
+            for (int to = 0; to < ranks(); ++to)
+                if (others.sent_by(from).of(to).count() > sent_by(from).of(to).count()) return false;
+        return true;
+    }
     /// Returns the exchange that sends each window back to its sender.
     windows reversed() const {
         windows back = *this;

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "../core/error.hpp"
 #include "../device/device.hpp"
@@ -17,9 +18,11 @@
 #include "gradients/gradient_sums.hpp"
 #include "project/project.hpp"
 #include "project/project_backward.hpp"
-#include "project/visible_splats.hpp"
+#include "project/splat_exchange.hpp"
+#include "renderer_bytes.hpp"
 #include "tiles/bin.hpp"
 #include "tiles/strip_lists.hpp"
+#include "tiles/tile_schedule.hpp"
 #include "tiles/view_strip.hpp"
 
 namespace gs::raster {
@@ -37,9 +40,10 @@ class renderer {
     using buffer = typename Device::template buffer<T>;
     using warp = typename Device::warp;
     using model = parameter_arrays<const Real>;
+    using bytes = renderer_bytes<Device, Real, Cut>;
 
     explicit renderer(Device& device)
-        : device_(device), visible_(device), strip_lists_(device), sums_(device) {
+        : device_(device), exchange_(device), strip_lists_(device), sums_(device), schedule_(device) {
         device_.zero(reserve(pairs_, 2).data(), 2);
         device_.zero(reserve(required_, 1).data(), 1);
     }
@@ -50,18 +54,21 @@ class renderer {
     /// `list`, `blend_depths` and the backward pass are collective functions of all ranks, whose strips must
     /// differ. `measure` uses `view_strip::gaussians` only. A rank projects its own share of the Gaussians,
     /// needs the parameters of these only, and passes only their gradients to the sink.
-    void set_strip(const std::optional<view_strip>& strip) { strip_ = strip; }
+    void set_strip(const std::optional<view_strip>& strip) {
+        if (strip && !strip_) release_splats();  // whole views need more memory
+        strip_ = strip;
+    }
     /// Frees memory that only strips need, until the next draw of one.
     void release_strips() {
-        visible_.release();
+        exchange_.release();
         strip_lists_.release();
     }
 
     /// Counts the instances (Gaussian, tile) of a whole view: see `instances`.
     void measure(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         project_own(gaussians, count, view, sh_degree);
-        list_by_tile(own_gaussians().count(),
-                     {order_.data(), by_gaussian(splats_), by_gaussian(boxes_), tiles_across_}, 0, nullptr);
+        with_items<Real>(camera_, {order_.data(), by_gaussian(splats_), by_gaussian(boxes_), tiles_across_},
+                         [&](const auto& items) { place_lists(items, own_gaussians().count(), 0); });
         if (strip_) device_.sum_over_ranks(required_.data(), 1);
     }
     /// Returns the number of instances of the last view that was drawn or measured. Waits for the
@@ -84,22 +91,6 @@ class renderer {
     }
     std::uint64_t reserved_instances() const { return capacity_; }
 
-    /// Returns the size of the memory for each Gaussian, each instance and each pixel of a view.
-    /// @{
-    static constexpr std::size_t bytes_per_gaussian(accumulator how) {
-        return sizeof(splat<Real>) + sizeof(tile_box) + 3 * sizeof(std::uint32_t) +
-               gradient_sums<Device, Real>::bytes_per_gaussian(how);
-    }
-    static constexpr std::size_t bytes_per_instance() {
-        return sizeof(std::uint32_t) +
-               (checkpoint_values * sizeof(Real) + sizeof(std::uint32_t)) / Cut::segment;
-    }
-    static constexpr std::size_t bytes_per_pixel() {
-        constexpr std::size_t of_tile = checkpoint_values * sizeof(Real) + sizeof(tile_range);
-        return 4 * sizeof(Real) + sizeof(std::uint32_t) + of_tile / (tile_size * tile_size);
-    }
-    /// @}
-
     /// Draws the view into `render()`, three planes. `background_image`: three planes that replace
     /// the background; they must exist until `backward`.
     void forward(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
@@ -112,11 +103,13 @@ class renderer {
     void list(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
               const dropout& dropped = {}) {
         using device::stage;
+        const auto scope = exchanging(ranks::purpose::splats);
         device_.begin(stage::project);
         project_own(gaussians, count, view, sh_degree, dropped);
-        if (strip_) exchange_splats();
+        if (strip_) exchange_splats(strip_->windows);
         device_.begin(stage::bin);
         bin();
+        if (strip_) complete_lists();
         device_.begin(stage::blend_forward);
         const std::size_t pixels =
             static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
@@ -138,24 +131,25 @@ class renderer {
         });
         if (!strip_) return;
         device_.zero(reserve(work_, tiles_down_).data(), tiles_down_);
-        device_.for_each_index(tiles_in(strip_->own),
-                               measure_work{last_.data(), static_cast<unsigned>(camera_.width),
-                                            static_cast<unsigned>(camera_.height), tiles_across_,
-                                            first_tile(strip_->own), work_.data()});
+        const ranks::share own = tiles_in(strip_->own);
+        device_.for_each_index(own.count(), measure_work{last_.data(), static_cast<unsigned>(camera_.width),
+                                                         static_cast<unsigned>(camera_.height), tiles_across_,
+                                                         own.first, ranges_.data(), work_.data()});
     }
 
     /// Called between both parts: draws the inverse depths, the sum of w_i / z_i with the weights
     /// of the colors, on a background of zero. They are the first plane of `render()` until
     /// `blend`. The time of this and the next function counts as forward blending.
     void blend_depths() {
+        near_.resize(listed_count());
         with_lens(camera_.lens(), [&]<lens_model Lens> {
             device_.for_each_index(own_gaussians(), depth_splats<Real, effect_set{.lens = Lens}>{
                                                         gaussians_.mean, for_device<Real>(camera_),
-                                                        by_gaussian(splats_), reserve_own(near_)});
+                                                        by_gaussian(splats_), by_gaussian(near_)});
         });
         if (strip_) {
             const auto scope = exchanging(ranks::purpose::splats);
-            visible_.collect(near_.data(), near_visible_);
+            exchange_.send_again(near_.data(), near_.data() + own_gaussians().count());
         }
         background_ = {};
         with_cut(
@@ -234,7 +228,7 @@ class renderer {
         launch_backward(kernel, lists(), render_gradient);
         if (!strip_) return sums_.end(kernel);
         const auto scope = exchanging(ranks::purpose::gradients);
-        return sums_.end_for_owners(kernel, visible_);
+        return sums_.end_for_owners(kernel, exchange_, own_gaussians().count());
     }
     /// See `gradient_sums`.
     std::uint32_t* fault() const { return sums_.fault(); }
@@ -256,10 +250,13 @@ class renderer {
     ranks::share own_gaussians() const {
         return strip_ ? strip_->gaussians.of(device_.ranks().rank()) : ranks::share{0, count_};
     }
-    /// The visible splats of the last view with a strip.
-    const visible_splats<Device, Real>& visible() const { return visible_; }
-    /// The number of splats that sampled pixels of the last view blend, by tile row, on the device. Zero
-    /// for rows of other ranks.
+    /// The exchange of splats of the last view with a strip.
+    const splat_exchange<Device, Real>& exchange() const { return exchange_; }
+    /// The size of the memory that only strips need.
+    std::size_t strip_bytes() const {
+        return exchange_.bytes() + strip_lists_.bytes() + exchange_.received() * bytes::per_received_splat();
+    }
+    /// The work of the last view's tile rows, on the device: see `measure_work`. Zero for those of others.
     std::span<const unsigned long long> row_work() const { return {work_.data(), tiles_down_}; }
     /// The flag that tells whether the last view's instances fit.
     list_capacity capacity() const { return {required_.data(), capacity_}; }
@@ -274,15 +271,19 @@ class renderer {
     }
 
     ranks::traffic_counter::scope exchanging(ranks::purpose of_step) const {
-        return {device_.ranks().traffic(), strip_->is_of_step ? of_step : ranks::purpose::scores};
+        return {device_.ranks().traffic(), strip_ && !strip_->is_of_step ? ranks::purpose::scores : of_step};
     }
-    /// Reserves an array with a value for each of the `own_gaussians`. Returns a pointer that the indices of
-    /// Gaussians refer to.
+    void release_splats() {
+        splats_ = {};
+        near_ = {};
+        boxes_ = {};
+        for (auto* values : {&depths_, &order_, &tiles_}) *values = {};
+    }
+    /// Reserves an array with a value for each of the `own_gaussians`, and `more`. Returns a pointer that the
+    /// indices of Gaussians refer to.
     template <class T>
-    T* reserve_own(buffer<T>& b) const {
-        const std::size_t own = own_gaussians().count();
-        if (strip_ && own < b.size()) b = {};  // a whole view needs more
-        b.resize(own);
+    T* reserve_own(buffer<T>& b, std::size_t more = 0) const {
+        b.resize(own_gaussians().count() + more);
         return by_gaussian(b);
     }
     template <class T>
@@ -297,11 +298,8 @@ class renderer {
         return {own.first / Warp::size, (own.last + Warp::size - 1) / Warp::size};
     }
 
-    /// The splats that tile lists refer to, and their number.
-    /// @{
-    const buffer<splat<Real>>& listed_splats() const { return strip_ ? visible_.splats : splats_; }
-    std::size_t listed_count() const { return strip_ ? visible_.count() : count_; }
-    /// @}
+    /// Returns the number of splats that tile lists may refer to.
+    std::size_t listed_count() const { return own_gaussians().count() + (strip_ ? exchange_.received() : 0); }
 
     template <class T>
     static buffer<T>& reserve(buffer<T>& b, std::size_t n) {
@@ -329,11 +327,10 @@ class renderer {
     row_range listed_rows() const {
         return strip_ ? strip_->listed(static_cast<int>(tiles_down_)) : all_rows();
     }
-    std::size_t first_tile(const row_range& rows) const {
-        return static_cast<std::size_t>(rows.first) * tiles_across_;
-    }
-    std::size_t tiles_in(const row_range& rows) const {
-        return static_cast<std::size_t>(rows.count()) * tiles_across_;
+    /// Returns the tiles of some tile rows.
+    ranks::share tiles_in(const row_range& rows) const {
+        return {static_cast<std::size_t>(rows.first) * tiles_across_,
+                static_cast<std::size_t>(rows.last) * tiles_across_};
     }
     template <class Kernel>
     void launch_backward(Kernel& kernel, const tile_lists<Real>& lists, const Real* render_gradient) {
@@ -346,7 +343,7 @@ class renderer {
             kernel.view = view(background_image_);
         else
             kernel.view = view(background_);
-        kernel.tile_of_segment = tile_of_segment_.data();
+        kernel.tile_of_segment = schedule_.tile_of_segment();
         // knob: backward_warps
         device_.for_each_warp(kernel.template warps<warp>(tiles(), segments()), kernel);
     }
@@ -356,17 +353,12 @@ class renderer {
     void blend_forward_by(const Backdrop& background, const tile_lists<Real>& lists,
                           unsigned long long* pairs) {
         using shorter = lower<Shape>;
-        const blend_forward<Real, Shape, Backdrop> blend{lists,
-                                                         order(),
-                                                         background,
-                                                         render_.data(),
-                                                         transmittance_.data(),
-                                                         last_.data(),
-                                                         checkpoints_.data(),
-                                                         pairs};
-        const std::size_t n = blend.template warps<warp>(tiles_in(listed_rows()));
+        const blend_forward<Real, Shape, Backdrop> blend{
+            lists,        schedule_.order(),   background, render_.data(), transmittance_.data(),
+            last_.data(), checkpoints_.data(), pairs};
+        const std::size_t n = blend.template warps<warp>(tiles_in(listed_rows()).count());
         if constexpr (!std::is_same_v<Shape, shorter>) {
-            if (n < device_.resident_warps()) return blend_forward_by<shorter>(background, lists, pairs);
+            if (n < 2 * device_.resident_warps()) return blend_forward_by<shorter>(background, lists, pairs);
         }
         device_.for_each_warp(n, blend);
     }
@@ -375,12 +367,12 @@ class renderer {
         return most_segments<Cut>(tiles(), capacity_ + (strip_ ? Cut::segment : 0));
     }
     tile_lists<Real> lists() const {
-        return {listed_splats().data(), gaussian_of_.data(), ranges_.data(),
-                tiles_across_,          camera_.width,       camera_.height};
+        return {splats_.data(), gaussian_of_.data(), ranges_.data(),
+                tiles_across_,  camera_.width,       camera_.height};
     }
     tile_lists<Real> depth_lists() const {
         tile_lists<Real> all = lists();
-        all.splats = strip_ ? near_visible_.data() : near_.data();
+        all.splats = near_.data();
         return all;
     }
 
@@ -398,16 +390,37 @@ class renderer {
             device_.template for_each_warp<narrow>(
                 own_warps<narrow>(),
                 projection{gaussians, count, camera_for<value_t<narrow, Real>, seen>(view), sh_degree,
-                           tiles_across_, tiles_down_, reserve_own(splats_), reserve_own(boxes_),
-                           reserve_own(depths_), reserve_own(order_), reserve_own(tiles_), dropped});
+                           tiles_across_, tiles_down_, reserve_own(splats_, expected_splats()),
+                           reserve_own(boxes_), reserve_own(depths_), reserve_own(order_),
+                           reserve_own(tiles_), dropped});
         });
     }
+    /// Returns the number of splats that others probably send.
+    std::size_t expected_splats() const {
+        if (!strip_) return 0;
+        return strip_->windows ? strip_->windows->received_by(device_.ranks().rank()).items()
+                               : exchange_.received();
+    }
     /// Gives each rank the splats of its strip.
-    void exchange_splats() {
-        const auto scope = exchanging(ranks::purpose::splats);
-        visible_.collect(own_gaussians().count(), strip_->listed_by_all(static_cast<int>(tiles_down_)),
-                         splats_.data(), boxes_.data(), depths_.data(), tiles_.data());
-        if (strip_->is_of_step) device_.ranks().traffic().count_step(visible_.drawn(), visible_.moved());
+    void exchange_splats(const std::optional<ranks::windows>& expected) {
+        exchange_.begin(own_gaussians().count(), strip_->listed_by_all(static_cast<int>(tiles_down_)),
+                        boxes_.data(), tiles_.data(), expected);
+        if (listed_count() > splats_.size()) {
+            buffer<splat<Real>> more;
+            more.resize(listed_count());
+            device_.copy(more.data(), splats_.data(), own_gaussians().count());
+            splats_ = std::move(more);
+        }
+        exchange_.send(splats_.data(), boxes_.data(), depths_.data(),
+                       splats_.data() + own_gaussians().count());
+    }
+    /// Makes the lists of a strip again if a rank has sent more splats than expected.
+    void complete_lists() {
+        if (strip_->windows && !exchange_.fits()) {
+            exchange_splats({});
+            bin();
+        }
+        if (strip_->is_of_step) device_.ranks().traffic().count_step(exchange_.drawn(), exchange_.moved());
     }
 
     /// Makes the list of Gaussians of each tile, front to back. Equal depths keep the order of the
@@ -417,67 +430,54 @@ class renderer {
             list_strip();
         } else {
             device_.sort_pairs(depths_, order_, count_);
-            list_by_tile(count_, listed_by_depth(boxes_), capacity_, gaussian_of_.data());
+            with_items<Real>(camera_, {order_.data(), splats_.data(), boxes_.data(), tiles_across_},
+                             [&](const auto& items) {
+                                 place_lists(items, count_, capacity_);
+                                 device_.write_lists(count_, items, tiles(), capacity_, gaussian_of_.data(),
+                                                     ranges_.data());
+                             });
         }
-        const row_range own = strip_ && strip_->own.count() > 0 ? strip_->own : all_rows();
-        device_.for_each_index(
-            segments(),
-            number_segments<Cut>{ranges_.data(), static_cast<std::uint32_t>(first_tile(own) + tiles_in(own)),
-                                 reserve(tile_of_segment_, segments()).data(),
-                                 static_cast<std::uint32_t>(first_tile(own))});
-        class_counts_.resize(tile_order::classes);
-        ordered_tiles_.resize(tile_order::classes * tiles());
-        device_.zero(class_counts_.data(), class_counts_.size());
-        device_.for_each_index(tiles_in(listed_rows()),
-                               order_tiles{ranges_.data(), order(), first_tile(listed_rows())});
+        const bool has_own_rows = strip_ && strip_->own.count() > 0;
+        schedule_.template make<Cut>(ranges_.data(), tiles(), tiles_in(listed_rows()),
+                                     tiles_in(has_own_rows ? strip_->own : all_rows()), segments());
     }
-    splats_by_depth<Real> listed_by_depth(const buffer<tile_box>& boxes) const {
-        return {(strip_ ? visible_.order : order_).data(), listed_splats().data(), boxes.data(),
-                tiles_across_};
-    }
-    /// Calls f with the splats as items of `device::distribute`.
-    template <class F>
-    void with_items(const splats_by_depth<Real>& splats, const F& f) const {
-        camera_.is_panorama ? f(panorama_splats_by_depth<Real>{splats, {camera_.width, tiles_across_}})
-                            : f(splats);
-    }
-    void list_by_tile(std::size_t count, const splats_by_depth<Real>& splats, std::uint64_t reserved,
-                      std::uint32_t* listed) {
-        with_items(splats, [&](const auto& items) {
-            device_.distribute(count, items, tiles(), reserved, listed, reserve(ranges_, tiles()).data(),
-                               required_.data());
-        });
+    template <class Items>
+    void place_lists(const Items& items, std::size_t count, std::uint64_t capacity) {
+        device_.place_lists(count, items, tiles(), capacity, reserve(ranges_, tiles()).data(),
+                            required_.data());
     }
     void list_strip() {
-        const auto& boxes =
-            strip_lists_.clip(visible_.boxes.data(), visible_.depths.data(), visible_.count(), listed_rows());
-        device_.sort_pairs(visible_.depths, visible_.order, visible_.count());
-        ranges_.resize(tiles());
-        with_items(listed_by_depth(boxes), [&](const auto& items) {
-            const auto scope = exchanging(ranks::purpose::lists);
-            strip_lists_.make(items, visible_.count(),
-                              {strip_->own, listed_rows(), tiles_across_, tiles_down_, capacity_,
-                               gaussian_of_.data(), ranges_.data(), required_.data()});
-        });
-    }
-
-    tile_order order() const {
-        return {class_counts_.data(), ordered_tiles_.data(), static_cast<std::uint32_t>(tiles())};
+        strip_lists_.sort({own_gaussians().count(), exchange_.received(), exchange_.received_before(),
+                           boxes_.data(), depths_.data(), exchange_.received_reach()},
+                          listed_rows());
+        device_.zero(reserve(ranges_, tiles()).data(), tiles());  // of tiles without a list
+        with_items<Real>(camera_,
+                         {strip_lists_.order(), splats_.data(), strip_lists_.boxes(), tiles_across_,
+                          static_cast<std::uint32_t>(tiles_in(listed_rows()).first)},
+                         [&](const auto& items) {
+                             const auto scope = exchanging(ranks::purpose::lists);
+                             strip_lists_.make(
+                                 items, listed_count(),
+                                 {strip_->own, listed_rows(), tiles_across_, tiles_down_, capacity_,
+                                  gaussian_of_.data(), ranges_.data(), required_.data()});
+                         });
     }
 
     static vec3<Real> color(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
 
     Device& device_;
-    buffer<splat<Real>> splats_, near_, near_visible_;  ///< the last two for `depth_splats`
+    /// Those of own Gaussians, and of others behind them. The second array is for `depth_splats`.
+    buffer<splat<Real>> splats_, near_;
     buffer<tile_box> boxes_;
     buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_;
     buffer<std::uint64_t> required_;
     buffer<tile_range> ranges_;
     buffer<Real> render_, transmittance_, checkpoints_;
-    visible_splats<Device, Real> visible_;  ///< with a strip, like the next
+    splat_exchange<Device, Real> exchange_;  ///< with a strip, like the next
     strip_lists<Device, Cut::segment> strip_lists_;
     gradient_sums<Device, Real> sums_;  // knob: renderer_members
-    buffer<std::uint32_t> last_, tile_of_segment_, class_counts_, ordered_tiles_;
+    buffer<std::uint32_t> last_;
+    tile_schedule<Device> schedule_;
     buffer<unsigned long long> work_;
     buffer<unsigned long long> pairs_;  ///< one counter for colors, and an unused one for depths
     std::uint64_t capacity_ = 0;

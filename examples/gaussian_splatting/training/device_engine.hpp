@@ -113,7 +113,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         const camera seen = features_.seen_by(plan.view, shot.camera);
         const auto loaded = views_.load(shot);
         target_image target = loaded.target(plan.background);
-        const auto strip = strips_.of(plan.view, shot.camera, loss_->reach(), device_.ranks());
+        const auto strip = strips_.of_step(plan.view, shot.camera, loss_->reach(), device_.ranks(), count_);
         set_strip(strip, true);
         if (strip) target.rows = strip->own_pixels(shot.camera.height);
         loss_->set_target(target);
@@ -123,7 +123,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         lists_.was_noted(plan.view, count_);
         if (strip) {
             row_work_.keep(plan.view, renderer_.row_work());
-            division_.note_step(renderer_.visible().drawn(), count_);
+            strips_.note_sent(plan.view, renderer_.exchange().window_counts(), count_);
+            division_.note_step(renderer_.exchange().drawn(), count_);
         }
         if (views_.cache() != nullptr) views_.cache()->upload_ahead();
     }
@@ -363,9 +364,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         if (views_.cache() != nullptr) views_.cache()->set_level(level);
         lists_.reset(views_.train(level).size());
         strips_.reset(views_.train(level).size());
-        std::vector<int> heights;
-        for (const photo& shot : views_.train(level)) heights.push_back(shot.camera.height);
-        row_work_.reset(heights);
+        row_work_.reset(views_.train(level));
     }
 
     /// Limits later draws to the strip of this rank.

@@ -28,7 +28,6 @@ device::memory_forecast forecast_of_gaussians(const Renderer& renderer, std::siz
                           of_strategy = 4 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
     constexpr std::size_t beside =
         sizeof(raster::visibility) + of_step + of_sort + of_distribution + of_strategy;
-    using splats = std::remove_cvref_t<decltype(renderer.visible())>;
     const bool is_divided = part < 1;
     const auto own = [&](std::size_t bytes) {
         return static_cast<std::size_t>(part * static_cast<double>(bytes));
@@ -40,19 +39,18 @@ device::memory_forecast forecast_of_gaussians(const Renderer& renderer, std::siz
     };
     const parameter_bytes of_parameters = bytes_per_gaussian(sh_degree, setup.storage);
     const std::size_t undivided = is_divided ? undivided_bytes_per_gaussian() : 0,
-                      of_render = Renderer::bytes_per_gaussian(setup.facts.gradient),
+                      of_render = Renderer::bytes::per_gaussian(setup.facts.gradient),
                       in_training = undivided + own(of_parameters.on_device - undivided + of_render) +
                                     parameter_gather<Device>::bytes_per_gaussian(sh_degree, part),
                       in_measurement = is_divided ? value_bytes_per_gaussian(sh_degree) + of_render : 0;
     std::uint64_t of_strips = 0;
     if (is_divided) {
-        const std::uint64_t known = renderer.visible().bytes();
-        of_strips = known > 0 ? grown(known) : gaussians * own(splats::bytes_per_listed_splat);
+        const std::uint64_t known = renderer.strip_bytes();
+        of_strips = known > 0 ? grown(known) : gaussians * own(Renderer::bytes::per_sent_splat());
     }
     return {.gaussians = gaussians * beside +
                          std::max(gaussians * in_training + of_strips, gaussians * in_measurement),
-            .others = grown(renderer.reserved_instances()) *
-                      (Renderer::bytes_per_instance() + (is_divided ? sizeof(std::uint32_t) : 0)),
+            .others = grown(renderer.reserved_instances()) * Renderer::bytes::per_instance(),
             .on_host = gaussians * of_parameters.on_host};
 }
 
@@ -70,7 +68,7 @@ std::uint64_t growth_limit(std::size_t present, std::uint64_t limit, std::uint64
 /// Returns the memory for each pixel of the largest view: its render, and the comparison with its photo.
 template <device::device Device, class Renderer>
 constexpr std::size_t bytes_per_pixel() {
-    return Renderer::bytes_per_pixel() + image_comparison<Device, float>::bytes_per_pixel() +
+    return Renderer::bytes::per_pixel() + image_comparison<Device, float>::bytes_per_pixel() +
            3 * sizeof(float);
 }
 

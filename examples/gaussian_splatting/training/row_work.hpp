@@ -21,14 +21,15 @@ class row_work {
   public:
     explicit row_work(Device& device) : device_(device) {}
 
-    /// Forgets the work. `heights`: the number of pixel rows of each view.
-    void reset(const std::vector<int>& heights) {
+    /// Forgets the work, and sets the views: a range of objects with a `camera`.
+    template <class Views>
+    void reset(const Views& views) {
         first_row_.assign(1, 0);
-        for (const int height : heights)
+        for (const auto& view : views)
             first_row_.push_back(
                 first_row_.back() +
-                static_cast<std::size_t>((height + raster::tile_size - 1) / raster::tile_size));
-        is_new_.assign(heights.size(), false);
+                static_cast<std::size_t>((view.camera.height + raster::tile_size - 1) / raster::tile_size));
+        is_new_.assign(views.size(), false);
     }
     /// Keeps the work of this rank in a view.
     void keep(std::size_t view, std::span<const unsigned long long> work) {

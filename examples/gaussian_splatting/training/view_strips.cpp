@@ -42,4 +42,29 @@ std::optional<raster::view_strip> view_strips::of(std::size_t view, const camera
     return strip;
 }
 
+std::optional<raster::view_strip> view_strips::of_step(std::size_t view, const camera& camera, int reach,
+                                                       const ranks::communicator& ranks,
+                                                       std::size_t gaussians) const {
+    auto strip = of(view, camera, reach, ranks);
+    if (strip) strip->windows = windows(view, gaussians, ranks.count());
+    return strip;
+}
+
+std::optional<ranks::windows> view_strips::windows(std::size_t view, std::size_t gaussians, int ranks) const {
+    if (view >= sent_.size() || sent_[view].gaussians == 0) return {};
+    // Training changes the numbers a little, and they grow with the model. Too few places cost more time
+    // than some unused ones.
+    constexpr double reserve = 1.0 / 16;
+    constexpr std::size_t least = 64;
+    const double growth = static_cast<double>(gaussians) / static_cast<double>(sent_[view].gaussians);
+    const std::vector<std::size_t>& counts = sent_[view].counts;
+    std::vector<std::size_t> places(counts.size());
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        const auto from = i / static_cast<std::size_t>(ranks), to = i % static_cast<std::size_t>(ranks);
+        if (from == to) continue;  // a rank sends itself nothing
+        places[i] = least + static_cast<std::size_t>((1 + reserve) * growth * static_cast<double>(counts[i]));
+    }
+    return ranks::windows(places, ranks);
+}
+
 }  // namespace gs::train

@@ -19,20 +19,44 @@ namespace gs::train {
 row_range balanced_rows(std::span<const std::uint64_t> weights, int part, int parts);
 
 /// Divides each training view among the ranks. The time of a tile row depends on its work: the number
-/// of splats that its pixels blend, which all ranks know from the last time.
+/// of splats that its pixels blend, which all ranks know from the last time. They also know how many
+/// splats they sent each other, so that a step need not wait for these numbers.
 class view_strips {
   public:
-    /// Forgets all work, and sets the number of views.
-    void reset(std::size_t views) { work_.assign(views, {}); }
+    /// Forgets all work and splats, and sets the number of views.
+    void reset(std::size_t views) {
+        work_.assign(views, {});
+        sent_.assign(views, {});
+    }
     /// Records the work of all ranks in a view, by tile row: see `renderer::row_work`.
-    void note(std::size_t view, const std::vector<std::uint64_t>& work) { work_[view] = work; }
+    void note(std::size_t view, const std::vector<std::uint64_t>& work) {
+        if (work_[view].empty()) sent_[view] = {};  // the borders move far
+        work_[view] = work;
+    }
+    /// Records the numbers of splats that ranks have sent each other for a view of a model with this many
+    /// Gaussians: see `splat_exchange::window_counts`.
+    void note_sent(std::size_t view, const std::vector<std::size_t>& counts, std::size_t gaussians) {
+        sent_[view] = {counts, gaussians};
+    }
 
     /// Returns the strip of this rank, or nothing if it is the only one.
     std::optional<raster::view_strip> of(std::size_t view, const camera& camera, int reach,
                                          const ranks::communicator& ranks) const;
+    /// The same for a step with this many Gaussians: with the windows that the ranks expect.
+    std::optional<raster::view_strip> of_step(std::size_t view, const camera& camera, int reach,
+                                              const ranks::communicator& ranks, std::size_t gaussians) const;
 
   private:
-    std::vector<std::vector<std::uint64_t>> work_;  ///< by view; empty if unknown
+    /// Returns windows that probably have places for all splats of a view, or nothing if none are recorded.
+    std::optional<ranks::windows> windows(std::size_t view, std::size_t gaussians, int ranks) const;
+
+    struct sent_splats {
+        std::vector<std::size_t> counts;
+        std::size_t gaussians = 0;
+    };
+
+    std::vector<std::vector<std::uint64_t>> work_;  ///< by view; empty if unknown, like the next
+    std::vector<sent_splats> sent_;
 };
 
 }  // namespace gs::train

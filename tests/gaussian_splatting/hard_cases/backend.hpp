@@ -136,9 +136,9 @@ struct backend {
     std::vector<std::uint64_t> (*prefix_sum)(const std::vector<std::uint32_t>&);
     /// The numbers from 0, sorted by their keys.
     std::vector<std::uint32_t> (*sort)(const std::vector<std::uint32_t>& keys);
-    /// Items with the buckets that each goes to, `no_bucket` among them.
+    /// Items with the buckets that each goes to, `no_bucket` among them. All lists move by `moved` places.
     bucket_lists (*distribute)(const std::vector<std::vector<std::uint32_t>>& items, std::size_t buckets,
-                               std::uint64_t capacity);
+                               std::uint64_t capacity, std::uint32_t moved);
     /// What a renderer says to this many instances of a view; nothing if it takes them.
     std::string (*complaint_about_instances)(std::uint64_t);
     /// The library's sum of all values into one address.

@@ -150,9 +150,11 @@ TEST_CASE("lists of buckets are those made one item at a time, however long the 
     struct shape {
         std::size_t items, buckets, usual, most;
     };
-    // Among them more buckets than a block of a GPU has shared memory for.
-    for (const shape& s : {shape{0, 3, 1, 1}, shape{1, 1, 1, 1}, shape{33, 7, 3, 7},
-                           shape{40, 13000, 9, 13000}, shape{5000, 625, 6, 625}, shape{5000, 1, 1, 1}}) {
+    // Among them more buckets than a block of a GPU has shared memory for, and so many items that a GPU cuts
+    // them into more slices.
+    for (const shape& s :
+         {shape{0, 3, 1, 1}, shape{1, 1, 1, 1}, shape{33, 7, 3, 7}, shape{40, 13000, 9, 13000},
+          shape{5000, 625, 6, 625}, shape{5000, 1, 1, 1}, shape{140000, 50, 2, 20}}) {
         CAPTURE(s.items);
         CAPTURE(s.buckets);
         std::vector<std::vector<std::uint32_t>> items(s.items), lists(s.buckets);
@@ -179,7 +181,8 @@ TEST_CASE("lists of buckets are those made one item at a time, however long the 
             on_each_backend([&](const backend& b) {
                 for (const int threads : {3, 1}) {
                     omp_set_num_threads(threads);
-                    const bucket_lists found = b.distribute(items, s.buckets, capacity);
+                    const std::uint32_t moved = threads == 3 ? 0 : 37;
+                    const bucket_lists found = b.distribute(items, s.buckets, capacity, moved);
                     CHECK(found.required == required);
                     CHECK((found.items == fitting));
                 }

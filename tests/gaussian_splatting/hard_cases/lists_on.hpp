@@ -167,7 +167,7 @@ class lists_on {
     }
 
     static bucket_lists distribute(const std::vector<std::vector<std::uint32_t>>& items, std::size_t buckets,
-                                   std::uint64_t capacity) {
+                                   std::uint64_t capacity, std::uint32_t moved) {
         Device device;
         memory on(device);
         std::vector<std::uint64_t> first{0};
@@ -182,13 +182,17 @@ class lists_on {
         on.put_as_they_are(first_on, first);
         on.put_as_they_are(all_on, all);
         required.resize(1);
-        listed.resize(capacity);
+        listed.resize(capacity + moved);
         ranges.resize(buckets);
-        device.distribute(items.size(), given_items{first_on.data(), all_on.data()}, buckets, capacity,
-                          listed.data(), ranges.data(), required.data());
-        const auto values = on.get_as_they_are(listed.data(), capacity);
+        const given_items given{first_on.data(), all_on.data()};
+        device.place_lists(items.size(), given, buckets, capacity, ranges.data(), required.data());
+        auto moved_ranges = on.get_as_they_are(ranges.data(), buckets);
+        for (gs::raster::tile_range& r : moved_ranges) r = {r.begin + moved, r.end + moved};
+        on.put_as_they_are(ranges, moved_ranges);
+        device.write_lists(items.size(), given, buckets, capacity + moved, listed.data(), ranges.data());
+        const auto values = on.get_as_they_are(listed.data(), capacity + moved);
         bucket_lists found{{}, on.get_as_they_are(required.data(), 1)[0]};
-        for (const gs::raster::tile_range& r : on.get_as_they_are(ranges.data(), buckets))
+        for (const gs::raster::tile_range& r : moved_ranges)
             found.items.emplace_back(values.begin() + r.begin, values.begin() + r.end);
         return found;
     }

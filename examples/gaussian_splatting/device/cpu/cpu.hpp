@@ -177,22 +177,18 @@ class basic_cpu {
     }
 
     template <class Range>
-    void distribute(std::size_t n, const items auto& all, std::size_t buckets, std::uint64_t capacity,
-                    std::uint32_t* listed, Range* ranges, std::uint64_t* required) {
+    void place_lists(std::size_t n, const items auto& all, std::size_t buckets, std::uint64_t capacity,
+                     Range* ranges, std::uint64_t* required) {
         // The items are cut into more slices than threads, because some items have far more
-        // candidates than others. Each slice has a row of counts, which become positions, and
-        // keeps its instances for the second pass.
-        const auto slices = 4 * static_cast<std::size_t>(omp_get_max_threads());
+        // candidates than others. Each slice has a row of counts, which become places in the lists, and
+        // keeps its instances for `write_lists`.
+        const std::size_t slices = slices_of_items();
         places_.resize(slices * buckets);
         totals_.resize(buckets);
         first_.resize(buckets + 1);
         if (found_.size() < slices) found_.resize(slices);
-        const auto for_each_slice = [&](const auto& f) {
-#pragma omp parallel for schedule(dynamic)
-            for (std::size_t s = 0; s < slices; ++s) f(found_[s], places_.data() + s * buckets, s);
-        };
         zero(places_.data(), slices * buckets);
-        for_each_slice([&](std::vector<instance>& kept, std::uint64_t* counts, std::size_t s) {
+        for_each_slice(buckets, [&](std::vector<instance>& kept, std::uint64_t* counts, std::size_t s) {
             auto found = std::move(kept);  // a local copy avoids false sharing
             found.clear();
             for (std::size_t i = n * s / slices; i < n * (s + 1) / slices; ++i) {
@@ -207,20 +203,25 @@ class basic_cpu {
         });
         for_each_index(buckets, [&](std::size_t b) {
             std::uint64_t total = 0;
-            for (std::size_t s = 0; s < slices; ++s) total += places_.data()[s * buckets + b];
+            for (std::size_t s = 0; s < slices; ++s)
+                total += std::exchange(places_.data()[s * buckets + b], total);
             totals_.data()[b] = static_cast<std::uint32_t>(total);
         });
         prefix_sum(totals_, first_, buckets);
         *required = first_.data()[buckets];
         for_each_index(buckets, [&](std::size_t b) {
-            std::uint64_t at = first_.data()[b];
-            for (std::size_t s = 0; s < slices; ++s) at += std::exchange(places_.data()[s * buckets + b], at);
             ranges[b] = {static_cast<std::uint32_t>(std::min(first_.data()[b], capacity)),
-                         static_cast<std::uint32_t>(std::min(at, capacity))};
+                         static_cast<std::uint32_t>(std::min(first_.data()[b + 1], capacity))};
         });
-        for_each_slice([&](const std::vector<instance>& found, std::uint64_t* places, std::size_t) {
-            for (const auto& [bucket, value] : found)
-                if (const std::uint64_t place = places[bucket]++; place < capacity) listed[place] = value;
+    }
+    template <class Range>
+    void write_lists(std::size_t, const items auto&, std::size_t buckets, std::uint64_t,
+                     std::uint32_t* listed, const Range* ranges) {
+        for_each_slice(buckets, [&](const std::vector<instance>& found, std::uint64_t* places, std::size_t) {
+            for (const auto& [bucket, value] : found) {
+                const std::uint64_t place = ranges[bucket].begin + places[bucket]++;
+                if (place < ranges[bucket].end) listed[place] = value;
+            }
         });
     }
 
@@ -289,6 +290,15 @@ class basic_cpu {
     key_check key_check_;
     using clock = std::chrono::steady_clock;
 
+    static std::size_t slices_of_items() { return 4 * static_cast<std::size_t>(omp_get_max_threads()); }
+    /// Calls f(instances, places, s) for each slice s of items.
+    template <class F>
+    void for_each_slice(std::size_t buckets, const F& f) {
+        const std::size_t slices = slices_of_items();
+#pragma omp parallel for schedule(dynamic)
+        for (std::size_t s = 0; s < slices; ++s) f(found_[s], places_.data() + s * buckets, s);
+    }
+
     /// Runs one pass of a stable radix sort, which counts the digits of each slice and then moves
     /// the pairs.
     void sort_by_digit(const std::uint32_t* keys, const std::uint32_t* values, std::size_t n, int shift,
@@ -333,7 +343,7 @@ class basic_cpu {
     gs::ranks::communicator* ranks_ = &alone_;
     buffer<std::uint32_t> other_keys_, other_values_;
     std::vector<std::size_t> histograms_, starts_;
-    // Memory of `distribute`.
+    // Memory of `place_lists`.
     struct instance {
         std::uint32_t bucket, value;
     };

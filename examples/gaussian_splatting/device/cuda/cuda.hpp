@@ -175,23 +175,27 @@ class cuda {
     }
 
     template <items Items, class Range>
-    void distribute(std::size_t n, const Items& all, std::size_t buckets, std::uint64_t capacity,
-                    std::uint32_t* listed, Range* ranges, std::uint64_t* required) {
+    void place_lists(std::size_t n, const Items& all, std::size_t buckets, std::uint64_t capacity,
+                     Range* ranges, std::uint64_t* required) {
         using namespace detail;
         first_candidate_.resize(n + 1);
         prefix_sum_of(sizes_of<Items>{all}, first_candidate_, n);
-        table_.resize(slices * buckets);
-
-        const std::uint64_t* first = first_candidate_.data();
-        const auto b = static_cast<unsigned>(buckets);
-        const bool shared = buckets <= shared_buckets;
-        const std::size_t row = shared ? buckets * sizeof(std::uint32_t) : 0;
-        launch(shared ? count_slice<true, Items> : count_slice<false, Items>, slices,
-               counting_warps * warp_size, row, all, first, n, b, table_.data());
-        launch(place_buckets<Range>, blocks(buckets, warp_size), placing_warps * warp_size, 0, b,
-               table_.data(), capacity, ranges, required, slices_done_.data());
-        launch(shared ? append_slice<true, Items, Range> : append_slice<false, Items, Range>, slices,
-               warp_size, row, all, first, n, b, table_.data(), capacity, ranges, listed);
+        with_slices(n, buckets, [&]<unsigned Slices, bool Shared>(unsigned b, std::size_t row) {
+            table_.resize(Slices * buckets);
+            launch(count_slice<Slices, Shared, Items>, Slices, counting_warps * warp_size, row, all,
+                   first_candidate_.data(), n, b, table_.data());
+            launch(place_buckets<Slices, Range>, blocks(buckets, warp_size), placing_warps * warp_size, 0, b,
+                   table_.data(), capacity, ranges, required, slices_done_.data());
+        });
+    }
+    template <items Items, class Range>
+    void write_lists(std::size_t n, const Items& all, std::size_t buckets, std::uint64_t places,
+                     std::uint32_t* listed, const Range* ranges) {
+        using namespace detail;
+        with_slices(n, buckets, [&]<unsigned Slices, bool Shared>(unsigned b, std::size_t row) {
+            launch(append_slice<Slices, Shared, Items, Range>, Slices, warp_size, row, all,
+                   first_candidate_.data(), n, b, table_.data(), places, ranges, listed);
+        });
     }
 
     void sort_pairs(buffer<std::uint32_t>& keys, buffer<std::uint32_t>& values, std::size_t n) {
@@ -288,6 +292,22 @@ class cuda {
         check(cudaLaunchKernelEx(&config, kernel, arguments...));
     }
 
+    /// Calls f for the number of slices, with the number of buckets and the bytes of a table row in shared
+    /// memory: see `detail::few_slices`.
+    template <class F>
+    static void with_slices(std::size_t items, std::size_t buckets, const F& f) {
+        using namespace detail;
+        constexpr std::size_t many_items = std::size_t{1} << 17, few_buckets = 4096;
+        const auto b = static_cast<unsigned>(buckets);
+        const std::size_t row = buckets * sizeof(std::uint32_t);
+        if (items >= many_items && buckets <= few_buckets)
+            f.template operator()<many_slices, true>(b, row);
+        else if (buckets <= shared_buckets)
+            f.template operator()<few_slices, true>(b, row);
+        else
+            f.template operator()<few_slices, false>(b, 0);
+    }
+
     /// Computes `prefix_sum` of a sequence. Allocates scratch memory if it needs more than before.
     template <class Numbers>
     void prefix_sum_of(const Numbers& in, buffer<std::uint64_t>& out, std::size_t n) {
@@ -314,7 +334,7 @@ class cuda {
     std::size_t resident_warps_ = 0;
     buffer<std::uint32_t> other_keys_, other_values_, sort_memory_;
     buffer<char> scratch_;
-    buffer<std::uint64_t> first_candidate_;  // memory of `distribute`, with the next two
+    buffer<std::uint64_t> first_candidate_;  // memory of `place_lists`, with the next two
     buffer<std::uint32_t> table_;
     buffer<unsigned> slices_done_;
     std::optional<cuda_peers> peers_;  ///< the GPUs of the other ranks

@@ -10,13 +10,15 @@
 #include "../distribute.hpp"
 #include "kernel.hpp"
 
-/// The kernels of `cuda::distribute`. The candidates of all items, in the order of the items, are
-/// cut into `slices` of equal length, so that slices do not depend on the sizes of items. A table
-/// has a row per slice and a column per bucket. First it holds how many of the slice's candidates
-/// go to the bucket, then the place in the bucket's list where they begin.
+/// The kernels of `cuda::place_lists` and `cuda::write_lists`. The candidates of all items, in the order
+/// of the items, are cut into `Slices` of equal length, so that slices do not depend on the sizes of
+/// items. A table has a row per slice and a column per bucket. First it holds how many of the slice's
+/// candidates go to the bucket, then the place in the bucket's list where they begin.
 namespace gs::device::detail {
 
-inline constexpr unsigned slices = 1024;
+/// One warp writes the lists of a slice. More slices keep more multiprocessors busy, but the table takes
+/// time and memory for each.
+inline constexpr unsigned few_slices = 1024, many_slices = 2048;
 inline constexpr unsigned counting_warps = 4;  ///< number of warps per slice
 
 /// The largest number of buckets for which a row fits in shared memory.
@@ -74,11 +76,12 @@ __device__ void for_each_candidate(const Items& items, const std::uint64_t* firs
 }
 
 /// The range [from, to) of candidates in part `part` of the `parts` of a slice.
+template <unsigned Slices>
 struct slice_of_candidates {
     std::uint64_t from, to;
 
     __device__ slice_of_candidates(std::uint64_t all, unsigned slice, unsigned part, unsigned parts) {
-        const std::uint64_t each = (all + slices - 1) / slices, begin = each * slice;
+        const std::uint64_t each = (all + Slices - 1) / Slices, begin = each * slice;
         from = begin + each * part / parts;
         to = begin + each * (part + 1) / parts;
         from = from < all ? from : all;
@@ -87,7 +90,7 @@ struct slice_of_candidates {
 };
 
 /// Counts a slice's candidates by bucket. One block per slice.
-template <bool Shared, class Items>
+template <unsigned Slices, bool Shared, class Items>
 __global__ void __launch_bounds__(counting_warps* warp_size)
     count_slice(Items items, const std::uint64_t* first, std::size_t count, unsigned buckets,
                 std::uint32_t* table) {
@@ -97,7 +100,7 @@ __global__ void __launch_bounds__(counting_warps* warp_size)
     std::uint32_t* counts = Shared ? shared_row : row;
     for (unsigned b = threadIdx.x; b < buckets; b += blockDim.x) counts[b] = 0;
     __syncthreads();
-    const slice_of_candidates mine(first[count], blockIdx.x, threadIdx.x / warp_size, counting_warps);
+    const slice_of_candidates<Slices> mine(first[count], blockIdx.x, threadIdx.x / warp_size, counting_warps);
     for_each_candidate<1>(items, first, count, mine.from, mine.to, [&](const auto& bucket, const auto&) {
         if (bucket[0] != no_bucket) atomicAdd(counts + bucket[0], 1u);
     });
@@ -112,12 +115,12 @@ inline constexpr unsigned placing_warps = 32;
 /// block handles 32 buckets: each lane handles a bucket, and each warp a part of the slices. The
 /// block that finishes last, which the counter `done` determines, computes the ranges. Before that,
 /// `ranges[b].end` holds the length of list b.
-template <class Range>
+template <unsigned Slices, class Range>
 __global__ void __launch_bounds__(placing_warps* warp_size)
     place_buckets(unsigned buckets, std::uint32_t* table, std::uint64_t capacity, Range* ranges,
                   std::uint64_t* required, unsigned* done) {
     await_kernel_before();
-    constexpr unsigned each = slices / placing_warps;
+    constexpr unsigned each = Slices / placing_warps;
     __shared__ std::uint32_t sums[placing_warps][warp_size + 1];
     __shared__ bool is_last;
     const unsigned lane = lane_of_warp(), warp = threadIdx.x / warp_size;
@@ -173,10 +176,10 @@ __global__ void __launch_bounds__(placing_warps* warp_size)
 
 /// Writes the lists. One warp per slice, because the order of candidates in a slice is the order of
 /// the lists.
-template <bool Shared, class Items, class Range>
+template <unsigned Slices, bool Shared, class Items, class Range>
 __global__ void __launch_bounds__(warp_size)
     append_slice(Items items, const std::uint64_t* first, std::size_t count, unsigned buckets,
-                 std::uint32_t* table, std::uint64_t capacity, const Range* ranges, std::uint32_t* listed) {
+                 std::uint32_t* table, std::uint64_t most, const Range* ranges, std::uint32_t* listed) {
     await_kernel_before();
     extern __shared__ std::uint32_t shared_row[];
     std::uint32_t* row = table + std::size_t{blockIdx.x} * buckets;
@@ -184,7 +187,7 @@ __global__ void __launch_bounds__(warp_size)
 #pragma unroll 8
     for (unsigned b = threadIdx.x; b < buckets; b += warp_size) places[b] = row[b] + ranges[b].begin;
     __syncwarp();
-    const slice_of_candidates mine(first[count], blockIdx.x, 0, 1);
+    const slice_of_candidates<Slices> mine(first[count], blockIdx.x, 0, 1);
     constexpr unsigned rounds = 4;
     const auto append = [&](const auto& buckets_of, const auto& values) {
         unsigned peers[rounds];
@@ -197,7 +200,7 @@ __global__ void __launch_bounds__(warp_size)
             std::uint32_t place = 0;
             if (goes) {
                 place = places[bucket] + lanes_before(peers[r]);
-                if (place < capacity) listed[place] = values[r];
+                if (place < most) listed[place] = values[r];
             }
             __syncwarp();
             if (goes && is_last_of(peers[r])) places[bucket] = place + 1;

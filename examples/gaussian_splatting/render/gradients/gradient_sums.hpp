@@ -104,17 +104,20 @@ class gradient_sums {
                                    round_sums<kept_by<Kernel>>{kernel.sums, unit_of(kernel), sums_.data()});
         return sums_;
     }
-    /// Called after the kernel if each rank has sums of the `splats` that it lists. Returns the sums of
-    /// this rank's share of the Gaussians: see `visible_splats::add_ranks`. Precondition: the sums are `Real`
-    /// or in fixed point.
-    template <class Kernel, class Splats>
-    const buffer<Real>& end_for_owners(const Kernel& kernel, Splats& splats) {
+    /// Called after the kernel if each rank has sums for its `own` Gaussians and, behind them, for the splats
+    /// of others. Returns the sums of all ranks for its own Gaussians: see `splat_exchange::add_ranks`.
+    /// Precondition: the sums are `Real` or in fixed point.
+    template <class Kernel, class Exchange>
+    const buffer<Real>& end_for_owners(const Kernel& kernel, Exchange& exchange, std::size_t own) {
+        const std::size_t others = own * record_stride;
         if constexpr (are_real<Kernel>)
-            return splats.add_ranks(sums_.data(), keep_sum{});
+            exchange.add_ranks(sums_.data(), sums_.data() + others, keep_sum{}, sums_.data());
         else if constexpr (are_fixed<Kernel>)
-            return splats.add_ranks(fixed(), round_fixed<kept_by<Kernel>>{unit_of(kernel)});
+            exchange.add_ranks(fixed(), fixed() + others, round_fixed<kept_by<Kernel>>{unit_of(kernel)},
+                               sums_.data());
         else
             throw error("ranks cannot add the sums of this accumulator");
+        return sums_;
     }
 
     /// Returns the size of the sums of a Gaussian. Accumulators other than `native` have an integer

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 #include "../../device/atomic.hpp"
 #include "../../device/device.hpp"
 #include "../geometry/list_capacity.hpp"
+#include "strip_splats.hpp"
 #include "tile_lists.hpp"
 #include "view_strip.hpp"
 
@@ -53,56 +55,24 @@ struct count_unlisted {
     }
 };
 
-/// Where the lists of a strip are among the lists of the whole view.
-struct strip_place {
-    unsigned long long all;     ///< number of instances of the whole view
-    unsigned long long before;  ///< number of instances in the tile rows before those with lists
-    std::uint64_t listed;       ///< number of instances in the lists of the strip
-};
-
-/// Adds the lengths of tile rows to the place. One index per length that `measure_rows` writes.
-struct add_rows {
-    const std::uint64_t* lengths;
-    std::size_t first_listed;
-    strip_place* place;  ///< initially zero
-
-    WARPAGG_HD void operator()(std::size_t row) const {
-        if (lengths[row] == 0) return;
-        device::atomic_add(&place->all, static_cast<unsigned long long>(lengths[row]));
-        if (row < first_listed)
-            device::atomic_add(&place->before, static_cast<unsigned long long>(lengths[row]));
-    }
-};
-
-/// Replaces the number of listed instances by that of the whole view. One index.
-struct require_all {
-    strip_place* place;
-    std::uint64_t* required;
-
-    WARPAGG_HD void operator()(std::size_t) const {
-        place->listed = *required;
-        *required = place->all;
-    }
-};
-
-/// Moves tile lists to the places of a segment that they have in the lists of the whole view. One
-/// index per thread.
+/// Moves tile lists to the places of a segment that they have in the lists of the whole view. Replaces the
+/// number of instances by that of the whole view. One index per tile with a list, at least one.
 template <unsigned Segment>
 struct move_lists {
-    const strip_place* place;
-    const std::uint32_t* from;
-    std::uint32_t* to;
-    std::uint64_t capacity;
-    std::size_t threads;
+    const std::uint64_t* lengths;  ///< of the tile rows: see `measure_rows`
+    std::size_t first_listed, rows;
     tile_range* ranges;  ///< of the tiles with lists
     std::size_t tiles;
+    std::uint64_t* required;
 
-    WARPAGG_HD void operator()(std::size_t thread) const {
-        const auto by = static_cast<std::uint32_t>(place->before % Segment);
-        const std::uint64_t listed = place->listed < capacity ? place->listed : capacity;
-        for (std::size_t i = thread; i < tiles; i += threads)
-            ranges[i] = {ranges[i].begin + by, ranges[i].end + by};
-        for (std::size_t i = thread; i < listed; i += threads) to[i + by] = from[i];
+    WARPAGG_HD void operator()(std::size_t i) const {
+        std::uint64_t before = 0;
+        for (std::size_t row = 0; row < first_listed; ++row) before += lengths[row];
+        const auto by = static_cast<std::uint32_t>(before % Segment);
+        if (i < tiles) ranges[i] = {ranges[i].begin + by, ranges[i].end + by};
+        if (i > 0) return;
+        for (std::size_t row = first_listed; row <= rows; ++row) before += lengths[row];
+        *required = before;
     }
 };
 
@@ -110,10 +80,10 @@ struct move_lists {
 struct strip_place_in_view {
     row_range own, listed;  ///< tile rows
     unsigned tiles_across, tiles_down;
-    std::uint64_t capacity;  ///< of `listed_splats`
-    std::uint32_t* listed_splats;
-    tile_range* ranges;       ///< of all tiles of the view
-    std::uint64_t* required;  ///< receives the number of instances of the whole view
+    std::uint64_t capacity;        ///< largest number of instances of the whole view
+    std::uint32_t* listed_splats;  ///< places for these, and for a segment more
+    tile_range* ranges;            ///< of all tiles of the view
+    std::uint64_t* required;       ///< receives the number of instances of the whole view
 
     std::size_t first_tile(const row_range& rows) const {
         return static_cast<std::size_t>(rows.first) * tiles_across;
@@ -133,53 +103,60 @@ class strip_lists {
   public:
     explicit strip_lists(Device& device) : device_(device) {}
 
-    /// Frees the memory, until the next `clip`.
+    /// Frees the memory, until the next `sort`.
     void release() {
         boxes_ = {};
-        unmoved_ = {};
+        depths_ = {};
+        order_ = {};
     }
 
-    /// Limits the boxes of splats to the tile rows with lists: see `clip_boxes`. Returns the new boxes.
-    const buffer<tile_box>& clip(const tile_box* boxes, std::uint32_t* depths, std::size_t count,
-                                 const row_range& listed) {
+    /// Merges the splats of a strip, and sorts them by depth.
+    void sort(const strip_splats& splats, const row_range& listed) {
+        const std::size_t count = splats.count();
         boxes_.resize(count);
-        device_.for_each_index(count, clip_boxes{boxes, listed, boxes_.data(), depths});
-        return boxes_;
+        depths_.resize(count);
+        order_.resize(count);
+        device_.for_each_index(count,
+                               merge_splats{splats, listed, boxes_.data(), depths_.data(), order_.data()});
+        device_.sort_pairs(depths_, order_, count);
     }
+    /// The boxes of the splats within the tile rows with lists, and the order of the splats.
+    /// @{
+    const tile_box* boxes() const { return boxes_.data(); }
+    const std::uint32_t* order() const { return order_.data(); }
+    /// @}
+    /// The size of the arrays with a value for each splat.
+    std::size_t bytes() const { return boxes_.size() * bytes_per_splat; }
+    static constexpr std::size_t bytes_per_splat = sizeof(tile_box) + 2 * sizeof(std::uint32_t);
+
     /// Makes the lists of the splats, in their order. All ranks must call this. `items`: see
-    /// `device::distribute`.
+    /// `device::place_lists`; their first bucket is the first tile with a list.
     template <class Items>
     void make(const Items& items, std::size_t count, const strip_place_in_view& at) {
-        unmoved_.resize(at.capacity);
-        device_.distribute(count, items, at.tiles({0, static_cast<int>(at.tiles_down)}), at.capacity,
-                           unmoved_.data(), at.ranges, at.required);
+        const std::size_t buckets = at.tiles(at.listed), first_listed = at.first_tile(at.listed);
+        tile_range* const ranges = at.ranges + first_listed;
+        device_.place_lists(count, items, buckets, at.capacity, ranges, at.required);
         const list_capacity capacity{at.required, at.capacity};
         lengths_.resize(at.tiles_down + 1);
         device_.for_each_index(lengths_.size(), measure_rows{at.ranges, at.tiles_across, at.own,
                                                              at.tiles_down, capacity, lengths_.data()});
-        const auto first = static_cast<std::uint32_t>(at.first_tile(at.own));
+        const auto first = static_cast<std::uint32_t>(at.first_tile(at.own) - first_listed);
         const auto last = static_cast<std::uint32_t>(first + at.tiles(at.own));
         device_.for_each_index(
             count, count_unlisted<Items>{items, first, last, capacity, lengths_.data() + at.tiles_down});
+        // Ranks meet here, before the lists are written, because these take the ranks different times.
         device_.sum_over_ranks(lengths_.data(), lengths_.size());
-        place_.resize(1);
-        device_.zero(place_.data(), 1);
-        device_.for_each_index(
-            lengths_.size(),
-            add_rows{lengths_.data(), static_cast<std::size_t>(at.listed.first), place_.data()});
-        device_.for_each_index(1, require_all{place_.data(), at.required});
-        const std::size_t threads = 32 * device_.resident_warps();
-        device_.for_each_index(
-            threads, move_lists<Segment>{place_.data(), unmoved_.data(), at.listed_splats, at.capacity,
-                                         threads, at.ranges + at.first_tile(at.listed), at.tiles(at.listed)});
+        device_.for_each_index(std::max<std::size_t>(buckets, 1),
+                               move_lists<Segment>{lengths_.data(), static_cast<std::size_t>(at.listed.first),
+                                                   at.tiles_down, ranges, buckets, at.required});
+        device_.write_lists(count, items, buckets, at.capacity + Segment, at.listed_splats, ranges);
     }
 
   private:
     Device& device_;
     buffer<tile_box> boxes_;
-    buffer<std::uint32_t> unmoved_;
+    buffer<std::uint32_t> depths_, order_;
     buffer<std::uint64_t> lengths_;
-    buffer<strip_place> place_;
 };
 
 }  // namespace gs::raster

@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "../../device/atomic.hpp"
 #include "../../ranks/communicator.hpp"
 #include "../geometry/row_range.hpp"
+#include "tile_lists.hpp"
 #include "tile_reach.hpp"
 
 namespace gs::raster {
@@ -23,9 +25,10 @@ struct listed_tile_rows {
 struct view_strip {
     row_range own;
     int reach = 0;  ///< number of pixel rows beyond its own that it only renders, see `loss::reach`
-    std::vector<row_range> own_of_all = {};  ///< the own rows of each rank
-    ranks::shares gaussians = {0, 1, 1};     ///< the Gaussians that each rank projects
-    bool is_of_step = true;                  ///< whether traffic counts for a training step, or for scores
+    std::vector<row_range> own_of_all = {};      ///< the own rows of each rank
+    ranks::shares gaussians = {0, 1, 1};         ///< the Gaussians that each rank projects
+    std::optional<ranks::windows> windows = {};  ///< the expected ones: see `splat_exchange::begin`
+    bool is_of_step = true;  ///< whether traffic counts for a training step, or for scores
 
     /// Returns the tile rows with tile lists, of a view with `down` tile rows.
     row_range listed(int down) const { return listed(own, down); }
@@ -57,36 +60,27 @@ WARPAGG_HD tile_box limited(const tile_box& box, const row_range& rows) {
     return {box.x0, in_rows(box.y0), box.x1, in_rows(box.y1)};
 }
 
-/// Limits boxes to some tile rows. Splats without a tile there get the largest depth, so that they are
-/// sorted behind all others. One index per splat.
-struct clip_boxes {
-    const tile_box* boxes;
-    row_range rows;
-    tile_box* limited_boxes;
-    std::uint32_t* depths;  ///< sort keys: see `project`
-
-    WARPAGG_HD void operator()(std::size_t i) const {
-        const tile_box in_rows = limited(boxes[i], rows);
-        limited_boxes[i] = in_rows;
-        if (in_rows.size() == 0) depths[i] = 0xffffffffu;
-    }
-};
-
 /// The number of pixels of a whole tile that `measure_work` samples.
 inline constexpr unsigned samples_per_tile = 16;
 
-/// Adds the numbers of splats that sampled pixels of each own tile row blend. One index per own tile.
+/// Adds the work of each own tile row: the numbers of splats that sampled pixels blend, and the instances in
+/// its tile lists. One index per own tile.
 struct measure_work {
+    /// The time to list an instance and to skip it in pixels, relative to that of a sampled pixel which
+    /// blends a splat, with all others that it stands for.
+    static constexpr unsigned work_of_instance = 4;
+
     const std::uint32_t* last;  ///< see `blend_forward`
     unsigned width, height, tiles_across;
     std::size_t first_tile;
+    const tile_range* ranges;  ///< of all tiles
     unsigned long long* work;  ///< by tile row
 
     WARPAGG_HD void operator()(std::size_t i) const {
         const auto tile = static_cast<unsigned>(first_tile + i), row = tile / tiles_across;
         constexpr unsigned step = 4;
         static_assert(tile_size / step * (tile_size / step) == samples_per_tile);
-        unsigned long long sum = 0;
+        unsigned long long sum = work_of_instance * (ranges[tile].end - ranges[tile].begin);
         for (unsigned y = row * tile_size; y < (row + 1) * tile_size && y < height; y += step)
             for (unsigned k = 0, x = tile % tiles_across * tile_size; k < tile_size && x + k < width;
                  k += step)
