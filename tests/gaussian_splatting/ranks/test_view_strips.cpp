@@ -77,3 +77,36 @@ TEST_CASE("strips: known work of tile rows moves the borders between ranks") {
     strips.reset(1);
     CHECK_FALSE(strips.of(0, camera, 10, alone).has_value());
 }
+
+TEST_CASE("strips: a step expects the splats that its view had sent, for the present number of Gaussians") {
+    gs::camera camera;
+    camera.width = 16;
+    camera.height = 64;
+    const auto end = gs::ranks::run(2, [&](gs::ranks::communicator& all) {
+        gs::train::view_strips strips;
+        strips.reset(2);
+        const auto expected = [&](std::size_t view, std::size_t gaussians) {
+            return strips.of_step(view, camera, 10, all, gaussians)->windows;
+        };
+        if (expected(0, 1000)) return 1;
+        strips.note_sent(0, {0, 320, 160, 0}, 1000);
+        if (expected(1, 1000)) return 2;
+        // A sixteenth more, and at least 64 places.
+        const auto same = expected(0, 1000), grown = expected(0, 2000);
+        if (same->sent_by(0).of(1).count() != 340 + 64 || same->sent_by(1).of(0).count() != 170 + 64)
+            return 3;
+        if (grown->sent_by(0).of(1).count() != 680 + 64) return 4;
+        if (same->sent_by(0).of(0).count() != 0 || same->sent_by(1).of(1).count() != 0) return 5;
+        // Strips for scores list other rows.
+        if (strips.of(0, camera, 0, all)->windows) return 6;
+        strips.note(0, {900, 0, 0, 0});  // the borders move for the first time
+        if (expected(0, 1000)) return 7;
+        strips.note_sent(0, {0, 10, 10, 0}, 1000);
+        strips.note(0, {800, 0, 0, 0});
+        if (!expected(0, 1000)) return 8;
+        strips.reset(2);
+        return expected(0, 1000) ? 9 : 0;
+    });
+    CHECK(end.reason == "");
+    CHECK(end.code == 0);
+}
