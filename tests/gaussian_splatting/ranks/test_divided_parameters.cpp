@@ -7,6 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <warpagg/warp/simd.hpp>
 
 #include "../cli/run_program.hpp"
 #include "densify/parameter_gather.hpp"
