@@ -188,6 +188,7 @@ TEST_CASE("resume: a checkpoint of other photos or of a later iteration is refus
     SUBCASE("a photo is missing") {
         const std::string name = scene.train[2].name, next = scene.train[3].name;
         scene.train.erase(scene.train.begin() + 2);
+        o.features = options_for(scene, "adaptive").features;
         CHECK(gs_test::says(problem(), {"photo 3 was \"" + name + "\" and is \"" + next + "\""}));
     }
     SUBCASE("a camera has moved") {
