@@ -18,7 +18,7 @@ class learned_cameras {
     /// size. Waits for the device.
     virtual camera training_camera(std::size_t view, const camera& given) = 0;
     /// Returns the camera of a held-out view with a pose that fits the model better. Uses the left half
-    /// of the photo, so the right half can serve for measurements. Costs a hundred training steps.
+    /// of the photo, so the right half can serve for measurements. Costs 200 training steps.
     virtual camera refined_camera(std::size_t test_view, const std::array<float, 3>& background) = 0;
 };
 

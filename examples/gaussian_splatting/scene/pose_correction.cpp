@@ -19,7 +19,7 @@
 namespace gs {
 namespace {
 
-constexpr int correction_rounds = 4;
+constexpr int correction_rounds = 8;
 constexpr std::size_t most_tracked = 6000, most_fitted = 1000;
 constexpr int largest_side = 400;                 ///< of a compared photo, in pixels
 constexpr std::size_t least_aligned_points = 20;  ///< that a photo shows if it is aligned

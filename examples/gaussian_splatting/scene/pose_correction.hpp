@@ -21,7 +21,7 @@ struct corrected_camera {
 /// the pose of each photo (see `fit_pose`) and the color of each point, which is its median over photos.
 /// Starts from the colors of points that the scene has, and from a turn of each camera that its shift gives.
 /// Points keep their positions. `shifts`: of all training photos. Works for all lenses. The result does not
-/// depend on the number of threads. Cost: about that of two thousand projections of each of up to 6000
+/// depend on the number of threads. Cost: about that of four thousand projections of each of up to 6000
 /// points, and up to half a megabyte of memory per photo.
 std::vector<corrected_camera> correct_poses(const scene& of, const photo_shifts& shifts);
 

@@ -22,7 +22,7 @@ constexpr int smallest_level = 64;             ///< of a photo, in pixels
 constexpr int steps_per_size = 5;              ///< at each size
 constexpr std::size_t least_differences = 30;  ///< of a step
 constexpr double least_deviation = 1e-4;       ///< of colors
-constexpr double half_weight = 1.5;            ///< deviations at which a residual has half of its weight
+constexpr double half_weight = 1;              ///< deviations at which a residual has half of its weight
 constexpr double independent = 0.1;            ///< share of residuals that are independent of their neighbors
 constexpr std::size_t pose_size = 6;           ///< a turn and a shift: see `moved_in_camera_space`
 

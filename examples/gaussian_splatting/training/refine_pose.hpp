@@ -28,7 +28,7 @@ camera refine_pose(typename Renderer::device_type& device, Renderer& renderer,
                    features::device_features<Renderer>& features, loss<float>& loss,
                    const target_image& target, std::size_t test_view, const camera& given,
                    accumulator accumulate, const Draw& draw) {
-    constexpr int steps = 100;
+    constexpr int steps = 200;
     typename Renderer::template buffer<float> left;
     // Windows of the loss extend this far, so the other columns depend on the right half.
     const int columns = given.width / 2 - std::min(loss.reach(), given.width / 2);

@@ -12,9 +12,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "../training/engines.hpp"
+#include "core/error.hpp"
 #include "core/random.hpp"
 #include "features/poses/poses_feature.hpp"
 #include "features/resolve.hpp"
@@ -41,8 +43,9 @@ given_pose some_pose(int i = 0) {
 
 std::size_t at(std::size_t view, unsigned k) { return view * pose_width + k; }
 
-/// Trains with poses, or without, and returns the engine.
-std::unique_ptr<gs::train::engine> trained(make_engine make, const gs::scene& scene, bool learns,
+/// Trains with this state of the feature, and returns the engine.
+std::unique_ptr<gs::train::engine> trained(make_engine make, const gs::scene& scene,
+                                           const selected_feature& poses,
                                            gs::accumulator sums = gs::accumulator::native,
                                            int iterations = 60) {
     auto e = make();
@@ -51,11 +54,19 @@ std::unique_ptr<gs::train::engine> trained(make_engine make, const gs::scene& sc
     o.schedule.sh_degree = 0;
     o.max_cap = 3000;
     o.gradient = sums;
-    if (learns) o.features = feature_set({{"poses", true, "", poses_feature().neutral_values(scene)}});
+    o.features = feature_set({poses});
     e->set_views(scene.train, scene.test, o.schedule.num_downscales);
     e->set_model(gs::from_points(scene.points, 0, 2000, 1));
     gs::train::train(*e, scene, o, {[](const gs::train::progress&) {}, [](int) {}, [](int) {}});
     return e;
+}
+
+/// Trains from the given poses, or without the feature.
+std::unique_ptr<gs::train::engine> trained(make_engine make, const gs::scene& scene, bool learns,
+                                           gs::accumulator sums = gs::accumulator::native,
+                                           int iterations = 60) {
+    return trained(make, scene, {"poses", learns, "", poses_feature().neutral_values(scene)}, sums,
+                   iterations);
 }
 
 }  // namespace
@@ -210,6 +221,120 @@ TEST_CASE("poses: the cameras of a rig move like one body") {
     changes[at(0, 1)] = 0.1f;
     remove_common_motion(given, changes);
     for (unsigned k = 0; k < pose_width; ++k) CHECK(changes[at(2, k)] == 0);
+}
+
+TEST_CASE("poses: changes that move cameras to given places are found, also for rigs") {
+    gs::scene scene;
+    for (int i = 0; i < 5; ++i) {
+        gs::view v;
+        v.camera = some_pose(i).camera;
+        if (i < 3) v.rig_frame = 7;
+        scene.train.push_back(v);
+    }
+    const std::vector<given_pose> given = given_poses(scene);
+    const pose_change of_rig{0.02f, -0.04f, 0.03f, 0.05f, -0.01f, 0.07f}, other{0, 0.1f, 0, 0.2f, 0, 0};
+    std::vector<std::optional<gs::camera>> cameras{
+        std::nullopt, moved(given[1], of_rig), moved(given[2], of_rig), moved(given[3], other), std::nullopt};
+    auto found = changes_to(cameras, given);
+    REQUIRE(found.size() == 5);
+    REQUIRE(found[0]);
+    REQUIRE(found[3]);
+    for (unsigned k = 0; k < pose_width; ++k) {
+        CHECK((*found[0])[k] == doctest::Approx(of_rig[k]).epsilon(1e-4));
+        CHECK((*found[3])[k] == doctest::Approx(other[k]).epsilon(1e-4));
+    }
+    for (const std::size_t v : {1, 2, 4}) CHECK(!found[v]);
+    cameras[0] = given[0].camera;  // the cameras of a rig do not agree
+    found = changes_to(cameras, given);
+    CHECK((*found[0])[1] == doctest::Approx(of_rig[1] * 2 / 3).epsilon(0.01));
+}
+
+TEST_CASE("poses: training begins with corrected poses, from which steps are small") {
+    const gs::scene truth = small_scene("synthetic:spheres", 128);
+    gs::scene scene = small_scene("synthetic:spheres,poses=1", 128);
+    gs::image& hidden = scene.train[9].pixels;
+    hidden.has_mask = true;
+    for (std::size_t i = 0; i < hidden.rgba.size() / 4; ++i) hidden.mask_pixel(i);
+    const finding found = poses_feature().analyze(gs::scene_statistics(scene));
+    REQUIRE(found.recommended == true);
+    CHECK(found.choice == "on, beginning with the corrected poses of 39 of 40 photos");
+    const std::vector<pose_start> starts = starts_in(found.values);
+    REQUIRE(starts.size() == scene.train.size());
+    CHECK(starts[9].change == pose_change{});
+    CHECK(starts[9].largest_step > starts[8].largest_step);
+
+    const auto engine = gs::train::make_cpu_engine();
+    engine->set_views(scene.train, scene.test, 0);
+    engine->set_model(gs::from_points(scene.points, 0, 100, 1));
+    gs::train::training_setup setup;
+    setup.facts.views = static_cast<int>(scene.train.size());
+    setup.features["poses"] = found.values;
+    engine->begin(setup);
+    const glm::dvec3 at(0.2, -0.3, 0.4);
+    double before = 0, after = 0;
+    for (std::size_t v = 0; v < scene.train.size(); ++v) {
+        if (v == 9) continue;
+        const gs::camera& given = scene.train[v].camera;
+        const auto expected = truth.train[v].camera.see(at), shown = given.see(at),
+                   corrected = engine->cameras().training_camera(v, given).see(at);
+        before += std::hypot(shown->x - expected->x, shown->y - expected->y);
+        after += std::hypot(corrected->x - expected->x, corrected->y - expected->y);
+    }
+    CAPTURE(before);
+    CAPTURE(after);
+    CHECK(after < 0.15 * before);
+    CHECK(engine->cameras().training_camera(9, scene.train[9].camera).rotation ==
+          scene.train[9].camera.rotation);
+}
+
+TEST_CASE("poses: without clear shifts or without points, training begins with the given poses") {
+    gs::scene scene = small_scene("synthetic:spheres", 128);
+    const finding exact = poses_feature().analyze(gs::scene_statistics(scene));
+    CHECK(exact.recommended == false);
+    for (const pose_start& start : starts_in(exact.values)) {
+        CHECK(start.change == pose_change{});
+        CHECK(start.largest_step > 0);
+        CHECK(start.largest_step < 0.5f * step_from_given);
+    }
+    scene.points.clear();
+    const finding unknown = poses_feature().analyze(gs::scene_statistics(scene));
+    CHECK(!unknown.recommended);
+    CHECK(unknown.values == poses_feature().neutral_values(scene));
+    for (const pose_start& start : starts_in(unknown.values)) CHECK(start.largest_step == step_from_given);
+}
+
+TEST_CASE("poses: only drift since the start is removed, and not what first changes have in common") {
+    const gs::scene scene = small_scene("synthetic:spheres,views=8", 32);
+    std::vector<pose_start> starts(scene.train.size());
+    for (std::size_t v = 0; v < starts.size(); ++v) {
+        const glm::vec3 shift(scene.train[v].camera.rotation * glm::dvec3(0.1, -0.1, 0.2));
+        starts[v] = {{0, 0, 0, shift.x, shift.y, shift.z}, 1e-4f};
+    }
+    const selected_feature poses{"poses", true, "", initial_values(given_poses(scene), starts)};
+    const auto engine = trained(gs::train::make_cpu_engine, scene, poses);
+    const std::vector<float> values = engine->feature("poses").values();
+    bool are_same = true;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const float first = starts[i / pose_width].change[i % pose_width];
+        CHECK(std::abs(values[i] - first) < 0.01f);  // 8 steps, and drift
+        are_same = are_same && values[i] == first;
+    }
+    CHECK(!are_same);
+}
+
+TEST_CASE("poses: initial values for another number of photos are an error") {
+    const gs::scene scene = small_scene("synthetic:spheres,views=8", 32);
+    std::vector<float> values = poses_feature().neutral_values(scene);
+    values.resize(values.size() - start_width);
+    for (const auto make : engines()) {
+        const auto engine = make();
+        engine->set_views(scene.train, {}, 0);
+        engine->set_model(gs::from_points(scene.points, 0, 100, 1));
+        gs::train::training_setup setup;
+        setup.facts.views = static_cast<int>(scene.train.size());
+        setup.features["poses"] = values;
+        CHECK_THROWS_WITH_AS(engine->begin(setup), doctest::Contains("training photos need"), gs::error);
+    }
 }
 
 TEST_CASE("poses: training moves the cameras of a rig like one body") {

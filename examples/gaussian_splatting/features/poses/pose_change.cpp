@@ -67,6 +67,13 @@ glm::dmat3 rotation_by(const glm::dvec3& turn) {
     return glm::dmat3(1) + f.sine * k + f.cosine * (k * k);
 }
 
+/// Returns the rotation vector of a rotation by less than half a turn.
+glm::dvec3 rotation_vector_of(const glm::dmat3& r) {
+    const glm::dvec3 twice_sine(r[1][2] - r[2][1], r[2][0] - r[0][2], r[0][1] - r[1][0]);
+    const double sine = glm::length(twice_sine) / 2, cosine = (r[0][0] + r[1][1] + r[2][2] - 1) / 2;
+    return sine > 0 ? std::atan2(sine, cosine) / (2 * sine) * twice_sine : glm::dvec3(0);
+}
+
 glm::dmat3 left_jacobian(const glm::dvec3& turn) {
     const angle_functions f(glm::length(turn));
     const glm::dmat3 k = cross_product_by(turn);
@@ -201,6 +208,38 @@ camera moved(const given_pose& given, const pose_change& change) {
     result.rotation = rotation_by(given.from_leader * turn) * given.camera.rotation;
     result.translation = -(result.rotation * center);
     return result;
+}
+
+std::vector<std::optional<pose_change>> changes_to(const std::vector<std::optional<camera>>& cameras,
+                                                   const std::vector<given_pose>& given) {
+    const std::size_t views = given.size();
+    std::vector<glm::dvec3> turns(views), shifts(views);  // by leader: first sums, then means
+    std::vector<double> counts(views);
+    const auto leader_of = [&](std::size_t v) { return given[v].leader.value_or(v); };
+    for (std::size_t v = 0; v < views; ++v) {
+        if (!cameras[v]) continue;
+        const glm::dmat3 turn = cameras[v]->rotation * glm::transpose(given[v].camera.rotation);
+        turns[leader_of(v)] += glm::transpose(given[v].from_leader) * rotation_vector_of(turn);
+        ++counts[leader_of(v)];
+    }
+    for (std::size_t v = 0; v < views; ++v)
+        if (counts[v] > 0) turns[v] /= counts[v];
+    for (std::size_t v = 0; v < views; ++v) {
+        if (!cameras[v]) continue;
+        const glm::dmat3 turn = rotation_by(turns[leader_of(v)]);
+        const glm::dvec3 by_lever = (glm::transpose(turn) - glm::dmat3(1)) * given[v].lever;
+        const glm::dvec3 moved_by = cameras[v]->center() - given[v].camera.center();
+        shifts[leader_of(v)] += leader_rotation(given[v]) * moved_by - by_lever;
+    }
+    std::vector<std::optional<pose_change>> changes(views);
+    for (std::size_t v = 0; v < views; ++v) {
+        if (counts[v] == 0) continue;
+        const glm::dvec3 shift = shifts[v] / (counts[v] * shift_unit);
+        const glm::dvec3 turn = turns[v] - turn_by_shift(given[v]) * shift;
+        const glm::vec3 a(turn), b(shift);
+        changes[v] = {a.x, a.y, a.z, b.x, b.y, b.z};
+    }
+    return changes;
 }
 
 pose_derivatives derivatives_of(const given_pose& given, const pose_change& change) {

@@ -53,6 +53,12 @@ given_pose from_numbers(const camera& given, std::span<const float, given_width>
 /// Returns the camera with a changed pose. Any finite change gives a valid pose.
 camera moved(const given_pose& given, const pose_change& change);
 
+/// Returns the changes that move these cameras to their places, one camera per view. The change of a rig is
+/// the mean of what its cameras need, and is the change of its leader. Views without a camera have no part in
+/// it. Empty for other views than leaders, and for leaders without any camera.
+std::vector<std::optional<pose_change>> changes_to(const std::vector<std::optional<camera>>& cameras,
+                                                   const std::vector<given_pose>& given);
+
 /// Convert gradients in world space to gradients with respect to a pose change.
 struct pose_derivatives {
     glm::dmat3 by_turn;   ///< from the gradient with respect to a rotation about the center
@@ -67,8 +73,8 @@ pose_derivatives derivatives_of(const given_pose& given, const pose_change& chan
 
 /// Removes two parts that the changes of all views have in common. One is a motion of the whole scene,
 /// which no photo shows. The other is a change that is the same for all cameras in camera space, for
-/// which the scene can nearly compensate. Without this, training drifts along both. Assumes that errors
-/// of given poses have neither part. `given`: one pose per view. Fits both parts to the changes of leaders by
+/// which the scene can nearly compensate. Without this, training drifts along both. Assumes that the
+/// true changes have neither part. `given`: one pose per view. Fits both parts to the changes of leaders by
 /// least squares.
 void remove_common_motion(const std::vector<given_pose>& given, std::vector<float>& changes);
 

@@ -3,12 +3,12 @@
 #include "poses_feature.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -39,23 +39,65 @@ nlohmann::ordered_json to_json(const camera& given, const camera& learned, const
     return pose;
 }
 
+/// Training begins from the given poses. The smaller the shift of the photos, in pixels, the smaller are
+/// steps.
+std::vector<pose_start> given_starts(const scene& scene, double shift) {
+    constexpr double steps_per_error = 10;
+    const double error = shift / scene.train.front().camera.fx;
+    const auto step = std::min(step_from_given, static_cast<float>(error / steps_per_error));
+    return std::vector<pose_start>(scene.train.size(), pose_start{{}, step});
+}
+
+/// Training begins from poses that show the points at their places. Photos that do not show them begin with
+/// their given poses.
+std::vector<pose_start> corrected_starts(const std::vector<given_pose>& given,
+                                         const std::vector<corrected_camera>& corrected) {
+    std::vector<std::optional<camera>> cameras;
+    for (const corrected_camera& c : corrected)
+        cameras.push_back(c.is_aligned ? std::optional(c.camera) : std::nullopt);
+    std::vector<pose_start> starts;
+    for (const auto& change : changes_to(cameras, given))
+        starts.push_back(change ? pose_start{*change, step_from_corrected} : pose_start{});
+    return starts;
+}
+
+/// Removes the motion that poses have in common since training began. Corrected poses fit the points, so
+/// their first changes stay.
+void remove_drift(const std::vector<given_pose>& given, const std::vector<pose_start>& starts,
+                  std::vector<float>& changes) {
+    const auto add_first = [&](float factor) {
+        for (std::size_t i = 0; i < changes.size(); ++i)
+            changes[i] += factor * starts[i / pose_width].change[i % pose_width];
+    };
+    add_first(-1);
+    remove_common_motion(given, changes);
+    add_first(1);
+}
+
 }  // namespace
 
 finding poses_feature::analyze(const scene_statistics& statistics) const {
     const scene& scene = statistics.scene();
     if (const std::string reason = obstacle(scene, {}); !reason.empty()) return {false, reason, "off"};
-    std::vector<float> values = neutral_values(scene);
     const photo_shifts& found = statistics.shifts();
     if (!found.are_decided())
         return {{},
                 text("cannot decide: only %zu of %zu photos clearly show the colors of points",
                      found.judged(), found.examined),
                 "off",
-                std::move(values)};
-    return {found.are_clear(),
-            text("the median of %zu photos shows the colors of points %.2f pixels beside their places",
-                 found.judged(), found.median_shift()),
-            found.are_clear() ? "on" : "off", std::move(values)};
+                neutral_values(scene)};
+    const std::string evidence =
+        text("the median of %zu photos shows the colors of points %.2f pixels beside their places",
+             found.judged(), found.median_shift());
+    const std::vector<given_pose> given = given_poses(scene);
+    if (!found.are_clear())
+        return {false, evidence, "off", initial_values(given, given_starts(scene, found.median_shift()))};
+    const std::vector<corrected_camera>& cameras = statistics.cameras();
+    return {true, evidence,
+            text("on, beginning with the corrected poses of %zu of %zu photos",
+                 static_cast<std::size_t>(std::ranges::count(cameras, true, &corrected_camera::is_aligned)),
+                 cameras.size()),
+            initial_values(given, corrected_starts(given, cameras))};
 }
 
 explanation poses_feature::explain(const scene_statistics& statistics, const finding&) const {
@@ -88,12 +130,8 @@ explanation poses_feature::explain(const scene_statistics& statistics, const fin
 }
 
 std::vector<float> poses_feature::neutral_values(const scene& scene) const {
-    std::vector<float> all;
-    for (const given_pose& pose : given_poses(scene)) {
-        const auto numbers = numbers_of(pose);
-        all.insert(all.end(), numbers.begin(), numbers.end());
-    }
-    return all;
+    const std::vector<given_pose> given = given_poses(scene);
+    return initial_values(given, std::vector<pose_start>(given.size()));
 }
 
 std::string poses_feature::obstacle(const scene& scene, const std::vector<float>&) const {
@@ -103,7 +141,7 @@ std::string poses_feature::obstacle(const scene& scene, const std::vector<float>
 }
 
 void poses_feature::schedule(const selected_feature& selected, train::training& training) const {
-    if (!selected.on) return;
+    if (!selected.on || selected.values.empty()) return;
     const std::vector<given_pose> given = given_poses(training.scene());
     const int views = static_cast<int>(given.size());
     training.add({train::phase::upkeep, "remove the common motion of poses",
@@ -112,10 +150,10 @@ void poses_feature::schedule(const selected_feature& selected, train::training& 
                       return iteration % views == 0 &&
                              iteration + views <= training.schedule().iterations.last();
                   },
-                  [given, &training](int) {
+                  [given, starts = starts_in(selected.values), &training](int) {
                       auto& state = training.engine().feature("poses");
                       std::vector<float> changes = state.values();
-                      remove_common_motion(given, changes);
+                      remove_drift(given, starts, changes);
                       state.change_values(changes);
                   }});
 }

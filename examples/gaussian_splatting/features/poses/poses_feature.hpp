@@ -8,8 +8,9 @@
 namespace gs::features {
 
 /// A correction of the pose of each training photo, from the gradient of the loss. Cameras of a
-/// rig move together. Initial values: `numbers_of` the given pose of each training view. Learned values:
-/// `pose_width` per training view, zero for views that follow another.
+/// rig move together. Initial values: see `initial_values`; if the photos call for the effect, training
+/// begins with corrected poses. Learned values: `pose_width` per training view, zero for views that follow
+/// another.
 class poses_feature final : public feature {
   public:
     template <class Device>
@@ -21,6 +22,7 @@ class poses_feature final : public feature {
     }
     finding analyze(const scene_statistics& statistics) const override;
     explanation explain(const scene_statistics& statistics, const finding& found) const override;
+    bool begins_from_photos() const override { return true; }
     std::vector<float> neutral_values(const scene& scene) const override;
     std::string obstacle(const scene& scene, const std::vector<float>& given) const override;
     void schedule(const selected_feature& selected, train::training& training) const override;

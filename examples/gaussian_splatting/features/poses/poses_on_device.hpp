@@ -6,12 +6,15 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "../../core/error.hpp"
 #include "../../core/median.hpp"
 #include "../device_feature.hpp"
 #include "../learned_rows.hpp"
 #include "pose_gradient.hpp"
+#include "pose_start.hpp"
 
 namespace gs::features {
 
@@ -29,13 +32,28 @@ class poses_on_device final : public device_feature<Renderer> {
     }
     void set_views(std::size_t training_views) override {
         given_numbers_.clear();
+        largest_steps_.clear();
+        views_ = training_views;
         of_training_.set(std::vector<float>(pose_width * training_views));
     }
 
-    void set_values(const std::vector<float>& given_numbers) override {
-        given_numbers_ = given_numbers;
+    /// Takes `initial_values`, or an empty list. Throws `error` if they are not those of this many views.
+    void set_values(const std::vector<float>& values) override {
+        if (!values.empty() && values.size() != start_width * views_)
+            throw error("the effect poses has " + std::to_string(values.size()) + " initial values, but " +
+                        std::to_string(views_) + " training photos need " +
+                        std::to_string(start_width * views_));
+        set_views(views_);
+        std::vector<float> changes;
+        for (const pose_start& start : starts_in(values)) {
+            const float* numbers = values.data() + start_width * largest_steps_.size();
+            given_numbers_.insert(given_numbers_.end(), numbers, numbers + given_width);
+            changes.insert(changes.end(), start.change.begin(), start.change.end());
+            largest_steps_.push_back(start.largest_step);
+        }
+        if (learns()) of_training_.set(changes);
         leaders_ = 0;
-        for (std::size_t view = 0; view * given_width < given_numbers_.size(); ++view)
+        for (std::size_t view = 0; view < largest_steps_.size(); ++view)
             leaders_ += from_numbers({}, numbers_of_view(view)).leader ? 0 : 1;
     }
     void change_values(const std::vector<float>& values) override { of_training_.change(values); }
@@ -53,9 +71,10 @@ class poses_on_device final : public device_feature<Renderer> {
         return moved(given_, change_);
     }
     void learn_pose(const step& s, const float* sums) override {
-        if (learns())
-            of_training_.learn(given_.leader.value_or(static_cast<std::size_t>(s.plan.view)), s.renderer,
-                               sums, rate_at(s.plan.iteration), sink());
+        if (!learns()) return;
+        const std::size_t leader = given_.leader.value_or(static_cast<std::size_t>(s.plan.view));
+        of_training_.learn(leader, s.renderer, sums,
+                           std::min(largest_steps_[leader], rate_at(s.plan.iteration)), sink());
     }
 
     void begin_refinement() override {
@@ -72,8 +91,8 @@ class poses_on_device final : public device_feature<Renderer> {
         return moved(given_, change_);
     }
     void refine_pose(const step& s, const float* sums, double progress) override {
-        of_held_out_.learn(0, s.renderer, sums, static_cast<float>(most_rate * std::pow(0.01, progress)),
-                           sink());
+        of_held_out_.learn(0, s.renderer, sums,
+                           step_from_given * static_cast<float>(std::pow(0.05, progress)), sink());
     }
 
   private:
@@ -87,13 +106,11 @@ class poses_on_device final : public device_feature<Renderer> {
         return std::span(given_numbers_).subspan(given_width * view).template first<given_width>();
     }
 
-    /// The largest turn in one step, in radians. About fifty steps can correct an error of two degrees.
-    static constexpr double most_rate = 2e-3;
-
     /// Returns Adam's learning rate, which decays to a fifth. It is lower if more steps train each change.
     float rate_at(int iteration) const {
-        const double first = std::min(
-            most_rate, 0.15 * static_cast<double>(leaders_) / static_cast<double>(iterations_.last()));
+        const double first =
+            std::min(static_cast<double>(step_from_given),
+                     0.15 * static_cast<double>(leaders_) / static_cast<double>(iterations_.last()));
         return static_cast<float>(first * std::pow(0.2, iterations_.progress(iteration)));
     }
 
@@ -103,7 +120,8 @@ class poses_on_device final : public device_feature<Renderer> {
     given_pose given_{};    ///< of the camera that was returned last
     pose_change change_{};  ///< of the same camera
     iteration_plan iterations_;
-    std::size_t leaders_ = 0;  ///< number of views that are trained
+    std::size_t views_ = 0, leaders_ = 0;  ///< number of views, and of those that are trained
+    std::vector<float> largest_steps_;     ///< by training view
 };
 
 }  // namespace gs::features
