@@ -118,8 +118,8 @@ bool compare(const blocks& of, int x, int y, sample& s, value_range& depths) {
 std::vector<sample> samples_of(const blocks& of, std::size_t view, const camera& c, double extent) {
     std::vector<sample> made;
     const glm::dvec3 forward = glm::transpose(c.rotation) * glm::dvec3(0, 0, 1);
-    for (int y = 1; y + 1 < of.height; y += 2)
-        for (int x = 1 + (y / 2) % 2; x + 1 < of.width; x += 2) {
+    for (int y = 1; y + 1 < of.height; ++y)
+        for (int x = 1; x + 1 < of.width; ++x) {
             sample s{};
             value_range depths;
             if (!compare(of, x, y, s, depths)) continue;
