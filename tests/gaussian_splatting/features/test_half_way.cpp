@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -11,10 +10,7 @@
 #include "../training/check_equal.hpp"
 #include "../training/engines.hpp"
 #include "device/cpu/cpu.hpp"  // before kernels, which call functions of its SIMD values
-#include "features/exposure/exposure_feature.hpp"
-#include "features/half_way/half_way_statistics.hpp"
 #include "features/resolve.hpp"
-#include "features/response/response_feature.hpp"
 #include "features/vignetting/vignetting_feature.hpp"
 #include "training/initialize.hpp"
 #include "training/training.hpp"
