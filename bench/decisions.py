@@ -86,8 +86,8 @@ def trained(program, scene, options):
     with tempfile.TemporaryDirectory() as folder:
         run_program(scene, [program, "train", "-d", scene, "-o", folder, "-q", "--no-viewer", *options])
         found = json.loads((pathlib.Path(folder) / "metrics.json").read_text())["effects"]
-    revised = lambda e: (f"; revised from degree {e['sh_degree_at_first']} to {e['sh_degree']}"
-                         if "sh_degree_at_first" in e else "")
+    revised = lambda e: (f"; revised from degree {e['sh_degree_at_first']} to {e['sh_degree']}" if "sh_degree_at_first" in e
+                         else f"; half-way {e['reason_half_way']}" if "reason_half_way" in e else "")
     return {e["name"]: {"recommended": e["on"] and e.get("sh_degree", 1) > 0, "evidence": e["reason"] + revised(e)}
             for e in found if e["name"] != BACKGROUND}
 

@@ -233,6 +233,11 @@ train::train_events training_run::events() {
         .schedule =
             [this](train::training& training) {
                 if (live_) live_->add_to(training);
+            },
+        .say =
+            [this](const std::string& line) {
+                bar_.clear();
+                context_.say(line);
             }};
     if (s_.seconds) events.seconds = [this] { return common_seconds(); };
     return events;

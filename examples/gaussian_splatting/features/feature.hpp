@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "../model/gaussians.hpp"
 #include "../scene/scene_statistics.hpp"
 #include "explanation.hpp"
+#include "finding.hpp"
 
 namespace gs::train {
 class engine;
@@ -21,22 +21,7 @@ class training;
 
 namespace gs::features {
 
-/// The conclusion from the scene statistics about a feature.
-struct finding {
-    std::optional<bool> recommended;  ///< empty if the photos do not allow a decision
-    std::string evidence;             ///< the reason, with its figures
-    std::string choice;               ///< the consequence for training, as `inspect` prints it
-    std::vector<float> values{};      ///< initial values of the feature if it is on
-    bool if_unknown = false;          ///< whether to simulate it if `recommended` is empty
-};
-
-/// A feature in one training run.
-struct selected_feature {
-    std::string name;
-    bool on = false;
-    std::string reason;
-    std::vector<float> values{};  ///< initial values if it is on: see each feature
-};
+class half_way_statistics;
 
 /// A function that changes the render of a training view: see `feature::show_on_host`.
 using show_function = std::function<void(std::size_t view, int width, std::vector<float>& render)>;
@@ -65,6 +50,12 @@ class feature {
     /// Returns the name of an effect without which this one is never recommended, or nothing. That effect
     /// comes earlier in the table.
     virtual std::string_view needs() const { return {}; }
+    /// Returns whether training may begin the effect half-way if `analyze` has not recommended it. Such an
+    /// effect has a part on the device, whose values are empty while it is off.
+    virtual bool may_begin_half_way() const { return false; }
+    /// Returns the finding from the differences between photos and a half-trained model. Called if the effect
+    /// `may_begin_half_way`. Cost: a few seconds.
+    virtual finding review(const half_way_statistics&) const { return {}; }
     /// Returns the initial values if `analyze` is not called.
     virtual std::vector<float> neutral_values(const scene&) const { return {}; }
     /// Returns the reason why this scene cannot be trained with the effect on, or an empty string.

@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "../core/error.hpp"
+#include "../engine/engine.hpp"
+#include "half_way/review_effects.hpp"
 
 namespace gs::features {
 namespace {
@@ -48,9 +50,14 @@ selected_feature decide(const feature& f, const scene_statistics& statistics, co
     } else if (decided.on) {
         decided.values = f.neutral_values(statistics.scene());
     }
-    if (!decided.on) return decided;
-    if (const selected_feature* needed = find(earlier, f.needs());
-        needed != nullptr && !needed->on && !choice) {
+    const selected_feature* needed = find(earlier, f.needs());
+    const bool lacks_needed = needed != nullptr && !needed->on;
+    if (!decided.on) {
+        decided.may_begin = automatic && !choice && f.may_begin_half_way() && !lacks_needed &&
+                            f.obstacle(statistics.scene(), decided.values).empty();
+        return decided;
+    }
+    if (lacks_needed && !choice) {
         decided.on = false;
         decided.reason = "the effect " + needed->name + " is off";
         return decided;
@@ -113,6 +120,15 @@ std::vector<float> feature_set::values_if_on(std::string_view name) const {
     return found != nullptr && found->on ? found->values : std::vector<float>{};
 }
 
+bool feature_set::may_begin(std::string_view name) const {
+    const selected_feature* found = find(all_, name);
+    return found != nullptr && found->may_begin;
+}
+
+bool feature_set::is_simulated(std::string_view name, train::engine& engine) const {
+    return is_on(name) || (may_begin(name) && !engine.feature(name).values().empty());
+}
+
 void feature_set::turn_off(std::string_view name, const std::string& reason) {
     for (selected_feature& f : all_)
         if (f.name == name && f.on) f = {f.name, false, reason};
@@ -124,15 +140,19 @@ void feature_set::prepare(scene& scene, gaussians& model) const {
 }
 
 void feature_set::schedule(train::training& training) const {
+    schedule_review(*this, training);  // the revision of the SH degree then knows these effects
     for (const auto& f : all_features())
         if (const selected_feature* selected = find(all_, f->name())) f->schedule(*selected, training);
 }
 
-show_function feature_set::show_on_host(train::engine& engine, const scene& scene) const {
+show_function feature_set::show_on_host(train::engine& engine, const scene& scene,
+                                        std::string_view end) const {
     std::vector<show_function> steps;
-    for (const auto& f : all_features())
-        if (is_on(f->name()))
+    for (const auto& f : all_features()) {
+        if (f->name() == end) break;
+        if (is_simulated(f->name(), engine))
             if (show_function step = f->show_on_host(engine, scene)) steps.push_back(std::move(step));
+    }
     return [steps = std::move(steps)](std::size_t view, int width, std::vector<float>& render) {
         for (const show_function& step : steps) step(view, width, render);
     };
@@ -140,19 +160,22 @@ show_function feature_set::show_on_host(train::engine& engine, const scene& scen
 
 void feature_set::before_evaluation(train::engine& engine, const scene& scene) const {
     for (const auto& f : all_features())
-        if (is_on(f->name())) f->before_evaluation(engine, scene);
+        if (is_simulated(f->name(), engine)) f->before_evaluation(engine, scene);
 }
 
 void feature_set::before_saving(train::engine& engine, const scene& scene, gaussians& model) const {
     for (const auto& f : all_features())
-        if (is_on(f->name())) f->before_saving(engine, scene, model);
+        if (is_simulated(f->name(), engine)) f->before_saving(engine, scene, model);
 }
 
 void feature_set::write_results(train::engine& engine, const scene& scene,
                                 const std::filesystem::path& folder) const {
     for (const auto& f : all_features())
-        if (const selected_feature* selected = find(all_, f->name()))
-            f->write_results(*selected, engine, scene, folder);
+        if (const selected_feature* found = find(all_, f->name())) {
+            selected_feature selected = *found;
+            selected.on = is_simulated(f->name(), engine);
+            f->write_results(selected, engine, scene, folder);
+        }
 }
 
 feature_set resolve(const scene& scene, const selection& selection,

@@ -45,17 +45,24 @@ class feature_set {
     /// Returns the values of a feature, or an empty list if it is off.
     std::vector<float> values_if_on(std::string_view name) const;
 
+    /// Returns whether a feature is off but may begin during training: see `feature::may_begin_half_way`.
+    bool may_begin(std::string_view name) const;
+    /// Returns whether a feature is on, or has begun during training.
+    bool is_simulated(std::string_view name, train::engine& engine) const;
+
     /// Turns a feature off and records the reason. A feature that is already off keeps its reason.
     void turn_off(std::string_view name, const std::string& reason);
 
-    /// Calls this hook of all features.
+    /// Calls this hook of all features, or of those that are simulated. `schedule` also schedules the review
+    /// of effects that may begin: see `schedule_review`.
     /// @{
     void prepare(scene& scene, gaussians& model) const;
     void schedule(train::training& training) const;
     void before_evaluation(train::engine& engine, const scene& scene) const;
     void before_saving(train::engine& engine, const scene& scene, gaussians& model) const;
-    /// Returns a function that applies all features that are on to the render of a training view.
-    show_function show_on_host(train::engine& engine, const scene& scene) const;
+    /// Returns a function that applies all simulated features to the render of a training view, or those that
+    /// come before `end` in the table.
+    show_function show_on_host(train::engine& engine, const scene& scene, std::string_view end = {}) const;
     void write_results(train::engine& engine, const scene& scene, const std::filesystem::path& folder) const;
     /// @}
 

@@ -92,8 +92,10 @@ std::string effects_text(const ordered_json& metrics) {
         for (const ordered_json& effect : metrics["effects"]) {
             const bool is_on = effect.is_object() && effect.value("on", ordered_json()) == true;
             text += "<tr><td>" + html_escaped(text_in(effect, "name")) + "</td><td>" +
-                    (is_on ? "yes" : "no") + "</td><td>" + html_escaped(text_in(effect, "reason")) +
-                    "</td></tr>";
+                    (is_on ? "yes" : "no") + "</td><td>" + html_escaped(text_in(effect, "reason"));
+            if (effect.is_object() && effect.contains("reason_half_way"))
+                text += "; half-way: " + html_escaped(text_in(effect, "reason_half_way"));
+            text += "</td></tr>";
         }
     return text + "</table></div>";
 }

@@ -102,6 +102,7 @@ training::training(train::engine& engine, const gs::scene& scene, const train_op
       budget_(options.seconds ? std::optional<time_budget>({*options.seconds, options.max_cap})
                               : std::nullopt),
       begins_(events.begins),
+      say_(events.say),
       is_interrupted_(events.is_interrupted),
       clock_(events.seconds) {
     schedule_.iterations = options.schedule.iterations.first_iterations(0);
@@ -284,6 +285,7 @@ void training::exchange(state_archive& archive) {
         faults_.exchange(archive);
         losses_.exchange(archive);
     }
+    for (const auto& state : states_before_engine_) state(archive);
     engine_.state().exchange(archive);
     for (const auto& state : states_) state(archive);
 }

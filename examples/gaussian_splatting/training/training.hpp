@@ -100,6 +100,8 @@ struct train_events {
     std::function<void()> begins = [] {};
     /// Called before the training is restored or begins, to add actions.
     std::function<void(training&)> schedule = [](training&) {};
+    /// Called with a line for the user about a decision during training.
+    std::function<void(const std::string&)> say = [](const std::string&) {};
 };
 
 /// The mean loss over the steps of several reports of the engine.
@@ -161,6 +163,11 @@ class training {
     /// Adds state that later iterations depend on. Checkpoints contain what `exchange` passes to the
     /// archive.
     void add_state(std::function<void(state_archive&)> exchange) { states_.push_back(std::move(exchange)); }
+    /// Adds state like `add_state`, which a checkpoint restores before the state of the engine. It decides
+    /// which parts the engine has.
+    void add_state_before_engine(std::function<void(state_archive&)> exchange) {
+        states_before_engine_.push_back(std::move(exchange));
+    }
     /// Continues from a checkpoint: `run` begins after its iteration. Call it after all actions and
     /// states have been added. Throws `error` if the checkpoint belongs to other photos, or to a
     /// later iteration than the last one.
@@ -174,6 +181,8 @@ class training {
     train_result run();
     /// Calls a function whose time does not count as time of training. Waits for the device before.
     void call_untimed(const std::function<void()>& callback);
+    /// Tells the user about a decision during training.
+    void say(const std::string& line) const { say_(line); }
 
     train::engine& engine() { return engine_; }
     const gs::scene& scene() const { return scene_; }
@@ -209,10 +218,11 @@ class training {
     train::schedule schedule_;
     std::optional<time_budget> budget_;
     std::vector<action> actions_;
-    std::vector<std::function<void(state_archive&)>> states_;
+    std::vector<std::function<void(state_archive&)>> states_before_engine_, states_;
     std::function<void(int iteration)> save_;
     int finished_ = 0;  ///< last finished iteration
     std::function<void()> begins_;
+    std::function<void(const std::string&)> say_;
     std::function<bool()> is_interrupted_;
     bool interrupted_ = false;       ///< whether training ends after this iteration
     std::exception_ptr lost_photo_;  ///< why the photo of the next step cannot be decoded, or null

@@ -18,6 +18,7 @@
 #include "../training/engines.hpp"
 #include "core/error.hpp"
 #include "core/random.hpp"
+#include "device/cpu/cpu.hpp"  // before kernels, which call functions of its SIMD values
 #include "features/poses/poses_feature.hpp"
 #include "features/resolve.hpp"
 #include "scene/look_at.hpp"

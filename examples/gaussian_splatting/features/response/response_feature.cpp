@@ -12,6 +12,7 @@
 #include "../../core/atomic_file_write.hpp"
 #include "../../engine/engine.hpp"
 #include "../exposure/exposure_feature.hpp"
+#include "../half_way/half_way_statistics.hpp"
 #include "../text.hpp"
 #include "../vignetting/lens_groups.hpp"
 #include "respond_in_model.hpp"
@@ -39,6 +40,15 @@ std::string doubt(const tone_response& found) {
     if (found.is_clear()) return "";
     if (found.strength < tone_response::least_strength) return ", which is little";
     return ", but not clearly in each half of the photos";
+}
+
+/// Returns the finding from a response. `compared`: what photos show in different brightness.
+finding finding_from(const tone_response& found, const char* compared, std::vector<float> values) {
+    return {found.is_clear(),
+            text("a tone curve explains differences of %.1f %% between the same %s, beyond their colors and "
+                 "the exposures (%.1f standard errors)%s",
+                 100 * found.strength, compared, found.errors(), doubt(found).c_str()),
+            found.is_clear() ? "on" : "off", std::move(values)};
 }
 
 bool exposures_differ(const scene_statistics& statistics) {
@@ -76,12 +86,14 @@ finding response_feature::analyze(const scene_statistics& statistics) const {
     const tone_response& found = statistics.response();
     if (found.points < enough_points)
         return {{}, too_few_points(found.points, "in smooth areas"), "off", std::move(values)};
-    return {
-        found.is_clear(),
-        text("a tone curve explains differences of %.1f %% between the same points, beyond their colors and "
-             "the exposures (%.1f standard errors)%s",
-             100 * found.strength, found.errors(), doubt(found).c_str()),
-        found.is_clear() ? "on" : "off", std::move(values)};
+    return finding_from(found, "points", std::move(values));
+}
+
+finding response_feature::review(const half_way_statistics& statistics) const {
+    const tone_response& found = statistics.response();
+    std::vector<float> values = neutral_values(statistics.scene());
+    if (found.points < enough_parts) return {{}, too_few_parts(found.points), "off", std::move(values)};
+    return finding_from(found, "parts of the model", std::move(values));
 }
 
 explanation response_feature::explain(const scene_statistics& statistics, const finding&) const {

@@ -124,6 +124,10 @@ void schedule_revision(train::training& training, std::function<int(int sh_degre
                       auto& report = training.result().feature_reports["direction"];
                       report["on"] = schedule.sh_degree > 0;
                       report["sh_degree"] = schedule.sh_degree;
+                      if (schedule.sh_degree != before)
+                          training.say("direction: SH degree " + std::to_string(schedule.sh_degree) +
+                                       " instead of " + std::to_string(before) + " after iteration " +
+                                       std::to_string(iteration));
                       if (schedule.sh_degree > before)  // new coefficients need time to learn
                           *earliest_prune = iteration + schedule.sh_degree_interval;
                   }});

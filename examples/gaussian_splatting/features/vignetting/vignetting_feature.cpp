@@ -10,6 +10,7 @@
 #include "../../core/atomic_file_write.hpp"
 #include "../../core/median.hpp"
 #include "../../engine/engine.hpp"
+#include "../half_way/half_way_statistics.hpp"
 #include "../text.hpp"
 #include "lens_groups.hpp"
 
@@ -85,6 +86,20 @@ pages::marked_photo widest_photo(const scene& scene, const observed_points& poin
         text("Rings: %zu points, which other photos show nearer to their centers.", count), std::move(*most));
 }
 
+/// Returns the finding from a falloff. `compared`: what photos show at different places.
+finding finding_from(const scene& scene, const lens_falloff& found, const char* compared) {
+    std::array<double, 3> losses{};
+    for (std::size_t c = 0; c < 3; ++c) losses[c] = found.is_clear() ? loss_of(found.channels[c]) : 0;
+    return {
+        found.is_clear(),
+        text("the same %s are %.1f %% %s in corners than in the center (standard error %.1f %%)%s", compared,
+             100 * std::abs(loss_of(found.strength.value)), found.strength.value < 0 ? "brighter" : "darker",
+             100 * found.strength.error,
+             found.is_strong() && !found.is_clear() ? ", but not on all sides, or only from some directions"
+                                                    : ""),
+        found.is_clear() ? "on" : "off", values_for(scene, losses)};
+}
+
 }  // namespace
 
 finding vignetting_feature::analyze(const scene_statistics& statistics) const {
@@ -94,16 +109,14 @@ finding vignetting_feature::analyze(const scene_statistics& statistics) const {
     const lens_falloff& found = statistics.falloff();
     if (found.points < enough_points)
         return {{}, too_few_points(found.points, "in smooth areas"), "off", neutral_values(scene)};
-    std::array<double, 3> losses{};
-    for (std::size_t c = 0; c < 3; ++c) losses[c] = found.is_clear() ? loss_of(found.channels[c]) : 0;
-    return {
-        found.is_clear(),
-        text("the same points are %.1f %% %s in corners than in the center (standard error %.1f %%)%s",
-             100 * std::abs(loss_of(found.strength.value)), found.strength.value < 0 ? "brighter" : "darker",
-             100 * found.strength.error,
-             found.is_strong() && !found.is_clear() ? ", but not on all sides, or only from some directions"
-                                                    : ""),
-        found.is_clear() ? "on" : "off", values_for(scene, losses)};
+    return finding_from(scene, found, "points");
+}
+
+finding vignetting_feature::review(const half_way_statistics& statistics) const {
+    const lens_falloff& found = statistics.falloff();
+    if (found.points < enough_parts)
+        return {{}, too_few_parts(found.points), "off", neutral_values(statistics.scene())};
+    return finding_from(statistics.scene(), found, "parts of the model");
 }
 
 explanation vignetting_feature::explain(const scene_statistics& statistics, const finding&) const {

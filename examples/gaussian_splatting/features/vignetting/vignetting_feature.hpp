@@ -21,6 +21,8 @@ class vignetting_feature final : public feature {
     finding analyze(const scene_statistics& statistics) const override;
     explanation explain(const scene_statistics& statistics, const finding& found) const override;
     bool begins_from_photos() const override { return true; }
+    bool may_begin_half_way() const override { return true; }
+    finding review(const half_way_statistics& statistics) const override;
     std::vector<float> neutral_values(const scene& scene) const override;
     std::string obstacle(const scene& scene, const std::vector<float>& values) const override;
     show_function show_on_host(train::engine& engine, const scene& scene) const override;
