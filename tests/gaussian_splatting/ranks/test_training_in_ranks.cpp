@@ -49,7 +49,8 @@ std::string final_model(const fs::path& output) {
     return read_file(model_of(output, read_json(output / "metrics.json").at("iterations")));
 }
 
-void check_equal_models(const std::string& scene, const words& options, int width = 48) {
+/// Returns the metrics of one rank.
+nlohmann::json check_equal_models(const std::string& scene, const words& options, int width = 48) {
     CAPTURE(scene);
     const temporary_folder folder;
     const auto output = [&](int ranks) { return folder / std::to_string(ranks); };
@@ -64,7 +65,9 @@ void check_equal_models(const std::string& scene, const words& options, int widt
         CHECK(loss == doctest::Approx(read_json(output(1) / "metrics.json").at("training_psnr").get<double>())
                           .epsilon(1e-6));
     }
-    CHECK(read_json(output(1) / "metrics.json").at("gaussians") > 3000);
+    const auto metrics = read_json(output(1) / "metrics.json");
+    CHECK(metrics.at("gaussians") > 3000);
+    return metrics;
 }
 
 fs::path checkpoint(const fs::path& output, int iteration) {
@@ -96,6 +99,16 @@ TEST_CASE("ranks: any number of them writes the same model, with exposures and S
         "synthetic:spheres,exposure=0.4,response=0.6,gloss=0.7,vignetting=0.4,views=8",
         density_control +
             words{"--effects", "auto,+exposure,+response,+direction,+poses,+motion,+moving,+vignetting"});
+}
+
+TEST_CASE("ranks: any number of them begins the same effect half-way, from equal renders") {
+    const auto metrics = check_equal_models("synthetic:spheres,scales=5,sky=0.8,vignetting=0.4",
+                                            density_control + words{"--effects", "auto"}, 40);
+    const auto& effects = metrics.at("effects");
+    CHECK(std::ranges::any_of(effects, [](const auto& effect) {
+        return effect.at("name") == "vignetting" && effect.at("on") == true &&
+               effect.value("on_at_first", true) == false;
+    }));
 }
 
 TEST_CASE("ranks: any number of them revises the SH degree alike, from equal measurements") {
