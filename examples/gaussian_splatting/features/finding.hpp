@@ -8,7 +8,7 @@
 
 namespace gs::features {
 
-/// The conclusion from the scene statistics about a feature.
+/// The conclusion about a feature, from the scene statistics or from a half-trained model.
 struct finding {
     std::optional<bool> recommended;  ///< empty if the photos do not allow a decision
     std::string evidence;             ///< the reason, with its figures

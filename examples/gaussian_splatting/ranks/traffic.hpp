@@ -70,8 +70,8 @@ class traffic_counter {
         for (const window_array& array : arrays) bytes += all.moved() * array.item_bytes;
         add(purpose::splats, bytes);
     }
-    /// Counts a step, in which the ranks have these shares of the visible splats, and send `sent` of them to
-    /// strips of others, each as often as there are such strips.
+    /// Counts a step, in which the ranks have these shares of the visible splats, and send `sent` places
+    /// for splats to others.
     void count_step(const shares& splats, std::size_t sent) {
         sent_ += sent;
         ++steps_;

@@ -252,13 +252,13 @@ class renderer {
     }
     /// The exchange of splats of the last view with a strip.
     const splat_exchange<Device, Real>& exchange() const { return exchange_; }
-    /// The size of the memory that only strips need.
-    std::size_t strip_bytes() const {
-        return exchange_.bytes() + strip_lists_.bytes() + exchange_.received() * bytes::per_received_splat();
+    /// The size of the memory that only strips need, if sums are accumulated this way.
+    std::size_t strip_bytes(accumulator how) const {
+        return exchange_.bytes() + strip_lists_.bytes() + exchange_.received() * bytes::per_received(how);
     }
     /// The work of the last view's tile rows, on the device: see `measure_work`. Zero for those of others.
     std::span<const unsigned long long> row_work() const { return {work_.data(), tiles_down_}; }
-    /// The flag that tells whether the last view's instances fit.
+    /// Whether the last view's instances fit.
     list_capacity capacity() const { return {required_.data(), capacity_}; }
     /// A counter on the device: pixel-Gaussian pairs that all calls of `forward` have evaluated.
     const unsigned long long* pairs() const { return pairs_.data(); }

@@ -30,13 +30,14 @@ struct renderer_bytes {
         return 4 * sizeof(Real) + sizeof(std::uint32_t) + of_tile / (tile_size * tile_size);
     }
     /// Per splat that a rank gets from others.
-    static constexpr std::size_t per_received_splat() {
-        return sizeof(splat<Real>) + record_stride * sizeof(Real);
+    static constexpr std::size_t per_received(accumulator how) {
+        return sizeof(splat<Real>) + gradient_sums<Device, Real>::bytes_per_gaussian(how);
     }
-    /// Per Gaussian that a rank owns and sends once, beyond `per_gaussian`.
-    static constexpr std::size_t per_sent_splat() {
-        return strip_lists<Device, Cut::segment>::bytes_per_splat + sizeof(splat<Real>) +
-               2 * sizeof(splat_reach) + per_received_splat();
+    /// Per Gaussian that one of a few ranks owns and sends once, beyond `per_gaussian`.
+    static constexpr std::size_t per_sent_splat(accumulator how) {
+        constexpr std::size_t ranks = 4, of_mark = sizeof(std::uint32_t) + sizeof(std::uint64_t);
+        return strip_lists<Device, Cut::segment>::bytes_per_splat + (ranks + 1) * of_mark +
+               record_stride * sizeof(std::uint64_t) + 2 * sizeof(splat_reach) + per_received(how);
     }
 };
 

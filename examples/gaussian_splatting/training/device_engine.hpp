@@ -113,7 +113,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         const camera seen = features_.seen_by(plan.view, shot.camera);
         const auto loaded = views_.load(shot);
         target_image target = loaded.target(plan.background);
-        const auto strip = strips_.of_step(plan.view, shot.camera, loss_->reach(), device_.ranks(), count_);
+        const auto strip =
+            strips_.of_step(plan.view, shot.camera, loss_->reach(), device_.ranks(), trained_.shares);
         set_strip(strip, true);
         if (strip) target.rows = strip->own_pixels(shot.camera.height);
         loss_->set_target(target);
@@ -123,7 +124,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         lists_.was_noted(plan.view, count_);
         if (strip) {
             row_work_.keep(plan.view, renderer_.row_work());
-            strips_.note_sent(plan.view, renderer_.exchange().window_counts(), count_);
+            strips_.note_sent(plan.view, renderer_.exchange().window_counts(), *trained_.shares);
             division_.note_step(renderer_.exchange().drawn(), count_);
         }
         if (views_.cache() != nullptr) views_.cache()->upload_ahead();

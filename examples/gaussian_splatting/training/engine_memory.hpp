@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <type_traits>
 
 #include "../densify/parameter_gather.hpp"
 #include "../device/memory_forecast.hpp"
@@ -45,8 +44,9 @@ device::memory_forecast forecast_of_gaussians(const Renderer& renderer, std::siz
                       in_measurement = is_divided ? value_bytes_per_gaussian(sh_degree) + of_render : 0;
     std::uint64_t of_strips = 0;
     if (is_divided) {
-        const std::uint64_t known = renderer.strip_bytes();
-        of_strips = known > 0 ? grown(known) : gaussians * own(Renderer::bytes::per_sent_splat());
+        const std::uint64_t known = renderer.strip_bytes(setup.facts.gradient);
+        of_strips =
+            known > 0 ? grown(known) : gaussians * own(Renderer::bytes::per_sent_splat(setup.facts.gradient));
     }
     return {.gaussians = gaussians * beside +
                          std::max(gaussians * in_training + of_strips, gaussians * in_measurement),

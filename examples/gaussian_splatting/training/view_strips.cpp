@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "view_strips.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace gs::train {
@@ -44,27 +45,31 @@ std::optional<raster::view_strip> view_strips::of(std::size_t view, const camera
 
 std::optional<raster::view_strip> view_strips::of_step(std::size_t view, const camera& camera, int reach,
                                                        const ranks::communicator& ranks,
-                                                       std::size_t gaussians) const {
+                                                       const std::optional<ranks::shares>& gaussians) const {
     auto strip = of(view, camera, reach, ranks);
-    if (strip) strip->windows = windows(view, gaussians, ranks.count());
+    if (strip && gaussians) strip->windows = windows(view, *gaussians);
     return strip;
 }
 
-std::optional<ranks::windows> view_strips::windows(std::size_t view, std::size_t gaussians, int ranks) const {
-    if (view >= sent_.size() || sent_[view].gaussians == 0) return {};
-    // Training changes the numbers a little, and they grow with the model. Too few places cost more time
-    // than some unused ones.
+std::optional<ranks::windows> view_strips::windows(std::size_t view, const ranks::shares& gaussians) const {
+    if (view >= sent_.size() || sent_[view].counts.empty()) return {};
+    // Training changes the numbers a little, and they grow with the shares of the model. Too few places cost
+    // more time than some unused ones.
     constexpr double reserve = 1.0 / 16;
     constexpr std::size_t least = 64;
-    const double growth = static_cast<double>(gaussians) / static_cast<double>(sent_[view].gaussians);
     const std::vector<std::size_t>& counts = sent_[view].counts;
     std::vector<std::size_t> places(counts.size());
     for (std::size_t i = 0; i < counts.size(); ++i) {
-        const auto from = i / static_cast<std::size_t>(ranks), to = i % static_cast<std::size_t>(ranks);
+        const auto ranks = static_cast<std::size_t>(gaussians.ranks()), from = i / ranks, to = i % ranks;
         if (from == to) continue;  // a rank sends itself nothing
-        places[i] = least + static_cast<std::size_t>((1 + reserve) * growth * static_cast<double>(counts[i]));
+        const auto rank = static_cast<int>(from);
+        const auto now = static_cast<double>(gaussians.of(rank).count()),
+                   before =
+                       static_cast<double>(std::max<std::size_t>(sent_[view].gaussians.of(rank).count(), 1));
+        places[i] =
+            least + static_cast<std::size_t>((1 + reserve) * now / before * static_cast<double>(counts[i]));
     }
-    return ranks::windows(places, ranks);
+    return ranks::windows(places, gaussians.ranks());
 }
 
 }  // namespace gs::train

@@ -33,26 +33,27 @@ class view_strips {
         if (work_[view].empty()) sent_[view] = {};  // the borders move far
         work_[view] = work;
     }
-    /// Records the numbers of splats that ranks have sent each other for a view of a model with this many
-    /// Gaussians: see `splat_exchange::window_counts`.
-    void note_sent(std::size_t view, const std::vector<std::size_t>& counts, std::size_t gaussians) {
+    /// Records the numbers of splats that ranks with these shares of the Gaussians have sent each other for a
+    /// view: see `splat_exchange::window_counts`.
+    void note_sent(std::size_t view, const std::vector<std::size_t>& counts, const ranks::shares& gaussians) {
         sent_[view] = {counts, gaussians};
     }
 
     /// Returns the strip of this rank, or nothing if it is the only one.
     std::optional<raster::view_strip> of(std::size_t view, const camera& camera, int reach,
                                          const ranks::communicator& ranks) const;
-    /// The same for a step with this many Gaussians: with the windows that the ranks expect.
+    /// The same for a step with these shares of the Gaussians: with the windows that the ranks expect.
     std::optional<raster::view_strip> of_step(std::size_t view, const camera& camera, int reach,
-                                              const ranks::communicator& ranks, std::size_t gaussians) const;
+                                              const ranks::communicator& ranks,
+                                              const std::optional<ranks::shares>& gaussians) const;
 
   private:
     /// Returns windows that probably have places for all splats of a view, or nothing if none are recorded.
-    std::optional<ranks::windows> windows(std::size_t view, std::size_t gaussians, int ranks) const;
+    std::optional<ranks::windows> windows(std::size_t view, const ranks::shares& gaussians) const;
 
     struct sent_splats {
         std::vector<std::size_t> counts;
-        std::size_t gaussians = 0;
+        ranks::shares gaussians{0, 1, 1};
     };
 
     std::vector<std::vector<std::uint64_t>> work_;  ///< by view; empty if unknown, like the next

@@ -78,18 +78,20 @@ TEST_CASE("strips: known work of tile rows moves the borders between ranks") {
     CHECK_FALSE(strips.of(0, camera, 10, alone).has_value());
 }
 
-TEST_CASE("strips: a step expects the splats that its view had sent, for the present number of Gaussians") {
+TEST_CASE("strips: a step expects the splats that its view had sent, for the present shares") {
     gs::camera camera;
     camera.width = 16;
     camera.height = 64;
     const auto end = gs::ranks::run(2, [&](gs::ranks::communicator& all) {
         gs::train::view_strips strips;
         strips.reset(2);
+        // Two ranks have half of this many Gaussians each.
+        const auto half = [](std::size_t gaussians) { return gs::ranks::shares(gaussians, 1, 2); };
         const auto expected = [&](std::size_t view, std::size_t gaussians) {
-            return strips.of_step(view, camera, 10, all, gaussians)->windows;
+            return strips.of_step(view, camera, 10, all, half(gaussians))->windows;
         };
         if (expected(0, 1000)) return 1;
-        strips.note_sent(0, {0, 320, 160, 0}, 1000);
+        strips.note_sent(0, {0, 320, 160, 0}, half(1000));
         if (expected(1, 1000)) return 2;
         // A sixteenth more, and at least 64 places.
         const auto same = expected(0, 1000), grown = expected(0, 2000);
@@ -97,11 +99,15 @@ TEST_CASE("strips: a step expects the splats that its view had sent, for the pre
             return 3;
         if (grown->sent_by(0).of(1).count() != 680 + 64) return 4;
         if (same->sent_by(0).of(0).count() != 0 || same->sent_by(1).of(1).count() != 0) return 5;
+        const gs::ranks::shares moved(std::vector<std::size_t>{250, 750});
+        const auto of_moved = strips.of_step(0, camera, 10, all, moved)->windows;
+        if (of_moved->sent_by(0).of(1).count() != 170 + 64 || of_moved->sent_by(1).of(0).count() != 255 + 64)
+            return 10;
         // Strips for scores list other rows.
         if (strips.of(0, camera, 0, all)->windows) return 6;
         strips.note(0, {900, 0, 0, 0});  // the borders move for the first time
         if (expected(0, 1000)) return 7;
-        strips.note_sent(0, {0, 10, 10, 0}, 1000);
+        strips.note_sent(0, {0, 10, 10, 0}, half(1000));
         strips.note(0, {800, 0, 0, 0});
         if (!expected(0, 1000)) return 8;
         strips.reset(2);

@@ -107,6 +107,22 @@ TEST_CASE("resume: a run that continues from any checkpoint gives the same model
         }
 }
 
+TEST_CASE(
+    "resume: learned poses belong to the starts of the checkpoint, also if a run would begin elsewhere") {
+    const gs::scene scene = small_scene("synthetic:spheres,views=24", 24);
+    gs::train::train_options o = options_for(scene, "adaptive");
+    o.checkpoint_every = 10;
+    std::map<int, gs::state_archive> checkpoints, ignored;
+    const gs::gaussians uninterrupted = trained(gs::train::make_cpu_engine, scene, o, checkpoints);
+    auto features = o.features.all();
+    std::ranges::find(features, "poses", &gs::features::selected_feature::name)->values =
+        gs::features::poses_feature().neutral_values(scene);
+    gs::train::train_options rest = o;
+    rest.features = gs::features::feature_set(features);
+    rest.resume_from = &checkpoints.at(10);
+    check_equal(trained(gs::train::make_cpu_engine, scene, rest, ignored), uninterrupted);
+}
+
 TEST_CASE("resume: a checkpoint of a resumed run equals that of the uninterrupted run") {
     const gs::scene scene = small_scene("synthetic:spheres", 24);
     gs::train::train_options o = options_for(scene, "adaptive");

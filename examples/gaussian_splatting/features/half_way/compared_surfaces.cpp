@@ -143,13 +143,16 @@ std::vector<sample> samples_of(const blocks& of, std::size_t view, const camera&
 /// Returns the samples of all examined photos, in the order of these.
 std::vector<sample> all_samples(train::engine& engine, const scene& of, const show_function& show,
                                 const std::array<float, 3>& background) {
-    constexpr int most_at_once = 8;  // limits the memory for renders
-    const std::size_t photos = std::min(of.train.size(), most_photos);
+    constexpr int most_at_once = 4;  // limits the memory for renders
+    std::vector<std::size_t> views;  // panoramas have no corners
+    for (std::size_t v = 0; v < of.train.size(); ++v)
+        if (!of.train[v].camera.is_panorama) views.push_back(v);
+    const std::size_t photos = std::min(views.size(), most_photos);
     const auto at_once = static_cast<std::size_t>(std::min(omp_get_max_threads(), most_at_once));
     std::vector<std::vector<float>> renders(at_once), inverses(at_once);
     std::vector<std::vector<sample>> by_photo(photos);
     std::vector<camera> cameras(at_once);  // with the poses that training has learned
-    const auto view_of = [&](std::size_t photo) { return photo * of.train.size() / photos; };
+    const auto view_of = [&](std::size_t photo) { return views[photo * views.size() / photos]; };
     for (std::size_t first = 0; first < photos; first += at_once) {
         const std::size_t count = std::min(at_once, photos - first);
         for (std::size_t i = 0; i < count; ++i) {
@@ -160,7 +163,6 @@ std::vector<sample> all_samples(train::engine& engine, const scene& of, const sh
         }
         for_each_in_parallel(count, [&](std::size_t i) {
             const std::size_t v = view_of(first + i);
-            if (cameras[i].is_panorama) return;
             show(v, cameras[i].width, renders[i]);
             const view_photo photo(of.train[v]);
             by_photo[first + i] = samples_of(blocks(cameras[i], photo.pixels(), renders[i], inverses[i]), v,

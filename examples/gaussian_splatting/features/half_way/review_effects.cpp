@@ -5,17 +5,27 @@
 #include <string>
 #include <vector>
 
+#include "../../ranks/communicator.hpp"
 #include "../../training/training.hpp"
 #include "half_way_statistics.hpp"
 
 namespace gs::features {
 namespace {
 
+/// Gives all ranks the finding of the first one, so that they begin the same effects with the same values.
+void share(finding& found, ranks::communicator* ranks) {
+    if (ranks == nullptr) return;
+    found.recommended = ranks->from_first(found.recommended.value_or(false) ? 1 : 0) != 0;
+    for (float& value : found.values)
+        value = static_cast<float>(ranks->from_first(static_cast<double>(value)));
+}
+
 /// Reviews an effect, begins it if it is recommended, and reports the decision.
 void review(const feature& f, const half_way_statistics& statistics, train::training& training,
             int iteration) {
     const std::string name(f.name());
-    const finding found = f.review(statistics);
+    finding found = f.review(statistics);
+    share(found, training.options().ranks);
     const bool begins = found.recommended.value_or(false);
     if (begins) training.engine().feature(name).set_values(found.values);
     auto& report = training.result().feature_reports[name];

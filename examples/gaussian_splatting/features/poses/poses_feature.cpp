@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
@@ -40,12 +41,15 @@ nlohmann::ordered_json to_json(const camera& given, const camera& learned, const
 }
 
 /// Training begins from the given poses. The smaller the shift of the photos, in pixels, the smaller are
-/// steps.
+/// steps, down to those from corrected poses.
 std::vector<pose_start> given_starts(const scene& scene, double shift) {
     constexpr double steps_per_error = 10;
-    const double error = shift / scene.train.front().camera.fx;
-    const auto step = std::min(step_from_given, static_cast<float>(error / steps_per_error));
-    return std::vector<pose_start>(scene.train.size(), pose_start{{}, step});
+    std::vector<pose_start> starts;
+    for (const view& v : scene.train) {
+        const auto step = static_cast<float>(shift / v.camera.fx / steps_per_error);
+        starts.push_back({{}, std::clamp(step, step_from_corrected, step_from_given)});
+    }
+    return starts;
 }
 
 /// Training begins from poses that show the points at their places. Photos that do not show them begin with
@@ -142,6 +146,12 @@ std::string poses_feature::obstacle(const scene& scene, const std::vector<float>
 
 void poses_feature::schedule(const selected_feature& selected, train::training& training) const {
     if (!selected.on || selected.values.empty()) return;
+    const auto values = std::make_shared<std::vector<float>>(selected.values);
+    training.add_state_before_engine([values, &training](state_archive& archive) {
+        if (archive.loads() && !archive.has("poses.starts")) return;
+        archive.exchange("poses.starts", *values);  // the changes of a checkpoint belong to its starts
+        if (archive.loads()) training.engine().feature("poses").set_values(*values);
+    });
     const std::vector<given_pose> given = given_poses(training.scene());
     const int views = static_cast<int>(given.size());
     training.add({train::phase::upkeep, "remove the common motion of poses",
@@ -150,10 +160,10 @@ void poses_feature::schedule(const selected_feature& selected, train::training& 
                       return iteration % views == 0 &&
                              iteration + views <= training.schedule().iterations.last();
                   },
-                  [given, starts = starts_in(selected.values), &training](int) {
+                  [given, values, &training](int) {
                       auto& state = training.engine().feature("poses");
                       std::vector<float> changes = state.values();
-                      remove_drift(given, starts, changes);
+                      remove_drift(given, starts_in(*values), changes);
                       state.change_values(changes);
                   }});
 }

@@ -66,8 +66,8 @@ inline constexpr unsigned samples_per_tile = 16;
 /// Adds the work of each own tile row: the numbers of splats that sampled pixels blend, and the instances in
 /// its tile lists. One index per own tile.
 struct measure_work {
-    /// The time to list an instance and to skip it in pixels, relative to that of a sampled pixel which
-    /// blends a splat, with all others that it stands for.
+    /// The time to list an instance, and for pixels to skip it. The unit is the time in which a sampled
+    /// pixel, and those that it stands for, blend a splat.
     static constexpr unsigned work_of_instance = 4;
 
     const std::uint32_t* last;  ///< see `blend_forward`
