@@ -18,9 +18,9 @@ namespace gs::train {
 /// these ranges. Ranges may be empty.
 row_range balanced_rows(std::span<const std::uint64_t> weights, int part, int parts);
 
-/// Divides each training view among the ranks. The time of a tile row depends on its work: the number
-/// of splats that its pixels blend, which all ranks know from the last time. They also know how many
-/// splats they sent each other, so that a step need not wait for these numbers.
+/// Divides each training view among the ranks. The time of a tile row depends on its work when the view was
+/// drawn before: see `raster::measure_work`. All ranks know it. They also know how many splats they sent each
+/// other, so that a step need not wait for these numbers.
 class view_strips {
   public:
     /// Forgets all work and splats, and sets the number of views.
