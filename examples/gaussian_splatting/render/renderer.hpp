@@ -14,15 +14,14 @@
 #include "../device/device.hpp"
 #include "blend/blend_backward.hpp"
 #include "blend/blend_forward.hpp"
-#include "blend/depth_splats.hpp"
 #include "gradients/gradient_sums.hpp"
-#include "project/project.hpp"
-#include "project/project_backward.hpp"
+#include "project/own_splats.hpp"
 #include "project/splat_exchange.hpp"
 #include "renderer_bytes.hpp"
 #include "tiles/bin.hpp"
 #include "tiles/strip_lists.hpp"
 #include "tiles/tile_schedule.hpp"
+#include "tiles/view_stack.hpp"
 #include "tiles/view_strip.hpp"
 
 namespace gs::raster {
@@ -43,7 +42,12 @@ class renderer {
     using bytes = renderer_bytes<Device, Real, Cut>;
 
     explicit renderer(Device& device)
-        : device_(device), exchange_(device), strip_lists_(device), sums_(device), schedule_(device) {
+        : device_(device),
+          own_(device),
+          exchange_(device),
+          strip_lists_(device),
+          sums_(device),
+          schedule_(device) {
         device_.zero(reserve(pairs_, 2).data(), 2);
         device_.zero(reserve(required_, 1).data(), 1);
     }
@@ -67,8 +71,9 @@ class renderer {
     /// Counts the instances (Gaussian, tile) of a whole view: see `instances`.
     void measure(const model& gaussians, std::size_t count, const camera& view, int sh_degree) {
         project_own(gaussians, count, view, sh_degree);
-        with_items<Real>(camera_, {order_.data(), by_gaussian(splats_), by_gaussian(boxes_), tiles_across_},
-                         [&](const auto& items) { place_lists(items, own_gaussians().count(), 0); });
+        with_items<Real>(
+            views_[0], {own_.order.data(), own_.of(own_.splats), own_.of(own_.boxes), views_.tiles_across()},
+            [&](const auto& items) { place_lists(items, own_.count(), 0); });
         if (strip_) device_.sum_over_ranks(required_.data(), 1);
     }
     /// Returns the number of instances of the last view that was drawn or measured. Waits for the
@@ -99,23 +104,22 @@ class renderer {
         blend(background, background_image);
     }
 
-    /// The first part of `forward`: projects the Gaussians and makes the tile lists.
-    void list(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
+    /// The first part of `forward`: projects the Gaussians and makes the tile lists. Several views need a
+    /// strip, also with one rank.
+    void list(const model& gaussians, std::size_t count, const view_stack& views, int sh_degree,
               const dropout& dropped = {}) {
         using device::stage;
         const auto scope = exchanging(ranks::purpose::splats);
         device_.begin(stage::project);
-        project_own(gaussians, count, view, sh_degree, dropped);
+        project_own(gaussians, count, views, sh_degree, dropped);
         if (strip_) exchange_splats(strip_->windows);
         device_.begin(stage::bin);
         bin();
         if (strip_) complete_lists();
         device_.begin(stage::blend_forward);
-        const std::size_t pixels =
-            static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-        render_.resize(3 * pixels);
-        transmittance_.resize(pixels);
-        last_.resize(pixels);
+        render_.resize(3 * views.pixels());
+        transmittance_.resize(views.pixels());
+        last_.resize(views.pixels());
         checkpoints_.resize(segments() * checkpoint_values);
         gaussians_ = gaussians;
         sh_degree_ = sh_degree;
@@ -130,11 +134,12 @@ class renderer {
                                         : blend_forward_by<Shape>(background_image_, lists(), pairs_.data());
         });
         if (!strip_) return;
-        device_.zero(reserve(work_, tiles_down_).data(), tiles_down_);
+        device_.zero(reserve(work_, views_.tiles_down()).data(), views_.tiles_down());
         const ranks::share own = tiles_in(strip_->own);
-        device_.for_each_index(own.count(), measure_work{last_.data(), static_cast<unsigned>(camera_.width),
-                                                         static_cast<unsigned>(camera_.height), tiles_across_,
-                                                         own.first, ranges_.data(), work_.data()});
+        device_.for_each_index(own.count(),
+                               measure_work{last_.data(), static_cast<unsigned>(views_.width()),
+                                            static_cast<unsigned>(views_.height()), views_.tiles_across(),
+                                            own.first, ranges_.data(), work_.data()});
     }
 
     /// Called between both parts: draws the inverse depths, the sum of w_i / z_i with the weights
@@ -142,14 +147,10 @@ class renderer {
     /// `blend`. The time of this and the next function counts as forward blending.
     void blend_depths() {
         near_.resize(listed_count());
-        with_lens(camera_.lens(), [&]<lens_model Lens> {
-            device_.for_each_index(own_gaussians(), depth_splats<Real, effect_set{.lens = Lens}>{
-                                                        gaussians_.mean, for_device<Real>(camera_),
-                                                        by_gaussian(splats_), by_gaussian(near_)});
-        });
+        own_.show_depths(gaussians_.mean, views_, near_);
         if (strip_) {
             const auto scope = exchanging(ranks::purpose::splats);
-            exchange_.send_again(near_.data(), near_.data() + own_gaussians().count());
+            exchange_.send_again(near_.data(), near_.data() + own_.count());
         }
         background_ = {};
         with_cut(
@@ -177,27 +178,23 @@ class renderer {
         const Real* sums = backward_to_splats(render_gradient, largest, how);
         backward_from_splats(sums, learned_sh_degree, sink, seen);
     }
-    /// The first part of `backward`. Returns the sums over pixels of each of the `own_gaussians`.
+    /// The first part of `backward`. Returns the sums over pixels of each of the `own_gaussians` in each
+    /// view.
     const Real* backward_to_splats(const Real* render_gradient, float largest, accumulator how) {
         const Real* sums = pixel_sums(render_gradient, largest, how);
         device_.begin(device::stage::project_backward);
         return sums;
     }
-    /// The second part of `backward`. Several sinks can take the gradients of the same sums.
+    /// The second part of `backward`, for one of the views. Several sinks can take the gradients of the same
+    /// sums.
     template <class Sink>
-    void backward_from_splats(const Real* sums, int learned_sh_degree, const Sink& sink, visibility* seen) {
-        using narrow = typename Device::narrow_warp;
-        with_effects(effects_of(camera_), [&]<effect_set Effects> {
-            device_.template for_each_warp<narrow>(
-                own_warps<narrow>(),
-                project_backward<narrow, Real, Sink, Effects>{
-                    gaussians_, count_, camera_for<value_t<narrow, Real>, Effects>(camera_), sh_degree_,
-                    learned_sh_degree, by_gaussian(splats_), by_gaussian(tiles_), sums, sink, seen,
-                    capacity()});
-        });
+    void backward_from_splats(const Real* sums, int learned_sh_degree, const Sink& sink, visibility* seen,
+                              std::size_t view = 0) {
+        own_.project_back(gaussians_, views_[view], view, effects_, sh_degree_, learned_sh_degree, sums, sink,
+                          seen, capacity());
     }
 
-    /// Returns the sums over pixels of each of the `own_gaussians` that was drawn.
+    /// Returns the sums over pixels of each of the `own_gaussians` that was drawn, view by view.
     const Real* pixel_sums(const Real* render_gradient, float largest, accumulator how) {
         const Real* sums = nullptr;
         with_cut([&]<class Shape> {
@@ -228,22 +225,25 @@ class renderer {
         launch_backward(kernel, lists(), render_gradient);
         if (!strip_) return sums_.end(kernel);
         const auto scope = exchanging(ranks::purpose::gradients);
-        return sums_.end_for_owners(kernel, exchange_, own_gaussians().count());
+        return sums_.end_for_owners(kernel, exchange_, own_.count());
     }
     /// See `gradient_sums`.
     std::uint32_t* fault() const { return sums_.fault(); }
 
     /// The splats of the last view, by Gaussian, of the `own_gaussians`.
-    const splat<Real>* splats() const { return by_gaussian(splats_); }
+    const splat<Real>* splats() const { return own_.of(own_.splats); }
     /// The number of tiles that each of these may touch; zero if it is not drawn.
-    const std::uint32_t* tiles_of() const { return by_gaussian(tiles_); }
+    const std::uint32_t* tiles_of() const { return own_.of(own_.tiles); }
     const Real* render() const { return render_.data(); }
     /// The transmittance of each pixel behind all splats, of the last `forward`.
     const Real* transmittance() const { return transmittance_.data(); }
-    /// The rows of pixels of the last view that are this rank's own.
-    row_range own_rows() const {
-        return strip_ ? strip_->own_pixels(camera_.height) : row_range{0, camera_.height};
+    /// The rows of pixels of one of the last views that are this rank's own.
+    row_range own_rows(std::size_t view = 0) const {
+        const row_range whole{0, views_.height()};
+        return views_.rows_of(view, strip_ ? strip_->own_pixels(views_.height()) : whole);
     }
+    /// The views that were drawn or measured last.
+    const view_stack& views() const { return views_; }
     /// The number of Gaussians of the last view.
     std::size_t gaussians() const { return count_; }
     /// The Gaussians of the last view that this rank projects and passes to the sink of `backward`.
@@ -257,7 +257,7 @@ class renderer {
         return exchange_.bytes() + strip_lists_.bytes() + exchange_.received() * bytes::per_received(how);
     }
     /// The work of the last view's tile rows, on the device: see `measure_work`. Zero for those of others.
-    std::span<const unsigned long long> row_work() const { return {work_.data(), tiles_down_}; }
+    std::span<const unsigned long long> row_work() const { return {work_.data(), views_.tiles_down()}; }
     /// Whether the last view's instances fit.
     list_capacity capacity() const { return {required_.data(), capacity_}; }
     /// A counter on the device: pixel-Gaussian pairs that all calls of `forward` have evaluated.
@@ -274,32 +274,11 @@ class renderer {
         return {device_.ranks().traffic(), strip_ && !strip_->is_of_step ? ranks::purpose::scores : of_step};
     }
     void release_splats() {
-        splats_ = {};
+        own_.release();
         near_ = {};
-        boxes_ = {};
-        for (auto* values : {&depths_, &order_, &tiles_}) *values = {};
     }
-    /// Reserves an array with a value for each of the `own_gaussians`, and `more`. Returns a pointer that the
-    /// indices of Gaussians refer to.
-    template <class T>
-    T* reserve_own(buffer<T>& b, std::size_t more = 0) const {
-        b.resize(own_gaussians().count() + more);
-        return by_gaussian(b);
-    }
-    template <class T>
-    T* by_gaussian(const buffer<T>& b) const {
-        return b.size() > 0 ? b.data() - own_gaussians().first : nullptr;
-    }
-    /// Returns the warps that project this rank's Gaussians.
-    template <class Warp>
-    ranks::share own_warps() const {
-        const ranks::share own = own_gaussians();
-        if (own.count() == 0) return {};  // a share may begin at the end
-        return {own.first / Warp::size, (own.last + Warp::size - 1) / Warp::size};
-    }
-
     /// Returns the number of splats that tile lists may refer to.
-    std::size_t listed_count() const { return own_gaussians().count() + (strip_ ? exchange_.received() : 0); }
+    std::size_t listed_count() const { return own_.count() + (strip_ ? exchange_.received() : 0); }
 
     template <class T>
     static buffer<T>& reserve(buffer<T>& b, std::size_t n) {
@@ -307,30 +286,21 @@ class renderer {
         return b;
     }
 
-    effect_set effects_of(const camera& view) const {
-        effect_set effects = effects_;
-        effects.lens = view.lens();
-        effects.motion = view.motion.has_value();
-        return effects;
-    }
-
     /// Calls `f.template operator()<Shape>()` with the division of the current view.
     template <class F>
     void with_cut(const F& f) const {
-        with_flag(camera_.is_panorama, [&]<bool Panorama> {
+        with_flag(views_.is_panorama(), [&]<bool Panorama> {
             f.template operator()<std::conditional_t<Panorama, panorama_cut<Cut>, Cut>>();
         });
     }
-    std::size_t tiles() const { return std::size_t{tiles_across_} * tiles_down_; }
-    row_range all_rows() const { return {0, static_cast<int>(tiles_down_)}; }
+    std::size_t tiles() const { return std::size_t{views_.tiles_across()} * views_.tiles_down(); }
+    row_range all_rows() const { return {0, static_cast<int>(views_.tiles_down())}; }
     /// Returns the tile rows with tile lists.
-    row_range listed_rows() const {
-        return strip_ ? strip_->listed(static_cast<int>(tiles_down_)) : all_rows();
-    }
+    row_range listed_rows() const { return strip_ ? strip_->listed(all_rows().last) : all_rows(); }
     /// Returns the tiles of some tile rows.
     ranks::share tiles_in(const row_range& rows) const {
-        return {static_cast<std::size_t>(rows.first) * tiles_across_,
-                static_cast<std::size_t>(rows.last) * tiles_across_};
+        return {static_cast<std::size_t>(rows.first) * views_.tiles_across(),
+                static_cast<std::size_t>(rows.last) * views_.tiles_across()};
     }
     template <class Kernel>
     void launch_backward(Kernel& kernel, const tile_lists<Real>& lists, const Real* render_gradient) {
@@ -367,8 +337,8 @@ class renderer {
         return most_segments<Cut>(tiles(), capacity_ + (strip_ ? Cut::segment : 0));
     }
     tile_lists<Real> lists() const {
-        return {splats_.data(), gaussian_of_.data(), ranges_.data(),
-                tiles_across_,  camera_.width,       camera_.height};
+        return {own_.splats.data(),    gaussian_of_.data(), ranges_.data(),
+                views_.tiles_across(), views_.width(),      views_.height()};
     }
     tile_lists<Real> depth_lists() const {
         tile_lists<Real> all = lists();
@@ -376,24 +346,13 @@ class renderer {
         return all;
     }
 
-    void project_own(const model& gaussians, std::size_t count, const camera& view, int sh_degree,
+    void project_own(const model& gaussians, std::size_t count, const view_stack& views, int sh_degree,
                      const dropout& dropped = {}) {
-        require_drawable(view);
-        camera_ = view;
+        for (std::size_t v = 0; v < views.count(); ++v) require_drawable(views[v]);
+        views_ = views;
         count_ = count;
-        tiles_across_ = static_cast<unsigned>((view.width + tile_size - 1) / tile_size);
-        tiles_down_ = static_cast<unsigned>((view.height + tile_size - 1) / tile_size);
-        using narrow = typename Device::narrow_warp;
-        with_effects(effects_of(view), [&]<effect_set Effects> {
-            constexpr effect_set seen{Effects.antialiasing, Effects.lens, false, Effects.motion};
-            using projection = project<narrow, Real, seen>;
-            device_.template for_each_warp<narrow>(
-                own_warps<narrow>(),
-                projection{gaussians, count, camera_for<value_t<narrow, Real>, seen>(view), sh_degree,
-                           tiles_across_, tiles_down_, reserve_own(splats_, expected_splats()),
-                           reserve_own(boxes_), reserve_own(depths_), reserve_own(order_),
-                           reserve_own(tiles_), dropped});
-        });
+        own_.project(gaussians, count, own_gaussians(), views, effects_, sh_degree, dropped,
+                     expected_splats());
     }
     /// Returns the number of splats that others probably send.
     std::size_t expected_splats() const {
@@ -403,16 +362,16 @@ class renderer {
     }
     /// Gives each rank the splats of its strip.
     void exchange_splats(const std::optional<ranks::windows>& expected) {
-        exchange_.begin(own_gaussians().count(), strip_->listed_by_all(static_cast<int>(tiles_down_)),
-                        boxes_.data(), tiles_.data(), expected);
-        if (listed_count() > splats_.size()) {
+        exchange_.begin(own_.count(), strip_->listed_by_all(all_rows().last), own_.boxes.data(),
+                        own_.tiles.data(), expected);
+        if (listed_count() > own_.splats.size()) {
             buffer<splat<Real>> more;
             more.resize(listed_count());
-            device_.copy(more.data(), splats_.data(), own_gaussians().count());
-            splats_ = std::move(more);
+            device_.copy(more.data(), own_.splats.data(), own_.count());
+            own_.splats = std::move(more);
         }
-        exchange_.send(splats_.data(), boxes_.data(), depths_.data(),
-                       splats_.data() + own_gaussians().count());
+        exchange_.send(own_.splats.data(), own_.boxes.data(), own_.depths.data(),
+                       own_.splats.data() + own_.count());
     }
     /// Makes the lists of a strip again if a rank has sent more splats than expected.
     void complete_lists() {
@@ -429,13 +388,14 @@ class renderer {
         if (strip_) {
             list_strip();
         } else {
-            device_.sort_pairs(depths_, order_, count_);
-            with_items<Real>(camera_, {order_.data(), splats_.data(), boxes_.data(), tiles_across_},
-                             [&](const auto& items) {
-                                 place_lists(items, count_, capacity_);
-                                 device_.write_lists(count_, items, tiles(), capacity_, gaussian_of_.data(),
-                                                     ranges_.data());
-                             });
+            device_.sort_pairs(own_.depths, own_.order, count_);
+            with_items<Real>(
+                views_[0], {own_.order.data(), own_.splats.data(), own_.boxes.data(), views_.tiles_across()},
+                [&](const auto& items) {
+                    place_lists(items, count_, capacity_);
+                    device_.write_lists(count_, items, tiles(), capacity_, gaussian_of_.data(),
+                                        ranges_.data());
+                });
         }
         const bool has_own_rows = strip_ && strip_->own.count() > 0;
         schedule_.template make<Cut>(ranges_.data(), tiles(), tiles_in(listed_rows()),
@@ -447,29 +407,28 @@ class renderer {
                             required_.data());
     }
     void list_strip() {
-        strip_lists_.sort({own_gaussians().count(), exchange_.received(), exchange_.received_before(),
-                           boxes_.data(), depths_.data(), exchange_.received_reach()},
+        strip_lists_.sort({own_.count(), exchange_.received(), exchange_.received_before(), own_.boxes.data(),
+                           own_.depths.data(), exchange_.received_reach()},
                           listed_rows());
         device_.zero(reserve(ranges_, tiles()).data(), tiles());  // of tiles without a list
-        with_items<Real>(camera_,
-                         {strip_lists_.order(), splats_.data(), strip_lists_.boxes(), tiles_across_,
-                          static_cast<std::uint32_t>(tiles_in(listed_rows()).first)},
+        with_items<Real>(views_[0],
+                         {strip_lists_.order(), own_.splats.data(), strip_lists_.boxes(),
+                          views_.tiles_across(), static_cast<std::uint32_t>(tiles_in(listed_rows()).first)},
                          [&](const auto& items) {
                              const auto scope = exchanging(ranks::purpose::lists);
                              strip_lists_.make(
                                  items, listed_count(),
-                                 {strip_->own, listed_rows(), tiles_across_, tiles_down_, capacity_,
-                                  gaussian_of_.data(), ranges_.data(), required_.data()});
+                                 {strip_->own, listed_rows(), views_.tiles_across(), views_.tiles_down(),
+                                  capacity_, gaussian_of_.data(), ranges_.data(), required_.data()});
                          });
     }
 
     static vec3<Real> color(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
 
     Device& device_;
-    /// Those of own Gaussians, and of others behind them. The second array is for `depth_splats`.
-    buffer<splat<Real>> splats_, near_;
-    buffer<tile_box> boxes_;
-    buffer<std::uint32_t> depths_, order_, tiles_, gaussian_of_;
+    own_splats<Device, Real> own_;
+    buffer<splat<Real>> near_;  ///< see `depth_splats`
+    buffer<std::uint32_t> gaussian_of_;
     buffer<std::uint64_t> required_;
     buffer<tile_range> ranges_;
     buffer<Real> render_, transmittance_, checkpoints_;
@@ -482,12 +441,11 @@ class renderer {
     buffer<unsigned long long> pairs_;  ///< one counter for colors, and an unused one for depths
     std::uint64_t capacity_ = 0;
 
-    unsigned tiles_across_ = 0, tiles_down_ = 0;
     std::optional<view_strip> strip_;  ///< if unset, views are drawn whole
 
     effect_set effects_;
 
-    camera camera_{};  ///< the view that was drawn or measured last
+    view_stack views_;  ///< those that were drawn or measured last
 
     // The other arguments of the last `forward`, which `backward` uses.
     model gaussians_;
