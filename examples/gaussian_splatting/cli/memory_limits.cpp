@@ -74,11 +74,11 @@ load_options with_limit(load_options source, const photos::photo_limits& limits)
     return source;
 }
 
-photos::photo_plan photo_memory(const scene& of, const photos::photo_limits& limits) {
+photos::photo_plan photo_memory(const scene& of, const photos::photo_limits& limits, std::size_t at_once) {
     if (!photos::any_is_streamed(of.train, of.test)) return {};
     constexpr int most_threads = 16;  // more need much memory, and decode faster than any step is
     const auto threads = static_cast<std::size_t>(std::min(omp_get_max_threads(), most_threads));
-    return photos::plan_photos(of.train, of.test, limits, threads);
+    return photos::plan_photos(of.train, of.test, limits, threads, at_once);
 }
 
 std::uint64_t photos_on_host(const scene& of, const photos::photo_plan& plan) {

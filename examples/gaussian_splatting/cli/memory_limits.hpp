@@ -26,7 +26,7 @@ std::uint64_t device_limit(const settings& s, const device::profiler& device, in
 load_options with_limit(load_options source, const photos::photo_limits& limits);
 
 /// Returns the memory for photos: empty if they are resident.
-photos::photo_plan photo_memory(const scene& of, const photos::photo_limits& limits);
+photos::photo_plan photo_memory(const scene& of, const photos::photo_limits& limits, std::size_t at_once);
 
 /// Returns the precision of moments: `wanted` if it is set, and otherwise compact if the forecast for float
 /// moments exceeds the limit. A limit of 0 means none.

@@ -77,6 +77,7 @@ struct settings {
     train::schedule schedule;
     std::optional<double> seconds;  ///< time of training, instead of its iterations, or of a video
     train::strategy_settings densification;
+    int batch_size = 1;  ///< number of photos of each iteration
     std::string loss = train::default_loss;
     features::selection effects;
     train::point_source init = train::point_source::automatic;

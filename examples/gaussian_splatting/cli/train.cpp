@@ -55,6 +55,7 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     o.test_iterations = s.test_iterations;
     o.checkpoint_every = s.checkpoint_every;
     o.checkpoint_iterations = s.checkpoint_iterations;
+    o.batch_size = static_cast<std::size_t>(s.batch_size);
     o.features = std::move(features);
     return o;
 }
@@ -164,7 +165,7 @@ training_run::training_run(const settings& s, const load_options& source,
       lpips_(context_.load_lpips()),
       limits_(photo_limits(s, engine_->profile(), ranks_.count())),
       scene_(context_.load(with_limit(source, limits_))),
-      photo_memory_(photo_memory(scene_, limits_)),
+      photo_memory_(photo_memory(scene_, limits_, static_cast<std::size_t>(s.batch_size))),
       options_(options_of(s, scene_, context_, engine_->profile(), ranks_.count(),
                           resolve_effects(s, scene_, context_))),
       bar_(s.log_level < log_level::info) {

@@ -24,9 +24,10 @@ struct training_setup {
     strategy_settings densification;
     std::string loss = default_loss;
     parameter_storage storage{};
-    std::uint64_t host_bytes =
-        0;               ///< host memory for parameters that `facts.max_device_bytes` has no room for
-    double dropout = 0;  ///< share of the Gaussians that each step leaves out: see `raster::dropout`
+    /// Host memory for parameters that `facts.max_device_bytes` has no room for.
+    std::uint64_t host_bytes = 0;
+    double dropout = 0;          ///< share of the Gaussians that each step leaves out: see `raster::dropout`
+    std::size_t batch_size = 1;  ///< number of views of each step
     /// The features that are on, by name, with their initial values.
     std::map<std::string, std::vector<float>, std::less<>> features;
 

@@ -15,26 +15,31 @@
 
 namespace gs::features {
 
-/// A training step, as the hooks of features see it. Renders and their gradients are three planes
-/// on the device.
+/// A training step with one of its views, as the hooks of features see it. Renders and their gradients are
+/// three planes on the device.
 template <class Renderer>
 struct step {
-    const train::step_plan& plan;
-    const gs::camera& camera;
-    const train::target_image& target;  ///< the photo of the view
-    const std::uint16_t* depths;        ///< depth map of the view, in device memory, or null
+    train::step_plan plan;  ///< of this view
+    gs::camera camera;
+    train::target_image target;   ///< the photo of the view
+    const std::uint16_t* depths;  ///< depth map of the view, in device memory, or null
     Renderer& renderer;
     float gradient_scale;  ///< the largest gradient scale of the loss and of all features
     accumulator accumulate;
+    std::size_t place = 0;                 ///< the view among those that the step renders
+    const float* transmittance = nullptr;  ///< of each pixel behind all splats: set before `show`
 
+    /// The rows of the view that belong to this rank.
+    row_range own_rows() const { return renderer.own_rows(place); }
     std::size_t pixels() const {
         return static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
     }
 };
 
 /// The part of a feature that runs in steps on a device. A step first calls `memory_key` and
-/// `gradient_scale`, and then the hooks from `before_blend` to `learn` in the order of their
-/// declaration. None of them may wait for the device.
+/// `gradient_scale`, and then the hooks from `depth_gradient` to `learn_pose` in the order of their
+/// declaration, each for all of its views or all for one view after another. None of them may wait for the
+/// device.
 template <class Renderer>
 class device_feature : public train::feature_state {
   public:
@@ -63,8 +68,13 @@ class device_feature : public train::feature_state {
     /// Returns the camera of a training view with the pose that the effect has learned. May wait for a
     /// step that used the view. Runs before the first hook of each step, and for other renders.
     virtual camera seen_by(std::size_t /*view*/, const camera& given) { return given; }
-    /// Runs after the tile lists are made and before colors are blended.
-    virtual void before_blend(const step&) {}
+    /// Returns whether the feature learns from a depth map of the view. Then `depth_gradient` gets the
+    /// render of inverse depths, one plane, and returns the gradient, three planes of which the last two are
+    /// zero.
+    /// @{
+    virtual bool learns_depths(const step&) const { return false; }
+    virtual const float* depth_gradient(const step&, const float* /*inverse_depths*/) { return nullptr; }
+    /// @}
     /// Returns the learned background of a camera, or null.
     virtual const float* background(const camera&) { return nullptr; }
     /// Applies the effect to a render, so that it matches the target. The hooks of several features

@@ -73,9 +73,14 @@ class device_features {
         for (auto& [name, f] : parts_) given = f->seen_by(view, given);
         return given;
     }
-    void before_blend(const step& s) {
-        const auto scope = exchanging();
-        for (auto& [name, f] : parts_) f->before_blend(s);
+    bool learns_depths(const step& s) const {
+        return std::ranges::any_of(parts_, [&](const auto& named) { return named.second->learns_depths(s); });
+    }
+    /// Returns the gradient of the first feature that learns from the view's depth map, or null.
+    const float* depth_gradient(const step& s, const float* inverse_depths) {
+        for (auto& [name, f] : parts_)
+            if (f->learns_depths(s)) return f->depth_gradient(s, inverse_depths);
+        return nullptr;
     }
     /// Returns the background of the first feature that has one, or null.
     const float* background(const camera& camera) {

@@ -55,17 +55,16 @@ class learned_rows {
         return result;
     }
 
-    /// Trains the row of a view. `sums`: see `raster::renderer::backward_to_splats`. `make_sink` gets
-    /// `ordered_sums` with a part per warp, and returns a sink of `raster::project_backward` that adds
-    /// the gradient of the row to them.
-    template <class Renderer, class MakeSink>
-    void learn(std::size_t view, Renderer& renderer, const float* sums, float rate,
-               const MakeSink& make_sink) {
+    /// Trains the row of a view in the step `s`. `sums`: see `raster::renderer::backward_to_splats`.
+    /// `make_sink` gets `ordered_sums` with a part per warp, and returns a sink of `raster::project_backward`
+    /// that adds the gradient of the row to them.
+    template <class Step, class MakeSink>
+    void learn(std::size_t view, const Step& s, const float* sums, float rate, const MakeSink& make_sink) {
         using narrow = typename Device::narrow_warp;
-        const auto parts = numbers_.sums((renderer.gaussians() + narrow::size - 1) / narrow::size);
-        renderer.backward_from_splats(sums, 0, make_sink(parts), nullptr);
-        alone_ ? numbers_.learn_alone(view, parts, rate, renderer.capacity())
-               : numbers_.learn(view, parts, rate, renderer.capacity());
+        const auto parts = numbers_.sums((s.renderer.gaussians() + narrow::size - 1) / narrow::size);
+        s.renderer.backward_from_splats(sums, 0, make_sink(parts), nullptr, s.place);
+        alone_ ? numbers_.learn_alone(view, parts, rate, s.renderer.capacity())
+               : numbers_.learn(view, parts, rate, s.renderer.capacity());
         trained_ = view;
     }
 

@@ -12,6 +12,7 @@
 #include "../device/device.hpp"
 #include "../model/parameter_memory.hpp"
 #include "../render/project/shown_blocks.hpp"
+#include "../render/tiles/view_stack.hpp"
 #include "adam.hpp"
 #include "block_cache.hpp"
 #include "parameter_storage.hpp"
@@ -110,11 +111,12 @@ struct trained_parameters {
         for (auto* moments : {&first, &second}) moments->move_to_host_from(device, how.first_degree_on_host);
         packed.move_to_host_from(device, how.first_degree_on_host);
     }
-    /// Fetches the blocks that the view shows, if some parameters lie in host memory: see `block_cache`.
-    void fetch(Device& device, const camera& view) {
+    /// Fetches the blocks that the views show, if some parameters lie in host memory: see `block_cache`.
+    void fetch(Device& device, const raster::view_stack& views) {
         if (cache.blocks() == 0) return;
-        raster::find_shown_blocks(device, values.read().mean, values.gaussians_with_sh(), view,
-                                  cache.needed());
+        for (std::size_t v = 0; v < views.count(); ++v)
+            raster::find_shown_blocks(device, values.read().mean, values.gaussians_with_sh(), views[v],
+                                      cache.needed(), v > 0);
         cache.fetch(device);
     }
     /// Writes the cache back and frees it. Must precede all accesses to arrays except by kernels that heed

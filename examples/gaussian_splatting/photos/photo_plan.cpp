@@ -12,8 +12,8 @@
 namespace gs::photos {
 namespace {
 
-/// While one photo is in use, one is being uploaded, and one is ready.
-constexpr std::size_t device_slots = 3;
+/// While photos are in use, one is being uploaded, and one is ready.
+constexpr std::size_t slots_beside = 2;
 
 /// Each worker decodes into its own buffer, while others are uploaded from two more.
 photo_plan with_workers(photo_plan plan, std::size_t workers) {
@@ -42,8 +42,8 @@ std::uint64_t most_resident_bytes(const photo_limits& limits) {
 }
 
 photo_plan plan_photos(std::span<const view> train, std::span<const view> held_out,
-                       const photo_limits& limits, std::size_t threads) {
-    photo_plan plan{.slots = device_slots};
+                       const photo_limits& limits, std::size_t threads, std::size_t at_once) {
+    photo_plan plan{.slots = at_once + slots_beside};
     std::uint64_t all = 0, all_kept = 0;
     const view* largest = nullptr;
     for (const auto views : {train, held_out})

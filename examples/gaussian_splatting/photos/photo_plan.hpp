@@ -41,11 +41,11 @@ bool any_is_streamed(std::span<const view> train, std::span<const view> held_out
 std::uint64_t most_resident_bytes(const photo_limits& limits);
 
 /// Divides the memory for streamed views. Decoding gets at most half of it, for up to `threads`
-/// workers. The photos that stay in device memory get the remaining memory of the device, and those
-/// in host memory get the rest. If there is not enough memory for all photos, and photos take fewer
-/// bytes on the host, the host gets its share first. Throws `error` with the smallest sufficient
-/// limit if the limits are too small.
+/// workers. `at_once`: the number of photos that a step needs. The photos that stay in device memory get the
+/// remaining memory of the device, and those in host memory get the rest. If there is not enough memory for
+/// all photos, and photos take fewer bytes on the host, the host gets its share first. Throws `error` with
+/// the smallest sufficient limit if the limits are too small.
 photo_plan plan_photos(std::span<const view> train, std::span<const view> held_out,
-                       const photo_limits& limits, std::size_t threads);
+                       const photo_limits& limits, std::size_t threads, std::size_t at_once = 1);
 
 }  // namespace gs::photos

@@ -12,10 +12,9 @@
 
 #include "../core/error.hpp"
 #include "../engine/engine.hpp"
-#include "../engine/sh_degree_state.hpp"
 #include "../features/device_features.hpp"
-#include "../features/sh_degree/prune_sh.hpp"
 #include "../metrics/image_comparison.hpp"
+#include "../optimize/view_gradients.hpp"
 #include "../render/renderer.hpp"
 #include "clamp_render.hpp"
 #include "device_views.hpp"
@@ -23,10 +22,13 @@
 #include "engine_memory.hpp"
 #include "engine_parts.hpp"
 #include "list_sizer.hpp"
+#include "pair_counter.hpp"
 #include "rank_division.hpp"
 #include "refine_pose.hpp"
 #include "row_work.hpp"
+#include "step_images.hpp"
 #include "step_monitor.hpp"
+#include "trained_sh.hpp"
 #include "view_strips.hpp"
 
 namespace gs::train {
@@ -48,6 +50,9 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
           renderer_(device_),
           comparison_(device_),
           features_(device_),
+          images_(device_, renderer_, features_),
+          gradients_(device_),
+          pairs_(device_, renderer_),
           sh_(*this),
           views_(device_),
           lists_(device_),
@@ -109,22 +114,29 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
     void step(const step_plan& plan) override {
         division_.divide(count_, renderer_);
         trained_.require_memory(device_, count_, sh_degree_);
-        const photo& shot = views_.train(level_)[plan.view];
-        const camera seen = features_.seen_by(plan.view, shot.camera);
-        const auto loaded = views_.load(shot);
-        target_image target = loaded.target(plan.background);
-        const auto strip =
-            strips_.of_step(plan.view, shot.camera, loss_->reach(), device_.ranks(), trained_.shares);
+        std::vector<std::size_t> views = plan.more_views;
+        views.insert(views.begin(), plan.view);
+        std::vector<step_type> steps =
+            images_.begin(plan, views, views_, views_.train(level_), setup_.facts.gradient);
+        const raster::view_stack picture = step_images<renderer_type>::picture_of(steps);
+        const auto strip = strips_.of_step(views, picture, loss_->reach(), device_.ranks(), shares());
         set_strip(strip, true);
-        if (strip) target.rows = strip->own_pixels(shot.camera.height);
-        loss_->set_target(target);
-        step_type s{plan, seen, target, loaded.depths(), renderer_, 0, setup_.facts.gradient};
-        s.gradient_scale = std::max(loss_->gradient_scale(), features_.gradient_scale(s));
-        device_.iteration(key_of(s, target), [&] { iterate(s); });
-        lists_.was_noted(plan.view, count_);
-        if (strip) {
-            row_work_.keep(plan.view, renderer_.row_work());
-            strips_.note_sent(plan.view, renderer_.exchange().window_counts(), *trained_.shares);
+        float scale = 0;
+        for (step_type& s : steps) {
+            if (strip) s.target.rows = picture.rows_of(s.place, strip->own_pixels(picture.height()));
+            loss_->set_target(s.target);
+            scale = std::max({scale, loss_->gradient_scale(), features_.gradient_scale(s)});
+        }
+        for (step_type& s : steps) s.gradient_scale = scale;
+        device_.iteration(key_of(steps), [&] { iterate(steps, picture); });
+        for (const step_type& s : steps) {
+            lists_.was_noted(s.plan.view, count_);
+            if (trained_.shares)
+                row_work_.keep(s.plan.view, renderer_.row_work().subspan(s.place * picture.tiles_of_view()));
+        }
+        if (trained_.shares) {
+            if (views.size() == 1)
+                strips_.note_sent(plan.view, renderer_.exchange().window_counts(), *trained_.shares);
             division_.note_step(renderer_.exchange().drawn(), count_);
         }
         if (views_.cache() != nullptr) views_.cache()->upload_ahead();
@@ -154,9 +166,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         const std::uint64_t skipped = monitor_.skipped();
         const auto sums = loss_->sums();
         device_.sum_over_ranks(sums.data(), sums.size());
-        std::uint64_t pairs = own_pairs();
-        device_.ranks().sum(&pairs, 1);
-        pairs_of_others_ = pairs - own_pairs();
+        pairs_.take_others();
         return {loss_->take(), skipped, monitor_.take_faults()};
     }
 
@@ -195,29 +205,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
     }
 
   private:
-    /// The SH degree of the model, and the SH coefficients of the parameters and of Adam's moments.
-    class sh_state final : public sh_degree_state {
-      public:
-        explicit sh_state(device_engine& on) : on_(on) {}
-        void set_degree(int degree) override {
-            on_.trained_.change_sh_degree(on_.device_, on_.sh_degree_, degree);
-            on_.sh_degree_ = degree;
-        }
-        std::size_t prune(double change) override {
-            if (on_.count_ > 0 && on_.sh_degree_ > 0) {
-                on_.division_.update();
-                on_.trained_.require_memory(on_.device_, on_.count_, on_.sh_degree_);
-                auto views = on_.drawn(on_.views_.smallest());
-                sh_pruner<Device>(on_.device_, on_.gather_)
-                    .run(on_.trained_, on_.count_, on_.sh_degree_, views, change);
-                on_.begin_generation(on_.count_);
-            }
-            return on_.trained_.values.gaussians_with_sh();
-        }
-
-      private:
-        device_engine& on_;
-    };
+    friend class trained_sh<device_engine>;
 
     /// Returns the training views of one size, to be rendered for scores.
     drawn_views<renderer_type> drawn(const std::vector<photo>& views) {
@@ -229,7 +217,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
                 setup_.facts.gradient,
                 trained_.shares,
                 [this](std::size_t view, const photo& shot) {
-                    set_strip(strips_.of(view, shot.camera, 0, device_.ranks()), false);
+                    set_strip(strips_.of({&view, 1}, shot.camera, 0, device_.ranks()), false);
                     draw(renderer_, features_.seen_by(view, shot.camera), {});
                 }};
     }
@@ -259,7 +247,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
     std::string device_name() const override { return device_.name(); }
     void sample_times(int every) override { device_.sample_times(every); }
     device::stage_times times() override { return device_.times(); }
-    std::uint64_t pairs() override { return own_pairs() + pairs_of_others_; }
+    std::uint64_t pairs() override { return pairs_.of_steps(); }
     std::size_t peak_device_bytes() const override { return device_.peak_bytes(); }
     bool shares_host_memory() const override { return Device::shares_host_memory; }
     std::size_t used_device_bytes() const override { return device_.used_bytes(); }
@@ -268,7 +256,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         device::memory_forecast all = forecast_of_gaussians<Device>(renderer_, count_, gaussians, sh_degree,
                                                                     setup_, division_.own_part(count_));
         all.photos = views_.photo_bytes();
-        all.others += views_.most_pixels() * bytes_per_pixel<Device, renderer_type>();
+        all.others += views_.most_pixels() * setup_.batch_size * bytes_per_pixel<Device, renderer_type>();
         return all;
     }
     void wait() override { device_.wait(); }
@@ -312,12 +300,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         if (sh_degree_ < 0 || sh_degree_ > 3 || !trained_.fits(count_, sh_degree_) || seen_.size() != count_)
             throw error("the checkpoint has arrays that do not fit its number of Gaussians");
         exchange_lists(archive);
-        std::uint64_t trained_pairs = pairs();
-        archive.exchange("pairs", trained_pairs);
-        if (archive.loads()) {
-            drawn_pairs_ = all_pairs() - (device_.ranks().is_first() ? trained_pairs : 0);
-            pairs_of_others_ = 0;
-        }
+        pairs_.exchange(archive);
         features_.exchange(archive);
         const state_archive::scope strategy(archive, "strategy." + setup_.densification.name);
         strategy_->exchange(archive);
@@ -355,6 +338,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         timetable_ = strategy_.get();
         features_.begin(setup);
         setup_ = setup;
+        lists_.set_views_at_once(setup.batch_size);
         first_degree_on_host_ = setup.storage.first_degree_on_host;
         ++runs_;
         trained_.set_storage(device_, setup.storage);
@@ -368,10 +352,12 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         row_work_.reset(views_.train(level));
     }
 
+    /// Returns the Gaussians of each rank.
+    ranks::shares shares() const { return trained_.shares.value_or(ranks::shares(count_, block_length, 1)); }
     /// Limits later draws to the strip of this rank.
     void set_strip(std::optional<raster::view_strip> strip, bool is_of_step) {
         if (strip) {
-            strip->gaussians = *trained_.shares;
+            strip->gaussians = shares();
             strip->is_of_step = is_of_step;
         }
         renderer_.set_strip(strip);
@@ -389,15 +375,18 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         device_.zero(seen_.data(), count);
     }
 
-    /// Returns the graph key: what determines the launches of `iterate`, their ranges and memory.
-    device::graph_key key_of(const step_type& s, const target_image& target) const {
+    /// Returns the graph key: what determines the launches of `iterate`, their ranges and memory. It is
+    /// empty for several views, for which the renderer waits.
+    device::graph_key key_of(const std::vector<step_type>& steps) const {
+        if (steps.size() > 1) return {};
+        const step_type& s = steps[0];
         device::graph_key key{runs_,
                               count_,
                               renderer_.reserved_instances(),
                               static_cast<std::size_t>(s.camera.width),
                               static_cast<std::size_t>(s.camera.height),
                               static_cast<std::size_t>(s.camera.lens()),
-                              target.masked ? std::size_t{1} : 0,
+                              s.target.masked ? std::size_t{1} : 0,
                               effects_.antialiasing ? std::size_t{1} : 0,
                               trained_.memory_key(),
                               strategy_->memory_key(s.plan.iteration)};
@@ -405,24 +394,38 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         return key;
     }
 
-    void iterate(const step_type& s) {
-        const step_plan& plan = s.plan;
-        trained_.fetch(device_, s.camera);
-        renderer_.list(trained_.values.read(), count_, s.camera, plan.sh_degree, dropout_of(plan));
-        features_.before_blend(s);
-        renderer_.blend(plan.background, features_.background(s.camera));
+    void iterate(std::vector<step_type>& steps, const raster::view_stack& picture) {
+        const step_plan& plan = steps[0].plan;
+        trained_.fetch(device_, picture);
+        renderer_.list(trained_.values.read(), count_, picture, plan.sh_degree, dropout_of(plan));
+        images_.learn_depths(steps, loss_->reach());
+        renderer_.blend(plan.background, images_.background(steps));
         device_.begin(device::stage::loss);
-        const float* shown = features_.show(s, renderer_.render());
-        const float* gradient = features_.backward(s, loss_->gradient(shown, renderer_.capacity()));
-        features_.learn(s, gradient);
-        const float* sums = renderer_.backward_to_splats(gradient, s.gradient_scale, s.accumulate);
-        features_.learn_pose(s, sums);
+        const float* gradient = images_.learn(steps, *loss_);
+        const float* sums =
+            renderer_.backward_to_splats(gradient, steps[0].gradient_scale, steps[0].accumulate);
+        for (const step_type& s : steps) {
+            if (steps.size() > 1) features_.seen_by(s.plan.view, views_.train(level_)[s.plan.view].camera);
+            features_.learn_pose(s, sums);
+        }
         const adam<float> descent =
             trained_.descent(++steps_, plan.rates, renderer_.capacity(), monitor_.check_of(plan.iteration));
-        renderer_.backward_from_splats(sums, plan.updates_sh ? plan.sh_degree : 0, descent,
-                                       strategy_->wants(plan.iteration) ? seen_.data() : nullptr);
+        descend(steps, sums, descent, strategy_->wants(plan.iteration) ? seen_.data() : nullptr);
         strategy_->after_step(plan.iteration, {in_training(), plan.rates, renderer_.capacity()});
         monitor_.close(renderer_, loss_->sums(), lists_.length(plan.view), plan.iteration);
+        if (steps.size() > 1)
+            for (const step_type& s : steps) lists_.note_mean(renderer_, s.plan.view);
+    }
+    /// Changes the Gaussians by the sum of the gradients of all views.
+    void descend(const std::vector<step_type>& steps, const float* sums, const adam<float>& descent,
+                 raster::visibility* seen) {
+        const step_plan& plan = steps[0].plan;
+        const int learned_sh_degree = plan.updates_sh ? plan.sh_degree : 0;
+        if (steps.size() == 1) return renderer_.backward_from_splats(sums, learned_sh_degree, descent, seen);
+        const add_gradients all = gradients_.begin(trained_, count_, sh_degree_, renderer_.capacity());
+        for (const step_type& s : steps)
+            renderer_.backward_from_splats(sums, learned_sh_degree, all, seen, s.place);
+        gradients_.step(descent, all, learned_sh_degree);
     }
 
     raster::dropout dropout_of(const step_plan& plan) const {
@@ -430,19 +433,11 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         return {setup_.dropout, static_cast<std::uint32_t>(random.below(std::uint64_t{1} << 32))};
     }
 
-    /// Returns the pairs of this rank's steps.
-    std::uint64_t own_pairs() { return all_pairs() - drawn_pairs_; }
-    std::uint64_t all_pairs() {
-        unsigned long long n = 0;
-        device_.download(&n, renderer_.pairs(), 1);
-        return n;
-    }
-
     /// Renders the model. Reserves more memory if the tile lists do not fit. Waits for the device.
     /// The render is not timed or counted as a step.
     void draw(renderer_type& renderer, const camera& camera, const std::array<float, 3>& background,
               const render_options& options = {}) {
-        const std::uint64_t before = all_pairs();
+        const std::uint64_t before = pairs_.of_renders();
         device_.pause_times(true);
         const auto list = [&] {
             renderer.list(trained_.values.read(), count_, camera, std::min(options.sh_degree, sh_degree_));
@@ -457,7 +452,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         else
             renderer.blend(background, features_.background(camera));
         device_.pause_times(false);
-        drawn_pairs_ += all_pairs() - before;
+        pairs_.leave_out_since(before);
     }
 
     std::vector<float> downloaded(const float* from, const camera& camera) {
@@ -472,7 +467,10 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
     renderer_type renderer_;
     image_comparison<Device, float> comparison_;
     features::device_features<renderer_type> features_;
-    sh_state sh_;
+    step_images<renderer_type> images_;
+    view_gradients<Device> gradients_;
+    pair_counter<renderer_type> pairs_;
+    trained_sh<device_engine> sh_;
     device_views<Device> views_;
     list_sizer<Device> lists_;
     view_strips strips_;
@@ -489,7 +487,6 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
     int sh_degree_ = 0;
     effect_set effects_;
     std::uint32_t steps_ = 0;
-    std::uint64_t drawn_pairs_ = 0, pairs_of_others_ = 0;
     std::optional<renderer_type> apart_;  ///< see `render_options::separate_memory`
     std::size_t bytes_apart_ = 0;         ///< device memory that such renders have allocated
     trained_parameters<Device> trained_;

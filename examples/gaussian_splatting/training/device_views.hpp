@@ -36,8 +36,7 @@ class device_views {
             return static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
         }
     };
-    /// A photo in device memory, which is valid up to the next call of `load` or
-    /// `upload_ahead`.
+    /// A photo in device memory. See `photo_cache::get` for how long it is valid.
     struct loaded_photo {
         const photo& of;
         cached_photo packed;

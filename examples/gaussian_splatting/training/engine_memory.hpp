@@ -11,6 +11,7 @@
 #include "../device/memory_forecast.hpp"
 #include "../engine/training_setup.hpp"
 #include "../metrics/image_comparison.hpp"
+#include "../optimize/view_gradients.hpp"
 #include "../render/project/project_backward.hpp"
 
 namespace gs::train {
@@ -39,14 +40,20 @@ device::memory_forecast forecast_of_gaussians(const Renderer& renderer, std::siz
     const parameter_bytes of_parameters = bytes_per_gaussian(sh_degree, setup.storage);
     const std::size_t undivided = is_divided ? undivided_bytes_per_gaussian() : 0,
                       of_render = Renderer::bytes::per_gaussian(setup.facts.gradient),
-                      in_training = undivided + own(of_parameters.on_device - undivided + of_render) +
+                      of_batch = setup.batch_size == 1
+                                     ? 0
+                                     : view_gradients<Device>::bytes_per_gaussian(sh_degree) +
+                                           (setup.batch_size - 1) * of_render,
+                      in_training = undivided +
+                                    own(of_parameters.on_device - undivided + of_render + of_batch) +
                                     parameter_gather<Device>::bytes_per_gaussian(sh_degree, part),
                       in_measurement = is_divided ? value_bytes_per_gaussian(sh_degree) + of_render : 0;
     std::uint64_t of_strips = 0;
-    if (is_divided) {
+    if (is_divided || setup.batch_size > 1) {
         const std::uint64_t known = renderer.strip_bytes(setup.facts.gradient);
-        of_strips =
-            known > 0 ? grown(known) : gaussians * own(Renderer::bytes::per_sent_splat(setup.facts.gradient));
+        of_strips = known > 0 ? grown(known)
+                              : gaussians * setup.batch_size *
+                                    own(Renderer::bytes::per_sent_splat(setup.facts.gradient));
     }
     return {.gaussians = gaussians * beside +
                          std::max(gaussians * in_training + of_strips, gaussians * in_measurement),

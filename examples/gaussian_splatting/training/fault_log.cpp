@@ -14,8 +14,10 @@ void fault_log::check(const fault_reports& found, const scene& scene, int iterat
     const auto& sum = found[static_cast<std::size_t>(fault_kind::sum)];
     const auto where = [&](const fault_report& f) {
         const std::size_t back = static_cast<std::size_t>(iteration - f.iteration) + 1;
-        return "iteration " + std::to_string(f.iteration) + ", view " +
-               scene.train[views_[views_.size() - back]].name;
+        std::string text = "iteration " + std::to_string(f.iteration);
+        for (const std::size_t view : views_[views_.size() - back])
+            text += ", view " + scene.train[view].name;
+        return text;
     };
     const auto parameter = [](const fault_report& f) {
         return std::string(parameter_names[static_cast<std::size_t>(f.parameter)]) + " of Gaussian " +

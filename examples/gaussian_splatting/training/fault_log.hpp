@@ -17,8 +17,8 @@ namespace gs::train {
 /// Reports values that were not finite in the steps of a training run, with the view of the step.
 class fault_log {
   public:
-    /// Records that a step has trained on this view. Call it for each step.
-    void steps(std::size_t view) { views_.push_back(view); }
+    /// Records that a step has trained on these views. Call it for each step.
+    void steps(std::vector<std::size_t> views) { views_.push_back(std::move(views)); }
 
     /// Processes the faults of all steps since the last call. `iteration` is the last of these
     /// steps. Warns about the first gradient and the first sum that was left out. Throws `error` if
@@ -35,7 +35,7 @@ class fault_log {
     std::uint64_t left_out_sums() const { return left_out_sums_; }
 
   private:
-    std::vector<std::size_t> views_;  ///< views of the steps since the last check
+    std::vector<std::vector<std::size_t>> views_;  ///< of the steps since the last check
     std::uint64_t left_out_gradients_ = 0, left_out_sums_ = 0;
 };
 

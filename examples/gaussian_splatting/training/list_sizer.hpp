@@ -14,12 +14,13 @@
 
 namespace gs::train {
 
-/// Records the length of a view's tile lists. One index.
+/// Records the length of a view's tile lists, or the mean length of several views. One index.
 struct note_length {
     raster::list_capacity capacity;
     std::uint64_t* length;
+    std::uint64_t views = 1;
 
-    WARPAGG_HD void operator()(std::size_t) const { *length = *capacity.required; }
+    WARPAGG_HD void operator()(std::size_t) const { *length = (*capacity.required + views - 1) / views; }
 };
 
 /// Records the length of each training view's tile lists, and sizes the renderer's memory for the
@@ -46,6 +47,13 @@ class list_sizer {
     std::uint64_t* length(std::size_t view) { return lengths_.data() + view; }
     /// Records that a step with this number of Gaussians has stored the length of this view.
     void was_noted(std::size_t view, std::size_t gaussians) { counts_[view] = gaussians; }
+    /// Stores the mean length of some views that the renderer has drawn as one picture.
+    template <class Renderer>
+    void note_mean(const Renderer& renderer, std::size_t view) {
+        device_.for_each_index(1, note_length{renderer.capacity(), length(view), renderer.views().count()});
+    }
+    /// Sets the number of views whose lists must fit together.
+    void set_views_at_once(std::size_t views) { at_once_ = views; }
 
     /// Reserves memory for the longest lists, with a reserve for growth. Measures views whose
     /// length is unknown. Waits for the device.
@@ -69,6 +77,8 @@ class list_sizer {
                     std::max(expected, static_cast<double>(lengths[v]) * static_cast<double>(gaussians) /
                                            static_cast<double>(counts_[v]));
         }
+        longest *= at_once_;
+        expected *= static_cast<double>(at_once_);
         // The new memory exceeds the tested one, so that it seldom changes.
         if (static_cast<double>(renderer.reserved_instances()) < 1.5 * expected + 1024)
             renderer.reserve_instances(longest, static_cast<std::uint64_t>(2 * expected) - longest + 4096);
@@ -77,6 +87,7 @@ class list_sizer {
   private:
     Device& device_;
     typename Device::template buffer<std::uint64_t> lengths_;  ///< last stored length of each view
+    std::size_t at_once_ = 1;
     std::vector<std::size_t> counts_;  ///< number of Gaussians at that time; 0: unknown length
 };
 

@@ -99,8 +99,9 @@ class photo_cache final : public photo_prefetch {
         stream_->expect(std::move(missing));
     }
 
-    /// Returns a photo. Waits until it is decoded. Launches that follow may use it, up to the next
-    /// call of `get` or `upload_ahead`. Throws the error of a photo that cannot be decoded.
+    /// Returns a photo. Waits until it is decoded. Launches that follow may use it, up to the next call of
+    /// `upload_ahead`, or of `get` with more other photos than `photo_plan` had at once. Throws the error of
+    /// a photo that cannot be decoded.
     cached_photo get(std::size_t view, std::size_t level) {
         const request r{view, level};
         if (!find(r)) {
@@ -125,10 +126,13 @@ class photo_cache final : public photo_prefetch {
             if (!find(r) && (place_of(r) != nullptr || has_free_slot()) && stream_->is_ready(r)) upload(r);
     }
 
-    std::exception_ptr failure_ahead() override {
-        if (expected_.size() < 2 || find(expected_[1])) return nullptr;
-        if (!stream_->is_ready(expected_[1])) release_uploaded(true);
-        return stream_->failure_of(expected_[1]);
+    std::exception_ptr failure_ahead(std::size_t of_step) override {
+        for (std::size_t i = of_step; i < std::min(2 * of_step, expected_.size()); ++i) {
+            if (find(expected_[i])) continue;
+            if (!stream_->is_ready(expected_[i])) release_uploaded(true);
+            if (const auto failure = stream_->failure_of(expected_[i])) return failure;
+        }
+        return nullptr;
     }
 
   private:

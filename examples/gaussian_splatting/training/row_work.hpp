@@ -31,10 +31,10 @@ class row_work {
                 static_cast<std::size_t>((view.camera.height + raster::tile_size - 1) / raster::tile_size));
         is_new_.assign(views.size(), false);
     }
-    /// Keeps the work of this rank in a view.
+    /// Keeps the work of this rank in a view. `work` begins with the first row of this view.
     void keep(std::size_t view, std::span<const unsigned long long> work) {
         work_.resize(first_row_.back());
-        device_.copy(work_.data() + first_row_[view], work.data(), work.size());
+        device_.copy(work_.data() + first_row_[view], work.data(), first_row_[view + 1] - first_row_[view]);
         is_new_[view] = true;
     }
     /// Passes the work of all ranks in views that were drawn since the last call to `strips`. All

@@ -3,6 +3,7 @@
 #include "training.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <random>
 #include <utility>
@@ -51,6 +52,7 @@ training_setup setup_of(const scene& scene, const train_options& options, const 
     setup.storage = options.storage;
     setup.host_bytes = options.host_bytes;
     setup.dropout = schedule.dropout_share();
+    setup.batch_size = options.batch_size;
     for (const auto& feature : options.features.all())
         if (feature.on) setup.features[feature.name] = feature.values;
     return setup;
@@ -110,6 +112,9 @@ training::training(train::engine& engine, const gs::scene& scene, const train_op
     schedule_.views = static_cast<int>(scene.train.size());
     schedule_.transparent = scene.has_alpha;
     schedule_.rendered = scene.rendered;
+    if (options.batch_size > scene.train.size())
+        throw error("--batch-size " + std::to_string(options.batch_size) + ", but there are " +
+                    std::to_string(scene.train.size()) + " training photos: give at most as many");
     engine_.begin(setup_of(scene, options, schedule_));
     add_memory();
     add_step();
@@ -151,6 +156,7 @@ void training::add(action action) { actions_.push_back(std::move(action)); }
 void training::add_step() {
     const auto order = std::make_shared<view_order>(scene_.train.size(), options_.seed);
     const auto colors = std::make_shared<std::mt19937_64>(options_.seed + 1);
+    const std::size_t batch = options_.batch_size;
     add_state([=](state_archive& archive) {
         order->exchange(archive);
         exchange_random(archive, "random_colors", *colors);
@@ -159,12 +165,13 @@ void training::add_step() {
         add({phase::prepare, "load photos ahead", [](int) { return true; },
              [=, this](int iteration) {
                  std::vector<photos::photo_request> next;
-                 for (const std::size_t view : order->upcoming(photos->look_ahead())) {
-                     const int needed_in = iteration + static_cast<int>(next.size());
+                 for (const std::size_t view : order->upcoming(std::max(photos->look_ahead(), 2 * batch))) {
+                     const int needed_in = iteration + static_cast<int>(next.size() / batch);
                      next.push_back({view, static_cast<std::size_t>(schedule_.downscales_at(needed_in))});
                  }
                  photos->expect(std::move(next));
-                 lost_photo_ = iteration < schedule_.iterations.last() ? photos->failure_ahead() : nullptr;
+                 lost_photo_ =
+                     iteration < schedule_.iterations.last() ? photos->failure_ahead(batch) : nullptr;
                  if (lost_photo_) interrupted_ = true;
              }});
     add({phase::step, "step", [](int) { return true; },
@@ -172,12 +179,16 @@ void training::add_step() {
              step_plan plan;
              plan.iteration = iteration;
              plan.view = order->next();
+             while (plan.more_views.size() + 1 < batch) plan.more_views.push_back(order->next());
              plan.sh_degree = schedule_.sh_degree_at(iteration);
              plan.updates_sh = schedule_.updates_sh(iteration);
              plan.background = options_.background.random ? random_color(*colors) : options_.background.color;
              plan.rates = schedule_.rates_at(iteration);
+             // Zhao et al. 2024 (Grendel, section 4.2) scale rates like this.
+             for (float& rate : plan.rates) rate *= std::sqrt(static_cast<float>(batch));
              engine_.step(plan);
-             faults_.steps(plan.view);
+             plan.more_views.insert(plan.more_views.begin(), plan.view);
+             faults_.steps(plan.more_views);
          }});
 }
 

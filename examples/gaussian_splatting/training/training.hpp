@@ -38,6 +38,7 @@ struct train_options {
     std::string loss = default_loss;
     parameter_storage storage{};
     std::uint64_t host_bytes = 0;  ///< see `training_setup::host_bytes`
+    std::size_t batch_size = 1;    ///< number of views of each iteration
     std::uint64_t seed = 0;
     accumulator gradient = accumulator::native;
     background_choice background;

@@ -25,29 +25,46 @@ row_range balanced_rows(std::span<const std::uint64_t> weights, int part, int pa
     return {part == 0 ? 0 : rows_before(part), rows_before(part + 1)};
 }
 
-std::optional<raster::view_strip> view_strips::of(std::size_t view, const camera& camera, int reach,
-                                                  const ranks::communicator& ranks) const {
-    if (ranks.count() == 1) return {};
+std::vector<std::uint64_t> view_strips::work_of_rows(std::span<const std::size_t> views,
+                                                     const raster::view_stack& picture) const {
     // The time for a pixel without splats is about that for 16 splats.
     constexpr std::uint64_t work_of_tile = 16 * raster::samples_per_tile;
     const auto in_tiles = [](int pixels) {
         return static_cast<std::size_t>((pixels + raster::tile_size - 1) / raster::tile_size);
     };
-    std::vector<std::uint64_t> weights(in_tiles(camera.height), in_tiles(camera.width) * work_of_tile);
-    if (view < work_.size() && work_[view].size() == weights.size())
-        for (std::size_t row = 0; row < weights.size(); ++row) weights[row] += work_[view][row];
+    std::vector<std::uint64_t> work(picture.tiles_down());
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        const std::size_t first = v * picture.tiles_of_view(), rows = in_tiles(picture[v].height);
+        const bool is_known = views[v] < work_.size() && work_[views[v]].size() == rows;
+        for (std::size_t row = 0; row < rows; ++row)
+            work[first + row] =
+                in_tiles(picture[v].width) * work_of_tile + (is_known ? work_[views[v]][row] : 0);
+    }
+    return work;
+}
+
+std::optional<raster::view_strip> view_strips::of(std::span<const std::size_t> views,
+                                                  const raster::view_stack& picture, int reach,
+                                                  const ranks::communicator& ranks) const {
+    if (ranks.count() == 1 && views.size() == 1) return {};
+    const std::vector<std::uint64_t> work = work_of_rows(views, picture);
     raster::view_strip strip{{}, reach};
     for (int rank = 0; rank < ranks.count(); ++rank)
-        strip.own_of_all.push_back(balanced_rows(weights, rank, ranks.count()));
+        strip.own_of_all.push_back(balanced_rows(work, rank, ranks.count()));
     strip.own = strip.own_of_all[static_cast<std::size_t>(ranks.rank())];
     return strip;
 }
 
-std::optional<raster::view_strip> view_strips::of_step(std::size_t view, const camera& camera, int reach,
+std::optional<raster::view_strip> view_strips::of_step(std::span<const std::size_t> views,
+                                                       const raster::view_stack& picture, int reach,
                                                        const ranks::communicator& ranks,
-                                                       const std::optional<ranks::shares>& gaussians) const {
-    auto strip = of(view, camera, reach, ranks);
-    if (strip && gaussians) strip->windows = windows(view, *gaussians);
+                                                       const ranks::shares& gaussians) const {
+    auto strip = of(views, picture, reach, ranks);
+    if (!strip) return {};
+    if (ranks.count() == 1)
+        strip->windows = ranks::windows(std::vector<std::size_t>{0}, 1);
+    else if (views.size() == 1)  // the borders in a picture of several views depend on all of them
+        strip->windows = windows(views[0], gaussians);
     return strip;
 }
 

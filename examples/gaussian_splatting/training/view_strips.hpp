@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "../ranks/communicator.hpp"
+#include "../render/tiles/view_stack.hpp"
 #include "../render/tiles/view_strip.hpp"
-#include "../scene/camera.hpp"
 
 namespace gs::train {
 
@@ -39,15 +39,21 @@ class view_strips {
         sent_[view] = {counts, gaussians};
     }
 
-    /// Returns the strip of this rank, or nothing if it is the only one.
-    std::optional<raster::view_strip> of(std::size_t view, const camera& camera, int reach,
+    /// Returns the strip of this rank in a picture of these views, or nothing if it is the only rank and
+    /// there is one view.
+    std::optional<raster::view_strip> of(std::span<const std::size_t> views,
+                                         const raster::view_stack& picture, int reach,
                                          const ranks::communicator& ranks) const;
     /// The same for a step with these shares of the Gaussians: with the windows that the ranks expect.
-    std::optional<raster::view_strip> of_step(std::size_t view, const camera& camera, int reach,
+    std::optional<raster::view_strip> of_step(std::span<const std::size_t> views,
+                                              const raster::view_stack& picture, int reach,
                                               const ranks::communicator& ranks,
-                                              const std::optional<ranks::shares>& gaussians) const;
+                                              const ranks::shares& gaussians) const;
 
   private:
+    /// Returns the expected work of each tile row of a picture.
+    std::vector<std::uint64_t> work_of_rows(std::span<const std::size_t> views,
+                                            const raster::view_stack& picture) const;
     /// Returns windows that probably have places for all splats of a view, or nothing if none are recorded.
     std::optional<ranks::windows> windows(std::size_t view, const ranks::shares& gaussians) const;
 

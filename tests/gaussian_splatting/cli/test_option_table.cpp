@@ -109,6 +109,7 @@ const std::map<std::string, option_case> cases{
     {"--log-level", {{"warning"}, [](const settings& s) { return s.log_level == log_level::warning; }}},
     {"--config", {{config_with_seed_7()}, [](const settings& s) { return s.seed == 7; }}},
     {"--iterations", {{"20"}, [](const settings& s) { return s.schedule.iterations == 20; }}},
+    {"--batch-size", {{"4"}, [](const settings& s) { return s.batch_size == 4; }}},
     {"--seconds", {{"90.5"}, [](const settings& s) { return s.seconds == 90.5; }}},
     {"--quality", {{"best"}, [](const settings& s) { return s.quality == quality_preset::best; }}},
     {"--num-downscales", {{"2"}, [](const settings& s) { return s.num_downscales == 2; }}},

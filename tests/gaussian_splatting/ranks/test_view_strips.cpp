@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -10,6 +11,10 @@
 
 using gs::row_range;
 using gs::train::balanced_rows;
+
+namespace {
+constexpr std::array<std::size_t, 1> view_0{0};
+}
 
 TEST_CASE("strips: each row belongs to one part, whatever the weights are") {
     for (const auto& weights : std::vector<std::vector<std::uint64_t>>{
@@ -54,16 +59,16 @@ TEST_CASE("strips: known work of tile rows moves the borders between ranks") {
     const auto end = gs::ranks::run(2, [&](gs::ranks::communicator& all) {
         gs::train::view_strips strips;
         strips.reset(1);
-        const row_range before = strips.of(0, camera, 10, all)->own;
-        const auto first = strips.of(0, camera, 10, all);
+        const row_range before = strips.of(view_0, camera, 10, all)->own;
+        const auto first = strips.of(view_0, camera, 10, all);
         const auto listed = first->listed_by_all(4);
         if (first->own_of_all != std::vector<row_range>{{0, 2}, {2, 4}} || listed.ranks != 2 ||
             listed.of[0] != row_range{0, 3} || listed.of[1] != row_range{1, 4})
             return 2;
         strips.note(0, {900, 0, 0, 0});
-        const row_range after = strips.of(0, camera, 10, all)->own;
+        const row_range after = strips.of(view_0, camera, 10, all)->own;
         strips.note(0, {900, 0});  // of another size
-        const row_range unknown = strips.of(0, camera, 10, all)->own;
+        const row_range unknown = strips.of(view_0, camera, 10, all)->own;
         const bool is_first = all.is_first();
         return before == (is_first ? row_range{0, 2} : row_range{2, 4}) &&
                        after == (is_first ? row_range{0, 1} : row_range{1, 4}) && unknown == before
@@ -75,7 +80,7 @@ TEST_CASE("strips: known work of tile rows moves the borders between ranks") {
     gs::ranks::communicator alone;
     gs::train::view_strips strips;
     strips.reset(1);
-    CHECK_FALSE(strips.of(0, camera, 10, alone).has_value());
+    CHECK_FALSE(strips.of(view_0, camera, 10, alone).has_value());
 }
 
 TEST_CASE("strips: a step expects the splats that its view had sent, for the present shares") {
@@ -88,7 +93,7 @@ TEST_CASE("strips: a step expects the splats that its view had sent, for the pre
         // Two ranks have half of this many Gaussians each.
         const auto half = [](std::size_t gaussians) { return gs::ranks::shares(gaussians, 1, 2); };
         const auto expected = [&](std::size_t view, std::size_t gaussians) {
-            return strips.of_step(view, camera, 10, all, half(gaussians))->windows;
+            return strips.of_step(std::array{view}, camera, 10, all, half(gaussians))->windows;
         };
         if (expected(0, 1000)) return 1;
         strips.note_sent(0, {0, 320, 160, 0}, half(1000));
@@ -100,11 +105,11 @@ TEST_CASE("strips: a step expects the splats that its view had sent, for the pre
         if (grown->sent_by(0).of(1).count() != 680 + 64) return 4;
         if (same->sent_by(0).of(0).count() != 0 || same->sent_by(1).of(1).count() != 0) return 5;
         const gs::ranks::shares moved(std::vector<std::size_t>{250, 750});
-        const auto of_moved = strips.of_step(0, camera, 10, all, moved)->windows;
+        const auto of_moved = strips.of_step(view_0, camera, 10, all, moved)->windows;
         if (of_moved->sent_by(0).of(1).count() != 170 + 64 || of_moved->sent_by(1).of(0).count() != 255 + 64)
             return 10;
         // Strips for scores list other rows.
-        if (strips.of(0, camera, 0, all)->windows) return 6;
+        if (strips.of(view_0, camera, 0, all)->windows) return 6;
         strips.note(0, {900, 0, 0, 0});  // the borders move for the first time
         if (expected(0, 1000)) return 7;
         strips.note_sent(0, {0, 10, 10, 0}, half(1000));

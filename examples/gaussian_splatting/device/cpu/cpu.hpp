@@ -236,10 +236,11 @@ class basic_cpu {
         }
     }
 
-    /// With several ranks, steps depend on what other ranks did, and no graph can be captured.
+    /// With several ranks, steps depend on what other ranks did, and no graph can be captured. Steps with
+    /// an empty key are not captured either.
     template <class F>
     void iteration(const graph_key& key, const F& f) {
-        if (ranks_->count() > 1)
+        if (ranks_->count() > 1 || key.empty())
             f();
         else
             key_check_.iteration(key, f);

@@ -218,11 +218,11 @@ class cuda {
 
     /// Runs an iteration. Iterations with equal keys need the same memory, which the first one
     /// allocates. The launches of later ones are captured and submitted as one graph, because a
-    /// capture cannot allocate. Timed iterations are not captured, and neither are those of several
-    /// ranks, which exchange values on their way.
+    /// capture cannot allocate. Timed iterations are not captured, and neither are those that wait for
+    /// the device on their way: those with an empty key, and those of several ranks.
     template <class F>
     void iteration(const graph_key& key, const F& f) {
-        const bool is_new = keys_.insert(key).second;
+        const bool is_new = key.empty() || keys_.insert(key).second;
         if (!is_new && !times_.is_sampled() && !peers_)
             graph_.launch(stream_, f);
         else

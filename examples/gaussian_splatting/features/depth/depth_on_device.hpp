@@ -35,23 +35,20 @@ class depth_on_device final : public device_feature<Renderer> {
         return all;
     }
 
-    std::size_t memory_key(const step& s) const override { return has_target(s) ? 1 : 0; }
-    float gradient_scale(const step& s) const override { return has_target(s) ? pixel_weight(s) : 0; }
-    void before_blend(const step& s) override {
-        if (!has_target(s)) return;
+    std::size_t memory_key(const step& s) const override { return learns_depths(s) ? 1 : 0; }
+    float gradient_scale(const step& s) const override { return learns_depths(s) ? pixel_weight(s) : 0; }
+    bool learns_depths(const step& s) const override {
+        return !fits_.empty() && fits_[s.plan.view].scale > 0 && s.depths != nullptr;
+    }
+    const float* depth_gradient(const step& s, const float* inverse_depths) override {
         const std::size_t pixels = s.pixels();
         gradient_.resize(3 * pixels);
-        s.renderer.blend_depths();
-        device_.for_each_index(
-            pixels, train::depth_gradient{s.renderer.render(), s.depths, fits_[s.plan.view], pixel_weight(s),
-                                          pixels, gradient_.data()});
-        s.renderer.backward_depths(gradient_.data(), s.gradient_scale, s.accumulate);
+        device_.for_each_index(pixels, train::depth_gradient{inverse_depths, s.depths, fits_[s.plan.view],
+                                                             pixel_weight(s), pixels, gradient_.data()});
+        return gradient_.data();
     }
 
   private:
-    bool has_target(const step& s) const {
-        return !fits_.empty() && fits_[s.plan.view].scale > 0 && s.depths != nullptr;
-    }
     /// Returns the weight of the mean error of inverse depths in internal coordinates. It decays
     /// from 1 to 0.01, as in the implementation of Kerbl et al. 2024, which uses units of structure
     /// from motion.

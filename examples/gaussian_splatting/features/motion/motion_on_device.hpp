@@ -62,7 +62,7 @@ class motion_on_device final : public device_feature<Renderer> {
     }
     void learn_pose(const step& s, const float* sums) override {
         if (learns() && s.plan.iteration > first_iteration())
-            of_training_.learn(s.plan.view, s.renderer, sums, rate_at(s.plan.iteration), sink());
+            of_training_.learn(s.plan.view, s, sums, rate_at(s.plan.iteration), sink());
     }
 
     void begin_refinement() override {
@@ -81,8 +81,7 @@ class motion_on_device final : public device_feature<Renderer> {
     }
     void refine_pose(const step& s, const float* sums, double progress) override {
         if (learns())
-            of_held_out_.learn(0, s.renderer, sums, static_cast<float>(most_rate * std::pow(0.01, progress)),
-                               sink());
+            of_held_out_.learn(0, s, sums, static_cast<float>(most_rate * std::pow(0.01, progress)), sink());
     }
 
   private:

@@ -39,7 +39,7 @@ class moving_on_device final : public device_feature<Renderer> {
         return weighs(s.plan.iteration) ? 2 : 1;
     }
     const float* show(const step& s, const float* render) override {
-        if (is_on_) weights_.measure(s.target, render, s.renderer.own_rows(), s.renderer.capacity());
+        if (is_on_) weights_.measure(s.target, render, s.own_rows(), s.renderer.capacity());
         return render;
     }
     const float* backward(const step& s, const float* gradient) override {

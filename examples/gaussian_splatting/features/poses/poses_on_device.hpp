@@ -73,8 +73,8 @@ class poses_on_device final : public device_feature<Renderer> {
     void learn_pose(const step& s, const float* sums) override {
         if (!learns()) return;
         const std::size_t leader = given_.leader.value_or(static_cast<std::size_t>(s.plan.view));
-        of_training_.learn(leader, s.renderer, sums,
-                           std::min(largest_steps_[leader], rate_at(s.plan.iteration)), sink());
+        of_training_.learn(leader, s, sums, std::min(largest_steps_[leader], rate_at(s.plan.iteration)),
+                           sink());
     }
 
     void begin_refinement() override {
@@ -91,8 +91,8 @@ class poses_on_device final : public device_feature<Renderer> {
         return moved(given_, change_);
     }
     void refine_pose(const step& s, const float* sums, double progress) override {
-        of_held_out_.learn(0, s.renderer, sums,
-                           step_from_given * static_cast<float>(std::pow(0.05, progress)), sink());
+        of_held_out_.learn(0, s, sums, step_from_given * static_cast<float>(std::pow(0.05, progress)),
+                           sink());
     }
 
   private:

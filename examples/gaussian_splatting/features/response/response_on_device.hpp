@@ -62,7 +62,7 @@ class response_on_device final : public device_feature<Renderer> {
     }
     const float* backward(const step& s, const float* gradient) override {
         if (!has_response(s)) return gradient;
-        const image_part part{s.camera.width, s.camera.height, s.renderer.own_rows()};
+        const image_part part{s.camera.width, s.camera.height, s.own_rows()};
         return of_training_.learn(lens_of(s), input_, gradient, part, rate_at(s.plan.iteration),
                                   s.renderer.capacity());
     }

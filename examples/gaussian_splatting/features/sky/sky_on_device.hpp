@@ -26,8 +26,8 @@ class sky_on_device final : public device_feature<Renderer> {
     const float* background(const camera& camera) override { return sky_.draw(camera); }
     void learn(const step& s, const float* render_gradient) override {
         if (sky_.exists())
-            sky_.learn(s.camera, s.renderer.transmittance(), render_gradient, rate_at(s.plan.iteration),
-                       s.renderer.capacity(), s.renderer.own_rows());
+            sky_.learn(s.camera, s.transmittance, render_gradient, rate_at(s.plan.iteration),
+                       s.renderer.capacity(), s.own_rows());
     }
 
   private:

@@ -60,7 +60,7 @@ class vignetting_on_device final : public device_feature<Renderer> {
     }
     const float* backward(const step& s, const float* gradient) override {
         if (!has_falloff(s)) return gradient;
-        return of_training_.learn(lens_of(s), input_, gradient, geometry_of(s.camera), s.renderer.own_rows(),
+        return of_training_.learn(lens_of(s), input_, gradient, geometry_of(s.camera), s.own_rows(),
                                   rate_at(s.plan.iteration), s.renderer.capacity());
     }
     const float* show_held_out(std::size_t view, const float* render, std::size_t) override {

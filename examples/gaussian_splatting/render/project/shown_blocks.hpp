@@ -23,9 +23,10 @@ struct shown_blocks {
     std::size_t count;  ///< number of Gaussians
     camera_type<real, effects> camera;
     std::uint32_t* shown;
+    bool adds;  ///< whether blocks that another view shows stay 1
 
     WARPAGG_HD void operator()(const W& w, unsigned block) const {
-        mask_t<W> any = false;
+        mask_t<W> any = adds && shown[block] != 0;
         for (unsigned part = 0; part < block_length; part += W::size) {
             const number i = w.lane() + (block * static_cast<unsigned>(block_length) + part);
             const mask_t<W> inside = i < number(static_cast<std::uint32_t>(count));
@@ -51,18 +52,19 @@ struct shown_blocks {
     }
 };
 
-/// Sets `shown` to 1 for each AoSoA block of `count` Gaussians that a view shows, and to 0 for the others.
+/// Sets `shown` to 1 for each AoSoA block of `count` Gaussians that a view shows, and to 0 for the others,
+/// unless it `adds` to those of another view.
 /// The view shows a block if the center of a Gaussian is in the picture, or beside it by less than a tile.
 /// Large Gaussians farther away may be drawn, too.
 template <class Device, class Real>
 void find_shown_blocks(Device& device, const Real* mean, std::size_t count, const camera& view,
-                       std::uint32_t* shown) {
+                       std::uint32_t* shown, bool adds = false) {
     using narrow = typename Device::narrow_warp;
     with_lens(view.lens(), [&]<lens_model Lens> {
         using kernel = shown_blocks<narrow, Real, Lens>;
         device.template for_each_warp<narrow>(
             in_whole_blocks(count) / block_length,
-            kernel{mean, count, camera_for<value_t<narrow, Real>, kernel::effects>(view), shown});
+            kernel{mean, count, camera_for<value_t<narrow, Real>, kernel::effects>(view), shown, adds});
     });
 }
 
