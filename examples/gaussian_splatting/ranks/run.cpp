@@ -67,7 +67,7 @@ class signals_to_first_rank {
 [[noreturn]] void be_rank(shared_memory& memory, int rank, int count,
                           const std::function<int(communicator&)>& body) {
     shared_memory_transport transport(memory, rank, count);
-    communicator all(transport, {rank, count, rank, count});
+    communicator all(transport, {rank, count, 0, rank, count});
     int code = code_of_failure;
     try {
         code = body(all);

@@ -10,10 +10,11 @@
 
 namespace gs::ranks {
 
-/// Where a process is among the ranks, and among the ranks of its machine.
+/// Where a process is among the ranks, and among those of its machine.
 struct place {
     int rank = 0, count = 1;
-    int on_machine = 0, count_on_machine = 1;
+    int machine = 0;  ///< the first rank of the machine
+    int rank_on_machine = 0, count_on_machine = 1;
 };
 
 /// Identifies an exchange. All ranks must agree on it.
