@@ -15,11 +15,11 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "../core/error.hpp"
 #include "../ranks/launcher.hpp"
 #include "../ranks/mpi/mpi.hpp"
+#include "../ranks/own_share.hpp"
 #include "../ranks/run.hpp"
 #include "command_context.hpp"
 #include "commands.hpp"
@@ -28,12 +28,6 @@
 namespace gs::cli {
 
 namespace {
-
-/// Returns the threads of one of several processes that share `threads` threads.
-int share_of(int threads, int process, int count) {
-    const int more = process < threads % count ? 1 : 0;
-    return std::max(1, threads / count + more);
-}
 
 /// Returns the number of GPUs. Asks in another process, because a process that has used CUDA can
 /// neither start the ranks nor choose one of its GPUs.
@@ -68,7 +62,7 @@ void train_as_rank(const settings& s, std::unique_ptr<train::engine> engine, ran
 
 void train_as_forked_rank(settings s, ranks::communicator& all, int threads) {
     if (!all.is_first()) s.log_level = log_level::error;
-    omp_set_num_threads(share_of(threads, all.rank(), all.count()));
+    omp_set_num_threads(ranks::own_threads(all, threads, 0));
     if (s.gpus != 1) {
         choose_gpu(all.rank());
         s.device = device_kind::cuda;
@@ -77,15 +71,6 @@ void train_as_forked_rank(settings s, ranks::communicator& all, int threads) {
     if (s.device == device_kind::automatic)
         command_context(s).say("using the CPU, because --ranks trains on the CPU only");
     train_as_rank(s, train::make_cpu_engine(), all);
-}
-
-/// Returns a value of each rank.
-std::vector<std::uint64_t> values_of_all(ranks::communicator& all, std::uint64_t own) {
-    const ranks::traffic_counter::scope scope(all.traffic(), ranks::purpose::connection);
-    std::vector<std::uint64_t> values(static_cast<std::size_t>(all.count()));
-    values[static_cast<std::size_t>(all.rank())] = own;
-    all.sum(values.data(), values.size());
-    return values;
 }
 
 /// Returns a number for something of a machine, which other things of all machines do not share.
@@ -101,34 +86,19 @@ std::uint64_t own_processors(const ranks::place& place) {
     return number_for(place, {reinterpret_cast<const char*>(&processors), sizeof(processors)});
 }
 
-/// Returns the share of the threads that processes on the same processors leave this one.
-int own_threads(ranks::communicator& all) {
-    const auto processors = values_of_all(all, own_processors(all.place()));
-    const auto own = processors.begin() + all.rank();
-    if (std::getenv("OMP_NUM_THREADS") != nullptr) return omp_get_max_threads();
-    const auto before = std::count(processors.begin(), own, *own);
-    const auto sharing = std::count(processors.begin(), processors.end(), *own);
-    return share_of(omp_get_max_threads(), static_cast<int>(before), static_cast<int>(sharing));
-}
-
-/// Chooses one of this process' GPUs. Returns the first rank without a GPU that no rank before it has,
-/// or the number of ranks if each has one.
-int first_without_gpu(ranks::communicator& all, int gpus) {
-    std::uint64_t own = 0;
-    if (gpus > 0) {
-        choose_gpu(all.place().rank_on_machine % gpus);
-        own = number_for(all.place(), train::bus_id_of_gpu());
-    }
-    const auto chosen = values_of_all(all, own);
-    auto one = chosen.begin();
-    while (one != chosen.end() && *one != 0 && std::find(chosen.begin(), one, *one) == one) ++one;
-    return static_cast<int>(one - chosen.begin());
+/// Chooses one of this process' GPUs. Returns a number for it, or 0 if it cannot be used.
+std::uint64_t choose_own_gpu(const ranks::place& place, int gpus) {
+    if (gpus == 0) return 0;
+    choose_gpu(place.rank_on_machine % gpus);
+    std::string reason;
+    if (!train::cuda_is_available(reason)) return 0;
+    return number_for(place, train::bus_id_of_gpu());
 }
 
 /// All ranks decide alike.
 std::unique_ptr<train::engine> make_engine(settings& s, ranks::communicator& all, int gpus) {
     if (s.device == device_kind::cpu) return train::make_cpu_engine();
-    const int without = first_without_gpu(all, gpus);
+    const int without = ranks::first_without_device(all, choose_own_gpu(all.place(), gpus));
     if (without < all.count()) {
         const std::string who = "rank " + std::to_string(without) + " has no GPU for itself";
         if (s.device == device_kind::cuda)
@@ -144,7 +114,9 @@ std::unique_ptr<train::engine> make_engine(settings& s, ranks::communicator& all
 
 void train_as_mpi_rank(settings s, ranks::communicator& all, int gpus) {
     if (!all.is_first()) s.log_level = log_level::error;
-    omp_set_num_threads(own_threads(all));
+    // All ranks call this. Launchers may pass the variable to some machines only.
+    const int threads = ranks::own_threads(all, omp_get_max_threads(), own_processors(all.place()));
+    if (std::getenv("OMP_NUM_THREADS") == nullptr) omp_set_num_threads(threads);
     auto engine = make_engine(s, all, gpus);
     train_as_rank(s, std::move(engine), all);
 }
