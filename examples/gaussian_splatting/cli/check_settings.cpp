@@ -64,8 +64,10 @@ void check_orbit(const settings& s) {
 }
 
 void check_ranks(const settings& s) {
-    if (s.ranks == 1 && s.gpus == 1) return;
-    const std::string option = s.ranks == 1 ? "--gpus" : "--ranks";
+    if (s.ranks == 1 && s.gpus == 1 && !s.mpi) return;
+    const std::string option = s.ranks > 1 ? "--ranks" : s.gpus != 1 ? "--gpus" : "--mpi";
+    if (s.mpi && option != "--mpi")
+        throw error("--mpi trains in the processes that mpirun or srun has started: leave out " + option);
     if (s.ranks > 1 && s.gpus != 1)
         throw error("--ranks trains on the CPU only: leave out --ranks or --gpus");
     if (s.ranks > 1 && s.device == device_kind::cuda)

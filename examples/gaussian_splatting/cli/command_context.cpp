@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "command_context.hpp"
 
+#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <ranges>
+#include <thread>
 #include <vector>
 
 #include "../core/error.hpp"
@@ -95,6 +97,16 @@ output_folder::~output_folder() {
     // Removes the innermost folders first. Folders that are not empty stay, because their removal
     // fails.
     for (const fs::path& folder : folders | std::views::reverse) fs::remove(folder, ignored);
+}
+
+bool appears(const fs::path& folder) {
+    constexpr double seconds = 60;
+    const stopwatch waiting;
+    while (!fs::is_directory(folder)) {
+        if (waiting.seconds() > seconds) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return true;
 }
 
 }  // namespace gs::cli

@@ -62,6 +62,10 @@ class output_folder {
     std::filesystem::path made_;  ///< the topmost folder that was created, or empty
 };
 
+/// Returns whether a folder exists. Waits for one that another machine has just made, because network
+/// file systems may show it late.
+bool appears(const std::filesystem::path& folder);
+
 class stopwatch {
   public:
     double seconds() const {

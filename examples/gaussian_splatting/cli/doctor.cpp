@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "../poses/child_process.hpp"
+#include "../ranks/mpi/mpi.hpp"
 #include "commands.hpp"
 #include "report.hpp"
 
@@ -42,6 +43,10 @@ void doctor() {
     print_row("GPU", train::cuda_is_available(reason)
                          ? train::make_cuda_engine()->profile().device_name()
                          : "none, so the trainer computes on the CPU: " + reason);
+    const std::string mpi = ranks::mpi_library();
+    print_row("MPI", mpi.empty() ? "none, so train --mpi does not work: to get it, install libopenmpi-dev "
+                                   "and build this program again"
+                                 : mpi);
     for (const helper_program& p : helper_programs)
         print_row(p.name, (poses::is_installed(p.name)
                                ? std::string("installed, ")

@@ -15,29 +15,30 @@ namespace gs::cli {
 namespace {
 
 /// Returns the free device memory for this rank. Each rank has its own GPU, but not its own host.
-std::uint64_t own_device_bytes(const device::profiler& device, int ranks) {
+std::uint64_t own_device_bytes(const device::profiler& device, const ranks::place& place) {
     const std::uint64_t free = device.free_device_bytes();
-    return device.shares_host_memory() ? free / static_cast<std::uint64_t>(ranks) : free;
+    return device.shares_host_memory() ? free / static_cast<std::uint64_t>(place.count_on_machine) : free;
 }
 
 }  // namespace
 
-photos::photo_limits photo_limits(const settings& s, const device::profiler& device, int ranks) {
+photos::photo_limits photo_limits(const settings& s, const device::profiler& device,
+                                  const ranks::place& place) {
     // The Gaussians, and the program itself, need the remaining memory. Users may leave less for them.
     const auto share = [&](std::uint64_t bytes) { return bytes / 10 * (s.photo_memory ? 9 : 6); };
     photos::photo_limits limits;
-    limits.host = share(available_host_bytes() / static_cast<std::uint64_t>(ranks));
-    const std::uint64_t free = own_device_bytes(device, ranks);
+    limits.host = share(available_host_bytes() / static_cast<std::uint64_t>(place.count_on_machine));
+    const std::uint64_t free = own_device_bytes(device, place);
     limits.device = share(std::min(free, s.gpu_memory.value_or(free)));
     limits.total = device.shares_host_memory() ? limits.host : limits.host + limits.device;
     if (s.photo_memory) limits.total = *s.photo_memory;
     return limits;
 }
 
-std::uint64_t device_limit(const settings& s, const device::profiler& device, int ranks) {
+std::uint64_t device_limit(const settings& s, const device::profiler& device, const ranks::place& place) {
     if (s.gpu_memory) return *s.gpu_memory;
     if (s.deterministic) return 0;
-    return (device.used_device_bytes() + own_device_bytes(device, ranks)) / 10 * 9;
+    return (device.used_device_bytes() + own_device_bytes(device, place)) / 10 * 9;
 }
 
 train::moment_precision precision_for(std::optional<train::moment_precision> wanted,
@@ -65,8 +66,8 @@ train::parameter_storage storage_for(const model_memory& model, train::moment_pr
     return chosen;
 }
 
-std::uint64_t parameter_bytes_on_host(const device::profiler& device, int ranks) {
-    return device.shares_host_memory() || ranks > 1 ? 0 : available_host_bytes() / 10 * 8;
+std::uint64_t parameter_bytes_on_host(const device::profiler& device, const ranks::place& place) {
+    return device.shares_host_memory() || place.count > 1 ? 0 : available_host_bytes() / 10 * 8;
 }
 
 load_options with_limit(load_options source, const photos::photo_limits& limits) {

@@ -10,17 +10,19 @@
 #include "../device/profiler.hpp"
 #include "../optimize/parameter_storage.hpp"
 #include "../photos/photo_plan.hpp"
+#include "../ranks/transport.hpp"
 #include "settings.hpp"
 
 namespace gs::cli {
 
 /// Returns the limits of --photo-memory, or shares of the available memory. Photos are the same
-/// wherever they are, so the limits do not change results. The ranks share the host's memory.
-photos::photo_limits photo_limits(const settings& s, const device::profiler& device, int ranks);
+/// wherever they are, so the limits do not change results. The ranks of a machine share its memory.
+photos::photo_limits photo_limits(const settings& s, const device::profiler& device,
+                                  const ranks::place& place);
 
 /// Returns the limit of --gpu-memory, or a share of the available memory. Returns 0, which means no
 /// limit, for --deterministic without --gpu-memory: the result must not depend on the machine.
-std::uint64_t device_limit(const settings& s, const device::profiler& device, int ranks);
+std::uint64_t device_limit(const settings& s, const device::profiler& device, const ranks::place& place);
 
 /// Returns the scene to load, whose photos stay in their files if they exceed the limits.
 load_options with_limit(load_options source, const photos::photo_limits& limits);
@@ -48,7 +50,7 @@ train::parameter_storage storage_for(const model_memory& model, train::moment_pr
 
 /// Returns the host memory for parameters: a share of what is available, or none if the device shares the
 /// host's memory or if there are several ranks.
-std::uint64_t parameter_bytes_on_host(const device::profiler& device, int ranks);
+std::uint64_t parameter_bytes_on_host(const device::profiler& device, const ranks::place& place);
 
 /// Returns a line for the user about the expected memory with `most` Gaussians. `photos_on_host`: see below.
 std::string expected_memory(const device::memory_forecast& forecast, std::size_t most,

@@ -231,6 +231,11 @@ rows run_options(settings& s) {
           .value = whole(s.ranks, 1, ranks::most_ranks),
           .help = "Number of processes that train the model together on the CPU; they share the threads",
           .is_rare = true,
+          .is_recorded = false},
+         {.names = "--mpi",
+          .commands = {train},
+          .value = flag(s.mpi),
+          .help = "Trains one model in the processes that mpirun or srun has started",
           .is_recorded = false}});
 }
 
@@ -382,8 +387,7 @@ rows evaluation_options(settings& s) {
     };
     of_views({.names = "--fit-exposure",
               .value = flag(s.fit_exposure),
-              .help = "Measures the right halves of held-out views, too, after fitting the exposure on the "
-                      "left halves"});
+              .help = "Fits exposures on left halves of held-out views, and measures right ones, too"});
     of_views({.names = "--lpips",
               .value = text(s.lpips, "FILE"),
               .help = "Adds LPIPS, with weights of scripts/convert_lpips_weights.py",

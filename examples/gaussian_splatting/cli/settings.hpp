@@ -69,6 +69,7 @@ struct settings {
     bool deterministic = false;
     int ranks = 1;                   ///< number of processes that train together on the CPU
     int gpus = 1;                    ///< number of GPUs that train together; 0: all
+    bool mpi = false;                ///< whether mpirun or srun has started the processes that train
     std::string config;              ///< file with further options
     nlohmann::ordered_json given{};  ///< values of the options that the user gave, by `option::key`
     cli::log_level log_level = log_level::info;

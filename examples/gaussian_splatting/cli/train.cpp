@@ -35,7 +35,8 @@ namespace {
 namespace fs = std::filesystem;
 
 train::train_options options_of(const settings& s, const scene& scene, const command_context& context,
-                                const device::profiler& device, int ranks, features::feature_set features) {
+                                const device::profiler& device, const ranks::place& place,
+                                features::feature_set features) {
     train::train_options o;
     o.schedule = s.schedule;
     o.schedule.transparent = scene.has_alpha;
@@ -48,8 +49,8 @@ train::train_options options_of(const settings& s, const scene& scene, const com
     o.max_cap =
         s.max_cap.value_or(std::max(train::default_cap(scene), s.densification.target_count().value_or(0)));
     o.seed = s.seed;
-    o.max_device_bytes = device_limit(s, device, ranks);
-    o.host_bytes = parameter_bytes_on_host(device, ranks);
+    o.max_device_bytes = device_limit(s, device, place);
+    o.host_bytes = parameter_bytes_on_host(device, place);
     o.background = context.background(scene.has_alpha && !features.is_on("exposure"));
     o.save_iterations = s.save_iterations;
     o.test_iterations = s.test_iterations;
@@ -85,6 +86,8 @@ class training_run {
     /// Returns the seconds since the start. All ranks get the same time.
     double common_seconds() { return ranks_.from_first(loading_.seconds()); }
     bool is_interrupted() const { return signals_->received() != 0 || (live_ && live_->is_stopped()); }
+    /// Throws `error` if this rank, on another machine, sees another output folder than the first one.
+    void require_same_folder();
     void begin_live_view();
     /// Ends the program after Ctrl-C, or after a page of the live view has asked to stop.
     [[noreturn]] void end_early();
@@ -163,14 +166,15 @@ training_run::training_run(const settings& s, const load_options& source,
       checkpoint_(checkpoint_to_resume(s, [this](const std::string& line) { context_.warn(line); })),
       engine_(std::move(engine)),
       lpips_(context_.load_lpips()),
-      limits_(photo_limits(s, engine_->profile(), ranks_.count())),
+      limits_(photo_limits(s, engine_->profile(), ranks_.place())),
       scene_(context_.load(with_limit(source, limits_))),
       photo_memory_(photo_memory(scene_, limits_, static_cast<std::size_t>(s.batch_size))),
-      options_(options_of(s, scene_, context_, engine_->profile(), ranks_.count(),
+      options_(options_of(s, scene_, context_, engine_->profile(), ranks_.place(),
                           resolve_effects(s, scene_, context_))),
       bar_(s.log_level < log_level::info) {
     if (s.save_cameras) require_colmap_cameras(scene_);
     if (ranks_.is_first()) output_.emplace(s.output);
+    require_same_folder();
     options_.gradient = gradient;
     options_.ranks = &ranks_;
     engine_->ranks().join(ranks_);
@@ -185,6 +189,14 @@ training_run::training_run(const settings& s, const load_options& source,
     context_.say("training on " + measures_.device + ": " + std::to_string(scene_.train.size()) + " views, " +
                  std::to_string(model.count()) + " Gaussians, at most " + std::to_string(options_.max_cap));
     resume();
+}
+
+void training_run::require_same_folder() {
+    const int own = checkpoint_ ? checkpoint_->iteration : 0;
+    const bool is_same = std::lround(ranks_.from_first(own)) == own;
+    if (!is_same || !appears(s_.output))
+        throw error("the output folder " + s_.output +
+                    " is not the one of rank 0: use a folder that all machines share");
 }
 
 void training_run::resume() {
@@ -446,6 +458,8 @@ fs::path training_run::renders_folder() const {
 }  // namespace
 
 void train(const settings& s) {
+    if (s.mpi) return train_with_mpi(s);
+    require_single_process();
     if (s.ranks > 1 || s.gpus != 1) return train_in_ranks(s);
     ranks::communicator alone;
     train(s, command_context(s).make_engine(), s.deterministic ? accumulator::fixed : accumulator::native,

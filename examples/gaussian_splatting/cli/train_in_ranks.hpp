@@ -12,4 +12,16 @@ namespace gs::cli {
 /// Precondition: this process has no other threads, and has used neither OpenMP nor CUDA.
 void train_in_ranks(const settings& s);
 
+/// Trains together with the processes that mpirun or srun has started, and ends this process. Each one
+/// takes a GPU, or all share the threads of their machines. Throws `error` if this program has no MPI.
+/// Precondition: as above.
+void train_with_mpi(const settings& s);
+
+/// Throws `error` if mpirun or srun has started this process and others alike.
+void require_single_process();
+
+/// Ends this process, if it is not the first one that mpirun or srun has started, and leaves the first
+/// one the time to report an error that all of them find before they are connected.
+void leave_error_to_first_process();
+
 }  // namespace gs::cli

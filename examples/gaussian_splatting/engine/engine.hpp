@@ -108,6 +108,8 @@ std::unique_ptr<engine> make_cpu_engine();
 std::unique_ptr<engine> make_cuda_engine();
 /// Returns the number of GPUs that CUDA finds.
 int count_gpus();
+/// Returns the PCI address of the first GPU that CUDA finds.
+std::string bus_id_of_gpu();
 /// Returns whether a GPU can be used. If not, sets `reason` to the reason.
 bool cuda_is_available(std::string& reason);
 

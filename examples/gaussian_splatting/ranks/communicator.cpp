@@ -2,150 +2,104 @@
 // SPDX-License-Identifier: MIT
 #include "communicator.hpp"
 
-#include <sched.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstring>
 #include <limits>
-#include <new>
-#include <stdexcept>
-#include <string>
-
-#include "../core/error.hpp"
-#include "shared_memory.hpp"
 
 namespace gs::ranks {
 
 namespace {
 
-enum operation : std::uint32_t {
+enum operation : std::uint64_t {
     sum_of = 0,
     minimum_of = 16,
     maximum_of = 32,
     gather_of = 48,
-    exchange_of = 64
+    exchange_of = 64,
+    barrier_of = 80
 };
 
 /// Returns a number that the types of a collective function do not share.
 template <class T>
-constexpr std::uint32_t number_of_type() {
-    return static_cast<std::uint32_t>(sizeof(T)) | (std::numeric_limits<T>::is_integer ? 1u : 0u) |
+constexpr std::uint64_t number_of_type() {
+    return std::uint64_t{sizeof(T)} | (std::numeric_limits<T>::is_integer ? 1u : 0u) |
            (std::numeric_limits<T>::is_signed ? 2u : 0u);
 }
 
 }  // namespace
 
-shared_memory::owner shared_memory::make() {
-    void* const memory = mmap(nullptr, sizeof(shared_memory), PROT_READ | PROT_WRITE,
-                              MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (memory == MAP_FAILED) throw error("cannot share memory between ranks: give fewer --ranks");
-    return owner(static_cast<shared_memory*>(memory));
-}
-
-void shared_memory::unmap::operator()(shared_memory* memory) const { munmap(memory, sizeof(shared_memory)); }
-
 void communicator::barrier() {
-    if (count_ == 1) return;
-    const std::uint64_t all = ++barriers_ * static_cast<std::uint64_t>(count_);
-    memory_->arrived.fetch_add(1);
-    // Waits briefly without a system call, because ranks arrive at about the same time, and then
-    // leaves the processor to others.
-    constexpr int spins = 2000, yields = 200;
-    for (int tries = 0; memory_->arrived.load() < all; ++tries) {
-        if (tries < spins) continue;
-        if (memory_->has_ended.load()) throw peer_ended();
-        if (tries < spins + yields)
-            sched_yield();
-        else
-            usleep(50);
-    }
-}
-
-template <class Take>
-void communicator::show(std::uint32_t operation, std::size_t size, const void* bytes, std::size_t count,
-                        const Take& take) {
-    const std::size_t which = exchanges_++ % 2;
-    shared_memory::slot& own = memory_->slots[static_cast<std::size_t>(rank_)][which];
-    own.values = size;
-    own.operation = operation;
-    if (count > 0) std::memcpy(own.bytes, bytes, count);
-    barrier();
-    for (int r = 0; r < count_; ++r) {
-        const shared_memory::slot& other = memory_->slots[static_cast<std::size_t>(r)][which];
-        if (other.values != own.values || other.operation != own.operation)
-            throw std::logic_error("ranks " + std::to_string(rank_) + " and " + std::to_string(r) +
-                                   " disagree about their next exchange");
-        take(r, other.bytes);
-    }
+    if (count() > 1) transport_->show({0, barrier_of}, {});
 }
 
 template <class T, class Combine>
-void communicator::reduce(std::uint32_t operation, T* values, std::size_t n, const Combine& combine) {
-    if (count_ == 1) return;
-    constexpr std::size_t at_once = shared_memory::slot_bytes / sizeof(T);
+void communicator::reduce(std::uint64_t operation, T* values, std::size_t n, const Combine& combine) {
+    if (count() == 1) return;
+    constexpr std::size_t at_once = transport::most_bytes / sizeof(T);
     for (std::size_t first = 0; first < n || first == 0; first += at_once) {
         const std::size_t size = std::min(at_once, n - first);
         T* const part = values + first;
-        show(operation | number_of_type<T>(), n, part, size * sizeof(T), [&](int r, const std::byte* bytes) {
-            const T* const theirs = reinterpret_cast<const T*>(bytes);
-            if (r == 0)
-                std::copy_n(theirs, size, part);
-            else
-                for (std::size_t i = 0; i < size; ++i) part[i] = combine(part[i], theirs[i]);
-        });
+        const auto shown = transport_->show({n, operation | number_of_type<T>()},
+                                            std::as_bytes(std::span<const T>(part, size)));
+        std::copy_n(reinterpret_cast<const T*>(shown[0].data()), size, part);
+        for (const transport::bytes bytes : shown.subspan(1)) {
+            const T* const theirs = reinterpret_cast<const T*>(bytes.data());
+            for (std::size_t i = 0; i < size; ++i) part[i] = combine(part[i], theirs[i]);
+        }
     }
 }
 
 void communicator::gather(const shares& all, std::span<const shared_array> arrays) {
-    if (count_ == 1) return;
+    if (count() == 1) return;
     traffic_.count_gather(all, arrays);
     for (const shared_array& array : arrays) gather(all, array);
 }
 
 void communicator::gather(const shares& all, const shared_array& array) {
-    constexpr std::size_t at_once = shared_memory::slot_bytes;
+    constexpr std::size_t at_once = transport::most_bytes;
     std::size_t longest = 0;
-    for (int r = 0; r < count_; ++r) longest = std::max(longest, array.part(all, r).size());
+    for (int r = 0; r < count(); ++r) longest = std::max(longest, array.part(all, r).size());
     const auto piece = [&](int rank, std::size_t first) {
         const auto part = array.part(all, rank);
         return part.subspan(std::min(first, part.size()),
                             std::min(at_once, part.size() - std::min(first, part.size())));
     };
     for (std::size_t first = 0; first < longest; first += at_once) {
-        const auto own = piece(rank_, first);
-        show(gather_of, array.bytes, own.data(), own.size(), [&](int r, const std::byte* bytes) {
-            if (r == rank_) return;
-            std::copy_n(bytes, piece(r, first).size(), piece(r, first).begin());
-        });
+        const auto shown = transport_->show({array.bytes, gather_of}, piece(rank(), first));
+        for (int r = 0; r < count(); ++r) {
+            const auto theirs = shown[static_cast<std::size_t>(r)];
+            if (theirs.size() != piece(r, first).size()) throw disagreement(rank(), r);
+            if (r != rank()) std::ranges::copy(theirs, piece(r, first).begin());
+        }
     }
 }
 
 void communicator::exchange(const windows& all, std::span<const window_array> arrays) {
-    if (count_ == 1) return;
+    if (count() == 1) return;
     traffic_.count_exchange(all, arrays);
     for (const window_array& array : arrays) exchange(all, array);
 }
 
 void communicator::exchange(const windows& all, const window_array& array) {
-    constexpr std::size_t at_once = shared_memory::slot_bytes;
+    constexpr std::size_t at_once = transport::most_bytes;
     std::size_t longest = 0;
-    for (int r = 0; r < count_; ++r) longest = std::max(longest, all.sent_by(r).items() * array.item_bytes);
+    for (int r = 0; r < count(); ++r) longest = std::max(longest, all.sent_by(r).items() * array.item_bytes);
     for (std::size_t first = 0; first < longest; first += at_once) {
-        const std::size_t own = all.sent_by(rank_).items() * array.item_bytes;
+        const std::size_t own = all.sent_by(rank()).items() * array.item_bytes;
         const std::size_t begin = std::min(first, own), end = std::min(first + at_once, own);
-        show(exchange_of, longest, array.from + begin, end - begin, [&](int r, const std::byte* bytes) {
-            if (r == rank_) return;
+        const auto shown = transport_->show({longest, exchange_of}, {array.from + begin, end - begin});
+        for (int r = 0; r < count(); ++r) {
+            if (r == rank()) continue;
+            const auto theirs = shown[static_cast<std::size_t>(r)];
             // The part of the window to this rank that lies in the piece which rank r shows.
-            const share items = all.sent_by(r).of(rank_);
+            const share items = all.sent_by(r).of(rank());
             const std::size_t from = std::max(items.first * array.item_bytes, first);
             const std::size_t to = std::min(items.last * array.item_bytes, first + at_once);
-            if (from >= to) return;
+            if (from >= to) continue;
+            if (to - first > theirs.size()) throw disagreement(rank(), r);
             const std::size_t before = from - items.first * array.item_bytes;
-            std::copy_n(bytes + (from - first), to - from,
-                        array.received(all, r, rank_).begin() + static_cast<std::ptrdiff_t>(before));
-        });
+            std::ranges::copy(theirs.subspan(from - first, to - from),
+                              array.received(all, r, rank()).subspan(before).begin());
+        }
     }
 }
 

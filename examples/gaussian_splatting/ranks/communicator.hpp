@@ -8,18 +8,13 @@
 
 #include "shares.hpp"
 #include "traffic.hpp"
+#include "transport.hpp"
 #include "windows.hpp"
 
 namespace gs::ranks {
 
 /// The largest number of ranks.
 inline constexpr int most_ranks = 64;
-
-struct shared_memory;
-
-/// Thrown by collective functions if another rank has ended early. It is no `std::exception`, so
-/// that no handler of other errors stops it: this rank ends quietly, too.
-struct peer_ended {};
 
 /// The ranks: processes that train one model together.
 ///
@@ -30,15 +25,16 @@ class communicator {
   public:
     /// The only rank of a training in one process.
     communicator() = default;
-    communicator(shared_memory& memory, int rank, int count)
-        : memory_(&memory), rank_(rank), count_(count), traffic_(count) {}
+    communicator(transport& transport, const ranks::place& place)
+        : transport_(&transport), place_(place), traffic_(place.count) {}
     communicator(const communicator&) = delete;
     communicator& operator=(const communicator&) = delete;
 
-    int rank() const { return rank_; }
-    int count() const { return count_; }
+    int rank() const { return place_.rank; }
+    int count() const { return place_.count; }
+    const ranks::place& place() const { return place_; }
     /// Whether this is rank 0, the only one that prints and writes files.
-    bool is_first() const { return rank_ == 0; }
+    bool is_first() const { return rank() == 0; }
     /// The bytes that the ranks exchange. Devices that have other connections count theirs here, too.
     traffic_counter& traffic() { return traffic_; }
     const traffic_counter& traffic() const { return traffic_; }
@@ -69,19 +65,12 @@ class communicator {
 
   private:
     template <class T, class Combine>
-    void reduce(std::uint32_t operation, T* values, std::size_t n, const Combine& combine);
+    void reduce(std::uint64_t operation, T* values, std::size_t n, const Combine& combine);
     void gather(const shares& all, const shared_array& array);
     void exchange(const windows& all, const window_array& array);
-    /// Shows some bytes to the other ranks, and calls `take(rank, theirs)` for each rank, in order.
-    /// `operation` and `size` identify the whole exchange, which all ranks must agree on.
-    template <class Take>
-    void show(std::uint32_t operation, std::size_t size, const void* bytes, std::size_t count,
-              const Take& take);
 
-    shared_memory* memory_ = nullptr;
-    int rank_ = 0, count_ = 1;
-    std::uint64_t barriers_ = 0;   ///< number of barriers so far
-    std::uint64_t exchanges_ = 0;  ///< number of times that values were exchanged
+    transport* transport_ = nullptr;
+    ranks::place place_;
     traffic_counter traffic_{1};
 };
 

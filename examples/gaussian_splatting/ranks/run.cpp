@@ -66,7 +66,8 @@ class signals_to_first_rank {
 /// Runs `body` and ends this process.
 [[noreturn]] void be_rank(shared_memory& memory, int rank, int count,
                           const std::function<int(communicator&)>& body) {
-    communicator all(memory, rank, count);
+    shared_memory_transport transport(memory, rank, count);
+    communicator all(transport, {rank, count, 0, rank, count});
     int code = code_of_failure;
     try {
         code = body(all);

@@ -44,6 +44,11 @@ int count_gpus() {
     return cudaGetDeviceCount(&count) == cudaSuccess ? count : 0;
 }
 
+std::string bus_id_of_gpu() {
+    char id[32] = "";
+    return cudaDeviceGetPCIBusId(id, sizeof(id), 0) == cudaSuccess ? id : "";
+}
+
 bool cuda_is_available(std::string& reason) {
     reason = reason_against_gpu(report_of_this_machine());
     return reason.empty();

@@ -15,8 +15,8 @@ namespace gs_test {
 
 namespace {
 
-/// Replaces this process by the program, which writes to the two files.
-[[noreturn]] void become_program(const words& arguments, const fs::path& out, const fs::path& err,
+/// Replaces this process by a program, which writes to the two files.
+[[noreturn]] void become_program(words command, const fs::path& out, const fs::path& err,
                                  const char* threads) {
     for (const auto& [file, descriptor] : {std::pair(out, STDOUT_FILENO), std::pair(err, STDERR_FILENO)}) {
         const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -25,12 +25,10 @@ namespace {
     if (threads) setenv("OMP_NUM_THREADS", threads, 1);
     std::signal(SIGINT, SIG_DFL);             // programs in the background ignore it
     setenv("OMP_WAIT_POLICY", "passive", 1);  // waiting threads leave a busy machine to others
-    std::string name = WARPAGG_PROGRAM;
-    words copies = arguments;
-    std::vector<char*> argv{name.data()};
-    for (std::string& argument : copies) argv.push_back(argument.data());
+    std::vector<char*> argv;
+    for (std::string& word : command) argv.push_back(word.data());
     argv.push_back(nullptr);
-    execv(argv[0], argv.data());
+    execvp(argv[0], argv.data());
     _exit(127);
 }
 
@@ -53,12 +51,12 @@ outcome run(const words& arguments, const char* threads) {
 }
 
 outcome run_and_then(const words& arguments, const std::function<void(pid_t, const fs::path&)>& act,
-                     const char* threads) {
+                     const char* threads, const words& launcher) {
     const temporary_folder streams;
     const fs::path out = streams / "out", err = streams / "err";
     const pid_t child = fork();
     REQUIRE(child >= 0);
-    if (child == 0) become_program(arguments, out, err, threads);
+    if (child == 0) become_program(launcher + words{WARPAGG_PROGRAM} + arguments, out, err, threads);
     act(child, out);
     int status = 0;
     REQUIRE(waitpid(child, &status, 0) == child);

@@ -32,8 +32,9 @@ struct outcome {
 outcome run(const words& arguments, const char* threads = nullptr);
 
 /// Runs gaussian_splatting, and calls `act` with its process and the file that receives its output.
+/// `launcher`: words before the program's name, such as mpirun and its options.
 outcome run_and_then(const words& arguments, const std::function<void(pid_t, const fs::path&)>& act,
-                     const char* threads = nullptr);
+                     const char* threads = nullptr, const words& launcher = {});
 
 /// A run that ends with status 0 and no error output.
 void check_success(const words& arguments, const char* threads = nullptr);

@@ -223,9 +223,9 @@ TEST_CASE("doctor reports the devices, and which programs are installed or how t
     setenv("PATH", path.c_str(), 1);
     REQUIRE(o.code == 0);
     CHECK(o.err == "");
-    CHECK(
-        says(o.out, {"version  ", "CPU      cpu, ", "memory   ", " GiB\n", "GPU      ", "colmap   installed",
-                     "ffmpeg   missing (to get it: apt-get install ffmpeg)", "ffprobe  missing"}));
+    CHECK(says(o.out, {"version  ", "CPU      cpu, ", "memory   ", " GiB\n", "GPU      ", "MPI      ",
+                       "colmap   installed", "ffmpeg   missing (to get it: apt-get install ffmpeg)",
+                       "ffprobe  missing"}));
     check_refusal({"doctor", "--quiet"}, {"doctor takes no options: leave out --quiet"});
 }
 

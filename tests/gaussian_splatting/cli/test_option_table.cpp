@@ -67,6 +67,7 @@ const std::map<std::string, option_case> cases{
     {"--output", {{"results"}, [](const settings& s) { return s.output == "results"; }}},
     {"--gpus", {{"all"}, [](const settings& s) { return s.gpus == 0; }}},
     {"--ranks", {{"3"}, [](const settings& s) { return s.ranks == 3; }}},
+    {"--mpi", {{}, [](const settings& s) { return s.mpi; }}},
     {"--save-iterations",
      {{"30", "10"},
       [](const settings& s) {

@@ -13,6 +13,7 @@
 
 #include "../../support/temporary_folder.hpp"
 #include "ranks/communicator.hpp"
+#include "ranks/own_share.hpp"
 #include "ranks/run.hpp"
 
 namespace {
@@ -157,6 +158,29 @@ TEST_CASE("communicator: each rank gets the windows that the others send to it, 
                 return true;
             }));
         }
+}
+
+TEST_CASE("ranks: those on the same processors share the threads") {
+    CHECK(all_find(5, [](communicator& all) {
+        const std::uint64_t processors[] = {7, 9, 7, 7, 8};
+        const int threads[] = {8, 3, 8, 8, 1}, expected[] = {3, 3, 3, 2, 1};
+        const auto rank = static_cast<std::size_t>(all.rank());
+        return gs::ranks::own_threads(all, threads[rank], processors[rank]) == expected[rank];
+    }));
+    CHECK(all_find(3, [](communicator& all) { return gs::ranks::own_threads(all, 2, 0) == 1; }));
+}
+
+TEST_CASE("ranks: all learn which one has no device for itself") {
+    const auto find = [](const std::vector<std::uint64_t>& devices, int expected) {
+        return all_find(3, [&](communicator& all) {
+            return gs::ranks::first_without_device(all, devices[static_cast<std::size_t>(all.rank())]) ==
+                   expected;
+        });
+    };
+    CHECK(find({4, 5, 6}, 3));
+    CHECK(find({4, 5, 4}, 2));
+    CHECK(find({4, 0, 4}, 1));
+    CHECK(find({0, 0, 0}, 0));
 }
 
 TEST_CASE("communicator: ranks that disagree about an exchange end with an error") {
