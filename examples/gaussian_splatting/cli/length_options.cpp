@@ -53,8 +53,8 @@ std::vector<option> length_options(settings& s) {
         {.names = "--batch-size",
          .commands = {train},
          .value = whole(s.batch_size, 1, 64),
-         .help =
-             "Number of photos of each iteration; with several, learning rates grow like its square root"},
+         .help = "Number of photos of each iteration; with several, learning rates grow like its square root",
+         .is_rare = true},
         {.names = "--quality",
          .commands = {train},
          .value = choice(s.quality),

@@ -124,6 +124,12 @@ TEST_CASE("ranks: any number of them writes the same model, with a sky, depths, 
                                                "--precision", "compact"});
 }
 
+TEST_CASE("ranks: any number of them writes the same model, with three photos per iteration") {
+    check_equal_models("synthetic:spheres,sky=0.6,depths=0.02,passers=0.1,exposure=0.4,views=8",
+                       density_control + words{"--effects", "auto,+sky,+depth,+direction,+poses,+exposure",
+                                               "--batch-size", "3"});
+}
+
 TEST_CASE("ranks: any number of them writes the same model, with another strategy and tests in between") {
     check_equal_models("synthetic:alpha,views=8",
                        {"-i", "120", "--strategy", "mcmc", "--max-cap", "4000", "--background", "random",
