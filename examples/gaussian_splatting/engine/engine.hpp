@@ -47,8 +47,9 @@ class engine {
     /// reserve for growth. Later steps use views of that size. Call this after each change of the
     /// number of Gaussians, and at intervals. Waits for the device.
     virtual void reserve(int downscales = 0) = 0;
-    /// Does one training step. A step whose tile lists exceed the capacity changes no parameter.
-    virtual void step(const step_plan& plan) = 0;
+    /// Does one training step, with the sum of the gradients of the plan's view and of `more_views`. A step
+    /// whose tile lists exceed the capacity changes no parameter.
+    virtual void step(const step_plan& plan, const std::vector<std::size_t>& more_views = {}) = 0;
     /// Calls `strategy::run`. Returns the number of Gaussians that were drawn but received no
     /// gradient.
     virtual std::uint64_t densify(int iteration) = 0;

@@ -111,11 +111,11 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         lists_.reserve(renderer_, trained_.values.read(), count_, views_.train(level_));
     }
 
-    void step(const step_plan& plan) override {
+    void step(const step_plan& plan, const std::vector<std::size_t>& more_views) override {
         division_.divide(count_, renderer_);
         trained_.require_memory(device_, count_, sh_degree_);
-        std::vector<std::size_t> views = plan.more_views;
-        views.insert(views.begin(), plan.view);
+        std::vector<std::size_t> views{plan.view};
+        views.insert(views.end(), more_views.begin(), more_views.end());
         std::vector<step_type> steps =
             images_.begin(plan, views, views_, views_.train(level_), setup_.facts.gradient);
         const raster::view_stack picture = step_images<renderer_type>::picture_of(steps);

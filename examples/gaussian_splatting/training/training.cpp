@@ -179,16 +179,17 @@ void training::add_step() {
              step_plan plan;
              plan.iteration = iteration;
              plan.view = order->next();
-             while (plan.more_views.size() + 1 < batch) plan.more_views.push_back(order->next());
+             std::vector<std::size_t> views(batch - 1);
+             for (std::size_t& view : views) view = order->next();
              plan.sh_degree = schedule_.sh_degree_at(iteration);
              plan.updates_sh = schedule_.updates_sh(iteration);
              plan.background = options_.background.random ? random_color(*colors) : options_.background.color;
              plan.rates = schedule_.rates_at(iteration);
              // Zhao et al. 2024 (Grendel, section 4.2) scale rates like this.
              for (float& rate : plan.rates) rate *= std::sqrt(static_cast<float>(batch));
-             engine_.step(plan);
-             plan.more_views.insert(plan.more_views.begin(), plan.view);
-             faults_.steps(plan.more_views);
+             engine_.step(plan, views);
+             views.insert(views.begin(), plan.view);
+             faults_.steps(views);
          }});
 }
 

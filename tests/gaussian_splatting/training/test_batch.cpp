@@ -38,9 +38,7 @@ gs::gaussians after_step(make_engine make, const gs::scene& scene, const std::ve
     setup.batch_size = views.size();
     e->begin(setup);
     e->reserve();
-    auto plan = plan_for(views[0]);
-    plan.more_views.assign(views.begin() + 1, views.end());
-    e->step(plan);
+    e->step(plan_for(views[0]), {views.begin() + 1, views.end()});
     CHECK(e->take_report().skipped == 0);
     return e->get_model();
 }

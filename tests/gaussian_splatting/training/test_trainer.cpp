@@ -58,7 +58,7 @@ class recorder final : public gs::train::engine, gs::device::profiler, gs::train
         timetable_ = schedule_.get();
     }
     void reserve(int downscales) override { sizes_reserved.push_back(downscales); }
-    void step(const step_plan& plan) override {
+    void step(const step_plan& plan, const std::vector<std::size_t>&) override {
         steps.push_back({plan, sizes_reserved.back()});
         ++seconds;
     }

@@ -9,7 +9,7 @@
 
 #include "../../core/error.hpp"
 #include "../../device/device.hpp"
-#include "../blend/depth_splats.hpp"
+#include "../project/depth_splats.hpp"
 #include "accumulator_set.hpp"
 
 namespace gs::raster {

@@ -7,9 +7,9 @@
 
 #include "../../device/device.hpp"
 #include "../../ranks/shares.hpp"
-#include "../blend/depth_splats.hpp"
 #include "../tiles/tile_reach.hpp"
 #include "../tiles/view_stack.hpp"
+#include "depth_splats.hpp"
 #include "project.hpp"
 #include "project_backward.hpp"
 

@@ -4,8 +4,8 @@
 
 #include "../../model/aosoa.hpp"
 #include "../geometry/splat.hpp"
-#include "../project/geometry.hpp"
-#include "../project/project_backward.hpp"
+#include "geometry.hpp"
+#include "project_backward.hpp"
 
 namespace gs::raster {
 
