@@ -108,7 +108,7 @@ TEST_CASE("batch: training with photos of different sizes brings views near the 
         gs::train::train_options o;
         e->set_views(scene.train, scene.test);
         e->set_model(gs::from_points(scene.points, 0, 2000, 1));
-        o.schedule.iterations = 100;
+        o.schedule.iterations = 200;
         o.schedule.sh_degree = 0;
         o.schedule.num_downscales = 0;
         o.max_cap = 3000;

@@ -28,7 +28,8 @@ class view_stack {
         for (const camera& view : views_) {
             width_ = std::max(width_, view.width);
             highest_ = std::max(highest_, view.height);
-            if (view.is_panorama != views_[0].is_panorama || (view.is_panorama && view.width != width_))
+            if (view.is_panorama != views_[0].is_panorama ||
+                (view.is_panorama && view.width != views_[0].width))
                 throw error(
                     "one iteration cannot render panoramas of different widths, or panoramas and other "
                     "photos "
