@@ -37,8 +37,9 @@ std::span<const transport::bytes> shared_memory_transport::show(const exchange_l
 void shared_memory_transport::wait_for_all() {
     const std::uint64_t all = exchanges_ * static_cast<std::uint64_t>(count_);
     memory_.arrived.fetch_add(1);
+    // A rank may arrive and end while this one waits. It has ended early only if some are still missing.
     for (patient_wait wait; memory_.arrived.load() < all;)
-        if (wait.after_test() && memory_.has_ended.load()) throw peer_ended();
+        if (wait.after_test() && memory_.has_ended.load() && memory_.arrived.load() < all) throw peer_ended();
 }
 
 }  // namespace gs::ranks
