@@ -26,8 +26,8 @@ inline std::string too_few_points(std::size_t points, const char* where) {
 /// The smallest number of parts of a model, for conclusions from a half-trained model.
 inline constexpr std::size_t enough_parts = 30;
 
-inline std::string too_few_parts(std::size_t parts) {
-    return text("cannot decide: only %zu smooth parts of the model are in 5 or more photos", parts);
+inline std::string too_few_parts(std::size_t parts, const char* kind) {
+    return text("cannot decide: only %zu %s of the model are in 5 or more photos", parts, kind);
 }
 
 }  // namespace gs::features

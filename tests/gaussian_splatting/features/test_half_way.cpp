@@ -19,9 +19,14 @@ using namespace gs::features;
 
 namespace {
 
-/// A scene whose cameras are at very different distances, so that few points can be compared.
+/// A scene whose cameras are at very different distances, so that few points can be compared. `scales`: ratio
+/// of the largest distance to the smallest.
+gs::scene scene_with_distances(int scales, const std::string& parameters, int side) {
+    return small_scene(("synthetic:spheres,scales=" + std::to_string(scales) + parameters).c_str(), side);
+}
+
 gs::scene scene_with(const std::string& parameters, int side = 40) {
-    return small_scene(("synthetic:spheres,scales=5" + parameters).c_str(), side);
+    return scene_with_distances(5, parameters, side);
 }
 
 gs::train::train_options reviewed_options(const gs::scene& scene, const char* effects, int iterations) {
@@ -35,8 +40,8 @@ gs::train::train_options reviewed_options(const gs::scene& scene, const char* ef
 
 struct reviewed_run {
     gs::train::train_result result;
-    std::vector<float> falloff, response;  ///< values at the end
-    std::vector<std::string> lines;        ///< for the user
+    std::vector<float> falloff, response, moving;  ///< values at the end
+    std::vector<std::string> lines;                ///< for the user
     gs::gaussians model;
     std::map<int, gs::state_archive> checkpoints;
 };
@@ -56,6 +61,7 @@ reviewed_run reviewed_training(make_engine make, gs::scene scene, const gs::trai
     run.result = gs::train::train(*e, scene, o, events);
     run.falloff = e->feature("vignetting").values();
     run.response = e->feature("response").values();
+    run.moving = e->feature("moving").values();
     run.model = e->get_model();
     return run;
 }
@@ -116,6 +122,40 @@ TEST_CASE("half way: training begins a falloff that photos from different distan
         CHECK(none.result.feature_reports.at("vignetting")["on"] == false);
         REQUIRE_FALSE(none.lines.empty());
         CHECK(none.lines[0].starts_with("vignetting still off after iteration 30: "));
+    }
+}
+
+TEST_CASE("half way: training finds moving things, also in photos from different distances") {
+    for (const auto make : engines())
+        for (const bool moves : {true, false}) {
+            const gs::scene scene = scene_with_distances(8, moves ? ",moving=0.2" : "", 64);
+            CHECK(selected_in(scene, "auto", "moving").may_begin);
+            const reviewed_run run = reviewed_training(make, scene, reviewed_options(scene, "auto", 200));
+            CHECK(run.moving.empty() == !moves);
+            CHECK(run.result.feature_reports.at("moving")["on"] == moves);
+            const std::string begin =
+                std::string("moving ") + (moves ? "on" : "still off") + " after iteration 100: ";
+            CHECK(std::ranges::any_of(run.lines, [&](const auto& line) { return line.starts_with(begin); }));
+        }
+}
+
+TEST_CASE("half way: a run that continues from a checkpoint keeps the weights, bit for bit") {
+    const gs::scene scene = scene_with_distances(8, ",moving=0.2", 64);
+    REQUIRE(selected_in(scene, "auto", "moving").may_begin);
+    gs::train::train_options o = reviewed_options(scene, "auto", 200);
+    o.checkpoint_every = 50;
+    for (const auto make : engines()) {
+        const reviewed_run whole = reviewed_training(make, scene, o);
+        REQUIRE_FALSE(whole.moving.empty());
+        for (const int iteration : {50, 100, 150}) {
+            CAPTURE(iteration);
+            gs::train::train_options rest = reviewed_options(scene, "auto", 200);
+            gs::state_archive checkpoint = whole.checkpoints.at(iteration);
+            rest.resume_from = &checkpoint;
+            const reviewed_run resumed = reviewed_training(make, scene, rest);
+            check_equal(resumed.model, whole.model);
+            CHECK(resumed.moving == whole.moving);
+        }
     }
 }
 

@@ -21,15 +21,17 @@
 namespace gs::features {
 namespace {
 
-constexpr std::size_t most_photos = 120, most_observations = 20000;
+constexpr std::size_t most_photos = 120;
+constexpr std::size_t most_observations = 20000;  ///< for least-squares fits
+constexpr std::size_t most_observations_of_all = 100000;
 constexpr int blocks_across = 128;                ///< about, of a photo
 constexpr int least_value = 3, most_value = 252;  ///< of a channel that is not saturated
 constexpr float darkest = 0.03f;                  ///< of a render whose ratio is meaningful
 constexpr float edge = 0.1f;                      ///< relative change of the inverse depth between neighbors
 constexpr double sky_distance = 50;               ///< beyond which all is sky, in units of the extent
 constexpr double sky_cell = 0.1;                  ///< in radians
-constexpr double footprints = 4;                  ///< side of a cell of space
-constexpr double smooth_share = 0.6;              ///< share of the samples that are smooth enough
+constexpr double footprints = 4, footprints_of_all = 3;  ///< side of a cell of space
+constexpr double smooth_share = 0.6;                     ///< share of the samples that are smooth enough
 constexpr double largest_roughness = 0.25;
 
 /// A block of pixels in a photo and in the render.
@@ -207,8 +209,10 @@ std::vector<observation> observations_of(std::span<const sample* const> samples)
     return seen;
 }
 
-/// Returns observations of the cells that enough photos show, or of a part of these cells if there are many.
-observed_points observe_cells(const std::map<cell_index, std::vector<const sample*>>& cells) {
+/// Returns observations of the cells that enough photos show, or of a part of these cells if there would be
+/// more than `most` observations.
+observed_points observe_cells(const std::map<cell_index, std::vector<const sample*>>& cells,
+                              std::size_t most) {
     observed_points all, some;
     std::size_t count = 0;
     for (const auto& [index, samples] : cells) {
@@ -217,7 +221,7 @@ observed_points observe_cells(const std::map<cell_index, std::vector<const sampl
         count += seen.size();
         all.push_back(std::move(seen));
     }
-    const std::size_t step = count / most_observations + 1;
+    const std::size_t step = count / most + 1;
     for (std::size_t i = 0; i < all.size(); i += step) {
         for (observation& o : all[i]) o.point = static_cast<std::uint32_t>(some.size());
         some.push_back(std::move(all[i]));
@@ -238,16 +242,19 @@ compared_surfaces compare_with_photos(train::engine& engine, const scene& scene,
     }
     const double limit = roughness.empty() ? largest_roughness
                                            : std::min(largest_roughness, quantile(roughness, smooth_share));
-    const double side = sizes.empty() ? 1 : footprints * median(sizes);
-    std::map<cell_index, std::vector<const sample*>> surfaces, sky;
+    const double footprint = sizes.empty() ? 1 : median(sizes);
+    std::map<cell_index, std::vector<const sample*>> smooth, all, sky;
     for (const sample& s : samples) {
-        if (static_cast<double>(s.roughness) > limit) continue;
-        if (s.footprint > 0)
-            surfaces[cell_at(s.position, side)].push_back(&s);
-        else
-            sky[cell_at(s.direction, sky_cell)].push_back(&s);
+        const bool is_smooth = static_cast<double>(s.roughness) <= limit;
+        if (s.footprint == 0) {
+            if (is_smooth) sky[cell_at(s.direction, sky_cell)].push_back(&s);
+            continue;
+        }
+        all[cell_at(s.position, footprints_of_all * footprint)].push_back(&s);
+        if (is_smooth) smooth[cell_at(s.position, footprints * footprint)].push_back(&s);
     }
-    return {observe_cells(surfaces), observe_cells(sky)};
+    return {observe_cells(smooth, most_observations), observe_cells(all, most_observations_of_all),
+            observe_cells(sky, most_observations)};
 }
 
 }  // namespace gs::features

@@ -23,6 +23,8 @@ class half_way_statistics {
     /// Returns the response that the model does not explain, from surfaces without a clear falloff: see
     /// `estimate_response`. The sky of a photo has too few different colors.
     const tone_response& response() const;
+    /// Returns the cells of all surfaces, without a clear falloff.
+    observed_points parts() const;
 
   private:
     const gs::scene& scene_;

@@ -55,18 +55,14 @@ bool is_usual_beside(const std::vector<observation>& seen, const std::vector<boo
     return std::none_of(others.begin(), end, [](const auto& other) { return other.second; });
 }
 
-/// Returns the observations of comparable points, with colors as of equal exposure.
-observed_points comparable_observations(const scene_statistics& statistics) {
-    observed_points points = statistics.points();
-    for (auto& seen : points) keep_one_size(seen, one_size);
+/// Removes points that too few photos show, and changes the colors to those of equal exposures.
+void make_comparable(observed_points& points, std::size_t photos) {
     std::erase_if(points,
                   [](const auto& seen) { return seen.size() < scene_statistics::least_photos_of_point; });
-    statistics.remove_clear_falloff(points);
-    // Not `statistics.brightness()`: far photos can have too few smooth points, even if there are many.
-    const photo_brightness brightness = estimate_brightness(points, statistics.scene().train.size());
+    // Not `scene_statistics::brightness`: far photos can have too few smooth points, even if there are many.
+    const photo_brightness brightness = estimate_brightness(points, photos);
     for (auto& seen : points)
         for (observation& o : seen) o.color *= static_cast<float>(std::exp2(-brightness.log2[o.view]));
-    return points;
 }
 
 /// Keeps the points that differ together with almost all points around them.
@@ -90,21 +86,12 @@ hidden_points hidden_in(const std::vector<compared_point>& points) {
     return found;
 }
 
-bool shows_moving_thing(const hidden_points& photo, std::size_t least_hidden) {
-    return photo.hidden.size() >= least_hidden && photo.share() >= moving_evidence::least_share;
-}
-
 }  // namespace
 
 std::size_t moving_evidence::count() const {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        photos, [](const hidden_points& photo) { return shows_moving_thing(photo, least_hidden); }));
-}
-
-bool moving_evidence::is_clear() const {
-    return count() >= 2 || std::ranges::any_of(photos, [](const hidden_points& photo) {
-               return shows_moving_thing(photo, 2 * least_hidden);
-           });
+    return static_cast<std::size_t>(std::ranges::count_if(photos, [](const hidden_points& photo) {
+        return photo.hidden.size() >= least_hidden && photo.share() >= least_share;
+    }));
 }
 
 std::vector<bool> moving_evidence::contributing_photos() const {
@@ -115,12 +102,26 @@ std::vector<bool> moving_evidence::contributing_photos() const {
     return contributes;
 }
 
+std::size_t moving_evidence::hidden_in_large_shares() const {
+    std::size_t sum = 0;
+    for (const hidden_points& photo : photos)
+        if (photo.share() >= least_share) sum += photo.hidden.size();
+    return sum;
+}
+
 moving_evidence find_moving_things(const scene_statistics& statistics) {
-    const scene& scene = statistics.scene();
+    observed_points points = statistics.points();
+    for (auto& seen : points) keep_one_size(seen, one_size);
+    statistics.remove_clear_falloff(points);
+    return find_moving_things(std::move(points), statistics.scene().train.size());
+}
+
+moving_evidence find_moving_things(observed_points points, std::size_t photos) {
+    make_comparable(points, photos);
     moving_evidence found;
-    found.photos.resize(scene.train.size());
-    std::vector<std::vector<compared_point>> by_photo(scene.train.size());
-    for (const std::vector<observation>& seen : comparable_observations(statistics)) {
+    found.photos.resize(photos);
+    std::vector<std::vector<compared_point>> by_photo(photos);
+    for (const std::vector<observation>& seen : points) {
         const glm::vec3 color = median_color(seen);
         std::vector<double> differences;
         for (const observation& o : seen) differences.push_back(largest_difference(o.color, color));

@@ -28,8 +28,12 @@ struct moving_evidence {
 
     /// Returns the number of photos that show a moving thing.
     std::size_t count() const;
-    /// Returns whether two photos show a moving thing, or one photo with twice as many hidden points.
-    bool is_clear() const;
+    /// Returns whether two photos show a moving thing. In a single photo, the exposure or the pose may be
+    /// wrong.
+    bool is_clear() const { return count() >= 2; }
+    /// Returns the number of hidden points in all photos in which something hides `least_share`. Eight are
+    /// clear evidence if points are parts of a model, which explains other differences.
+    std::size_t hidden_in_large_shares() const;
     /// Returns for each photo whether it has a part in clear evidence. The evidence for other effects leaves
     /// out such photos, because hidden points would pass for another effect.
     std::vector<bool> contributing_photos() const;
@@ -47,5 +51,7 @@ struct moving_evidence {
 /// A photo in which most points differ does not count: its pose or its exposure is wrong. Cost: for each
 /// hidden point, one pass over the points in its photo.
 moving_evidence find_moving_things(const scene_statistics& statistics);
+/// Compares observations of equal size in `photos` photos. Points that too few photos show do not count.
+moving_evidence find_moving_things(observed_points points, std::size_t photos);
 
 }  // namespace gs::features

@@ -19,6 +19,8 @@ class moving_feature final : public feature {
         return "keeps things that appear in single photos out of the scene; iterations are slightly slower";
     }
     finding analyze(const scene_statistics& statistics) const override;
+    bool may_begin_half_way() const override { return true; }
+    finding review(const half_way_statistics& statistics) const override;
     explanation explain(const scene_statistics& statistics, const finding& found) const override;
 };
 

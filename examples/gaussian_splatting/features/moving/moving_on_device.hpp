@@ -25,6 +25,11 @@ class moving_on_device final : public device_feature<Renderer> {
         is_on_ = false;
         begin_views(training_views);
     }
+    /// Begins the effect, during training, too.
+    void set_values(const std::vector<float>&) override {
+        is_on_ = true;
+        begin_views(static_cast<std::size_t>(views_));
+    }
     /// Returns the largest residual that counted fully in the last step, or nothing if the effect is off.
     std::vector<float> values() const override {
         return is_on_ ? std::vector<float>{weights_.limit()} : std::vector<float>{};

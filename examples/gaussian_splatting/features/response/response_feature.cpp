@@ -92,7 +92,8 @@ finding response_feature::analyze(const scene_statistics& statistics) const {
 finding response_feature::review(const half_way_statistics& statistics) const {
     const tone_response& found = statistics.response();
     std::vector<float> values = neutral_values(statistics.scene());
-    if (found.points < enough_parts) return {{}, too_few_parts(found.points), "off", std::move(values)};
+    if (found.points < enough_parts)
+        return {{}, too_few_parts(found.points, "smooth parts"), "off", std::move(values)};
     return finding_from(found, "parts of the model", std::move(values));
 }
 

@@ -115,7 +115,7 @@ finding vignetting_feature::analyze(const scene_statistics& statistics) const {
 finding vignetting_feature::review(const half_way_statistics& statistics) const {
     const lens_falloff& found = statistics.falloff();
     if (found.points < enough_parts)
-        return {{}, too_few_parts(found.points), "off", neutral_values(statistics.scene())};
+        return {{}, too_few_parts(found.points, "smooth parts"), "off", neutral_values(statistics.scene())};
     return finding_from(statistics.scene(), found, "parts of the model");
 }
 
