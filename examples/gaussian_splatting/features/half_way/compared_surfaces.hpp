@@ -19,9 +19,9 @@ struct compared_surfaces {
 /// color of the photo relative to that of the render, times the typical render of the cell. So neither the
 /// distance of a camera nor the texture of a surface matters. All footprints are one.
 ///
-/// Leaves out pixels that are saturated, masked, transparent or dark, and edges of surfaces. `smooth` and `sky`
-/// leave out the roughest part of the photos, too. `show` applies effects to renders. Examines up to 120 photos. Precondition:
-/// `prepare_renders` was called. Cost: renders each of these photos twice.
+/// Leaves out pixels that are saturated, masked, transparent or dark, and edges of surfaces. `smooth` and
+/// `sky` leave out the roughest part of the photos, too. `show` applies effects to renders. Examines up to
+/// 120 photos. Precondition: `prepare_renders` was called. Cost: renders each of these photos twice.
 compared_surfaces compare_with_photos(train::engine& engine, const scene& scene, const show_function& show,
                                       const std::array<float, 3>& background);
 
