@@ -8,8 +8,11 @@
     bench/decisions.py table bench/results/decisions.json
 
     bench/decisions.py run --train --program ... --output train.json -- -i 1500
+    bench/decisions.py run --train --judge direction --program ... --output train.json -- -i 1500
 
 With --train, the decisions are those with which a training ends, which may have revised them. Options after -- go to `train`.
+--judge trains with mixtures twice more, with and without an effect, and compares the PSNR of held-out photos: an effect can
+help although the scene was made without it.
 Pure scenes have one effect or noise; mixtures have each effect or not, by the seed, and each mixture comes with each noise.
 """
 import argparse
@@ -37,6 +40,8 @@ PURE = [{}, {"gloss": 1}, {"vignetting": 0.4}, {"exposure": 0.3}, {"exposure": 0
         {"depths": 0.05}, {"depths": 2}, {"fisheye": 60}, {"noise": 0.03}]
 SKYLESS = "alpha"  # pixels without a surface are transparent
 LACKED = {"sky", "walls", "vignetting", "response"}  # parameters that SKYLESS lacks
+JUDGED = {"with": "+", "without": "-"}
+TOLERANCE = 0.1  # dB that a decision may cost
 RIGHT_DEPTHS = 0.05  # more noise hides the order of depths
 MIXED = {"gloss": (0.3, 1), "vignetting": (0.2, 0.6), "exposure": (0.15, 0.5), "response": (0.6, 1), "scales": (3, 8),
          "sky": (0.3, 1), "poses": (0.6, 2), "blur": (6, 12), "moving": (0.1, 0.5), "passers": (0.05, 0.2),
@@ -81,15 +86,23 @@ def run_program(scene, command):
 
 
 def trained(program, scene, options):
-    """By effect, whether a training ended with it, and why it began with or without it. Effects that follow from the
-    files are missing."""
+    """The metrics of a training."""
     with tempfile.TemporaryDirectory() as folder:
         run_program(scene, [program, "train", "-d", scene, "-o", folder, "-q", "--no-viewer", *options])
-        found = json.loads((pathlib.Path(folder) / "metrics.json").read_text())["effects"]
+        return json.loads((pathlib.Path(folder) / "metrics.json").read_text())
+
+
+def decisions_of(metrics):
+    """By effect, whether a training ended with it, and why it began with or without it. Effects that follow from the
+    files are missing."""
     revised = lambda e: (f"; revised from degree {e['sh_degree_at_first']} to {e['sh_degree']}" if "sh_degree_at_first" in e
                          else f"; half-way {e['reason_half_way']}" if "reason_half_way" in e else "")
     return {e["name"]: {"recommended": e["on"] and e.get("sh_degree", 1) > 0, "evidence": e["reason"] + revised(e)}
-            for e in found if e["name"] != BACKGROUND}
+            for e in metrics["effects"] if e["name"] != BACKGROUND}
+
+
+def psnr(metrics):
+    return metrics.get("refined_psnr", metrics["psnr"])
 
 
 def inspect(program, scene):
@@ -103,10 +116,16 @@ def inspect(program, scene):
     return {"effects": {e["name"]: {key: e[key] for key in ("recommended", "evidence")} for e in found}, "seconds": seconds}
 
 
-def decide(arguments, scene):
+def decide(arguments, scene, kind):
     found = inspect(arguments.program, scene)
     if arguments.train:
-        found["effects"].update(trained(arguments.program, scene, arguments.options))
+        train = lambda *options: trained(arguments.program, scene, [*arguments.options, *options])
+        judged = arguments.judge if kind == "mixture" else None
+        metrics = train(*(["--eval"] if judged else []))
+        found["effects"].update(decisions_of(metrics))
+        if judged:
+            found["psnr"] = {"automatic": psnr(metrics), **{
+                name: psnr(train("--eval", "--effects", f"auto,{sign}{judged}")) for name, sign in JUDGED.items()}}
     return found
 
 
@@ -125,14 +144,14 @@ def run(arguments):
     runs = []
     cases = [*pure(), *mixtures(arguments.mixtures, arguments.seed, arguments.noises)]
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        for case, found in zip(cases, pool.map(lambda case: decide(arguments, case["scene"]), cases)):
+        for case, found in zip(cases, pool.map(lambda case: decide(arguments, case["scene"], case["kind"]), cases)):
             runs.append({**case, **found})
             print(case["scene"], "wrong: " + (", ".join(wrong(runs[-1])) or "none"), flush=True)
     for folder in real:
-        runs.append({"kind": "real", "scene": folder.name, **decide(arguments, str(folder))})
+        runs.append({"kind": "real", "scene": folder.name, **decide(arguments, str(folder), "real")})
         print(folder.name, f"{runs[-1]['seconds']:.2f} s", flush=True)
     result = {"bench": "decisions", **environment(arguments.commit), "seed": arguments.seed,
-              "train": arguments.options if arguments.train else None, "runs": runs}
+              "train": arguments.options if arguments.train else None, "judged": arguments.judge, "runs": runs}
     aside = output.with_name(output.name + ".part")
     aside.write_text(json.dumps(result, indent=1) + "\n")
     aside.replace(output)
@@ -164,6 +183,19 @@ def evidence(one, effect):
     return one["effects"][effect]["evidence"].removeprefix("cannot decide: ")
 
 
+def judgment(effect, runs):
+    """A table of what decisions on an effect cost, relative to the better of training with it and without it."""
+    rows = []
+    for noise, of_noise in by("noise", runs).items():
+        best = [max(r["psnr"][name] for name in JUDGED) for r in of_noise]
+        for name in ["automatic", *JUDGED]:
+            costs = [most - r["psnr"][name] for most, r in zip(best, of_noise)]
+            rows.append([f"{noise:g}", name, str(len(costs)), share(sum(c <= TOLERANCE for c in costs), len(costs)),
+                         f"{sum(costs) / len(costs):.2f}", f"{max(costs):.2f}"])
+    return [f"Held-out PSNR below the better of training with `{effect}` and without it:\n",
+            markdown(["noise", effect, "scenes", f"within {TOLERANCE} dB", "mean (dB)", "largest (dB)"], rows)]
+
+
 def tables(result):
     kinds = by("kind", result["runs"])
     mixed = kinds.get("mixture", [])
@@ -179,6 +211,9 @@ def tables(result):
     by_whom = "`inspect`" if options is None else f"`train {' '.join(options)}`"
     text = [f"{len(mixed)} scenes, random mixtures of effects by seed {result['seed']}, each with each noise; decisions of "
             f"{by_whom}; undecided counts as not called for:\n", markdown(head, rows)]
+
+    if result.get("judged"):
+        text += judgment(result["judged"], mixed)
 
     verdict = lambda one, effect: "**wrong**" if effect in wrong(one) else "right"
     rows = [[name(r), *(f"{verdict(r, effect)}: {said(r, effect)}" for effect in EFFECTS)] for r in kinds["pure"]]
@@ -217,6 +252,8 @@ def main():
     runner.add_argument("--seed", type=int, default=0)
     runner.add_argument("--jobs", type=int, default=1, help="synthetic scenes that are inspected at once, which then take longer")
     runner.add_argument("--train", action="store_true", help="take the decisions of a training")
+    runner.add_argument("--judge", choices=[e for e in EFFECTS if e != BACKGROUND], metavar="EFFECT",
+                        help="with --train: compare the PSNR with that of training with and without this effect")
     runner.add_argument("--commit", help="where the sources are no git checkout")
     runner.add_argument("--output", required=True)
     runner.set_defaults(action=run)
@@ -228,6 +265,8 @@ def main():
     arguments.options = passed_on[0] if passed_on else []
     if arguments.options and not getattr(arguments, "train", False):
         parser.error("options after -- are for train: give --train")
+    if getattr(arguments, "judge", None) and not arguments.train:
+        parser.error("--judge compares trainings: give --train")
     arguments.action(arguments)
 
 

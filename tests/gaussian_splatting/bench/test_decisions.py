@@ -65,6 +65,19 @@ class Arithmetic(unittest.TestCase):
         self.assertIn("| lego | undecided: 7 points |" + " no: seen |" * 11 + " yes: seen | 0.50 |", self.text)
 
 
+    def test_what_decisions_cost(self):
+        judged = [{**one, "psnr": {"automatic": automatic, "with": 30.0, "without": 31.0}}
+                  for one, automatic in zip(mixtures((True, True), (True, False)), (30.5, 31.25))]
+        text = "\n".join(decisions.judgment(COLOUR, judged))
+        self.assertIn("| 0 | automatic | 2 | 50 % | 0.12 | 0.50 |", text)
+        self.assertIn("| 0 | with | 2 | 0 % | 1.00 | 1.00 |", text)
+        self.assertIn("| 0 | without | 2 | 100 % | 0.00 | 0.00 |", text)
+
+    def test_refined_poses_are_judged(self):
+        self.assertEqual(decisions.psnr({"psnr": 20}), 20)
+        self.assertEqual(decisions.psnr({"psnr": 20, "refined_psnr": 30}), 30)
+
+
 class Mixtures(unittest.TestCase):
     def test_seed_says_all(self):
         some = decisions.mixtures(20, 0, [0, 0.01])
@@ -101,7 +114,8 @@ class Program(unittest.TestCase):
 
     def test_decisions_of_a_training(self):
         program = os.environ["WARPAGG_PROGRAM"]
-        found = decisions.trained(program, "synthetic:spheres,exposure=0.3,views=16", ["-i", "20", "--device", "cpu"])
+        metrics = decisions.trained(program, "synthetic:spheres,exposure=0.3,views=16", ["-i", "20", "--device", "cpu"])
+        found = decisions.decisions_of(metrics)
         self.assertTrue(found["exposure"]["recommended"])
         self.assertFalse(found["masks"]["recommended"])
         self.assertNotIn("background", found)
@@ -128,6 +142,9 @@ class Program(unittest.TestCase):
             self.assertEqual(refusal("run", "--program", program, "--output", f"{folder}/no/x.json"),
                              f"there is no folder '{folder}/no'\n")
             self.assertEqual(os.listdir(folder), [])
+        done = subprocess.run([*SCRIPT, "run", "--program", program, "--judge", "sky", "--output", file], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--judge compares trainings: give --train", done.stderr)
         with self.assertRaisesRegex(SystemExit, "inspect failed with synthetic:cubes: .*there is no synthetic scene 'cubes'"):
             decisions.inspect(program, "synthetic:cubes")
 
