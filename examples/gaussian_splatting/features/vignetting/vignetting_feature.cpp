@@ -17,6 +17,8 @@
 namespace gs::features {
 namespace {
 
+/// The smallest strength of a falloff that a half-trained model shows: its own errors look like weaker ones.
+constexpr double least_strength_half_way = 0.13;
 constexpr const char* has_alpha = "photos have transparent parts, whose background has no falloff";
 constexpr const char* has_panoramas = "all photos are panoramas, which are put together from several photos";
 
@@ -86,18 +88,21 @@ pages::marked_photo widest_photo(const scene& scene, const observed_points& poin
         text("Rings: %zu points, which other photos show nearer to their centers.", count), std::move(*most));
 }
 
-/// Returns the finding from a falloff. `compared`: what photos show at different places.
-finding finding_from(const scene& scene, const lens_falloff& found, const char* compared) {
+/// Returns the finding from a falloff that has at least this strength. `compared`: what photos show at
+/// different places.
+finding finding_from(const scene& scene, const lens_falloff& found, double least_strength,
+                     const char* compared) {
+    const bool is_clear = found.is_clear() && found.strength.value >= least_strength;
     std::array<double, 3> losses{};
-    for (std::size_t c = 0; c < 3; ++c) losses[c] = found.is_clear() ? loss_of(found.channels[c]) : 0;
+    for (std::size_t c = 0; c < 3; ++c) losses[c] = is_clear ? loss_of(found.channels[c]) : 0;
     return {
-        found.is_clear(),
+        is_clear,
         text("the same %s are %.1f %% %s in corners than in the center (standard error %.1f %%)%s", compared,
              100 * std::abs(loss_of(found.strength.value)), found.strength.value < 0 ? "brighter" : "darker",
              100 * found.strength.error,
              found.is_strong() && !found.is_clear() ? ", but not on all sides, or only from some directions"
                                                     : ""),
-        found.is_clear() ? "on" : "off", values_for(scene, losses)};
+        is_clear ? "on" : "off", values_for(scene, losses)};
 }
 
 }  // namespace
@@ -109,14 +114,14 @@ finding vignetting_feature::analyze(const scene_statistics& statistics) const {
     const lens_falloff& found = statistics.falloff();
     if (found.points < enough_points)
         return {{}, too_few_points(found.points, "in smooth areas"), "off", neutral_values(scene)};
-    return finding_from(scene, found, "points");
+    return finding_from(scene, found, lens_falloff::least_strength, "points");
 }
 
 finding vignetting_feature::review(const half_way_statistics& statistics) const {
     const lens_falloff& found = statistics.falloff();
     if (found.points < enough_parts)
         return {{}, too_few_parts(found.points, "smooth parts"), "off", neutral_values(statistics.scene())};
-    return finding_from(statistics.scene(), found, "parts of the model");
+    return finding_from(statistics.scene(), found, least_strength_half_way, "parts of the model");
 }
 
 explanation vignetting_feature::explain(const scene_statistics& statistics, const finding&) const {
