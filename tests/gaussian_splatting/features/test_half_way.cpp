@@ -3,15 +3,20 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "../training/check_equal.hpp"
 #include "../training/engines.hpp"
 #include "device/cpu/cpu.hpp"  // before kernels, which call functions of its SIMD values
+#include "features/half_way/half_way_statistics.hpp"
 #include "features/resolve.hpp"
 #include "features/vignetting/vignetting_feature.hpp"
+#include "scene/image_radius.hpp"
 #include "training/initialize.hpp"
 #include "training/training.hpp"
 
@@ -74,6 +79,27 @@ double brightness_in_corners(const std::vector<float>& values, const gs::scene& 
     return 1 / sum;
 }
 
+/// Cells that photos show at random places, darker toward corners by exp(-strength) and with this noise.
+half_way_statistics cells_with_falloff(const gs::scene& scene, double strength, double noise) {
+    std::mt19937 random(1);
+    const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
+    gs::observed_points cells(100);
+    for (auto& seen : cells)
+        for (std::uint32_t v = 0; v < scene.train.size(); ++v) {
+            const gs::camera& c = scene.train[v].camera;
+            gs::observation o;
+            o.view = v;
+            o.place = {uniform() * c.width, uniform() * c.height};
+            o.direction = c.ray(o.place.x, o.place.y);
+            o.footprint = 1;
+            const double u = gs::square_radius(c, o.place.x, o.place.y);
+            o.color =
+                glm::vec3(glm::dvec3(0.5 * std::exp(-strength * u) * (1 + noise * (2 * uniform() - 1))));
+            seen.push_back(o);
+        }
+    return {scene, {cells, {}, {}}};
+}
+
 selected_feature selected_in(const gs::scene& scene, const char* selection, const std::string& name) {
     const feature_set features = resolve(scene, parse_selection(selection));
     return *std::ranges::find(features.all(), name, &selected_feature::name);
@@ -122,6 +148,19 @@ TEST_CASE("half way: training begins a falloff that photos from different distan
         CHECK(none.result.feature_reports.at("vignetting")["on"] == false);
         REQUIRE_FALSE(none.lines.empty());
         CHECK(none.lines[0].starts_with("vignetting still off after iteration 30: "));
+    }
+}
+
+TEST_CASE("half way: a weak falloff must be certain, because errors of the model look like one") {
+    const gs::scene scene = small_scene("synthetic:spheres", 24);
+    const auto reviewed = [&](double strength, double noise) {
+        return vignetting_feature().review(cells_with_falloff(scene, strength, noise));
+    };
+    for (const auto& [strength, noise, is_clear] :
+         {std::tuple{0.3, 0.1, true}, {0.1, 0.02, true}, {0.1, 0.3, false}, {0.0, 0.02, false}}) {
+        const finding found = reviewed(strength, noise);
+        CAPTURE(found.evidence);
+        CHECK(found.recommended == is_clear);
     }
 }
 

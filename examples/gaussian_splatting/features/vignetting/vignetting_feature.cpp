@@ -17,8 +17,9 @@
 namespace gs::features {
 namespace {
 
-/// The smallest strength of a falloff that a half-trained model shows: its own errors look like weaker ones.
-constexpr double least_strength_half_way = 0.13;
+/// Errors of a half-trained model look like weak falloffs. It shows a falloff if this is strong, or large
+/// compared with its standard error.
+constexpr double strong_half_way = 0.13, errors_half_way = 15;
 constexpr const char* has_alpha = "photos have transparent parts, whose background has no falloff";
 constexpr const char* has_panoramas = "all photos are panoramas, which are put together from several photos";
 
@@ -88,11 +89,9 @@ pages::marked_photo widest_photo(const scene& scene, const observed_points& poin
         text("Rings: %zu points, which other photos show nearer to their centers.", count), std::move(*most));
 }
 
-/// Returns the finding from a falloff that has at least this strength. `compared`: what photos show at
-/// different places.
-finding finding_from(const scene& scene, const lens_falloff& found, double least_strength,
-                     const char* compared) {
-    const bool is_clear = found.is_clear() && found.strength.value >= least_strength;
+/// Returns the finding from a falloff, which calls for the effect if `is_clear`. `compared`: what photos show
+/// at different places.
+finding finding_from(const scene& scene, const lens_falloff& found, bool is_clear, const char* compared) {
     std::array<double, 3> losses{};
     for (std::size_t c = 0; c < 3; ++c) losses[c] = is_clear ? loss_of(found.channels[c]) : 0;
     return {
@@ -114,14 +113,17 @@ finding vignetting_feature::analyze(const scene_statistics& statistics) const {
     const lens_falloff& found = statistics.falloff();
     if (found.points < enough_points)
         return {{}, too_few_points(found.points, "in smooth areas"), "off", neutral_values(scene)};
-    return finding_from(scene, found, lens_falloff::least_strength, "points");
+    return finding_from(scene, found, found.is_clear(), "points");
 }
 
 finding vignetting_feature::review(const half_way_statistics& statistics) const {
     const lens_falloff& found = statistics.falloff();
     if (found.points < enough_parts)
         return {{}, too_few_parts(found.points, "smooth parts"), "off", neutral_values(statistics.scene())};
-    return finding_from(statistics.scene(), found, least_strength_half_way, "parts of the model");
+    const auto& [strength, error] = found.strength;
+    const bool is_clear =
+        found.is_clear() && (strength >= strong_half_way || strength >= errors_half_way * error);
+    return finding_from(statistics.scene(), found, is_clear, "parts of the model");
 }
 
 explanation vignetting_feature::explain(const scene_statistics& statistics, const finding&) const {
