@@ -141,12 +141,16 @@ struct cuda_warp {
     __device__ __forceinline__ void atomic_add_packed(Op op, float* to, const float* v, bool active) const {
         using memory = detail::cuda_memory::scope_atomics<operation::scope_of<Op>>;
         if (!active) return;
-        if constexpr (K == 4) {
-            memory::add_4(__cvta_generic_to_global(to), v);
-        } else if constexpr (K == 2) {
-            memory::add_2(__cvta_generic_to_global(to), v);
-        } else {
+        if constexpr (K == 1) {
             detail::cuda_memory::atomic<operation::scope_of<Op>>(op, to, v[0]);
+        } else {
+            // Older devices never get here, but without optimization this is compiled for them, too.
+#if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ >= 900
+            if constexpr (K == 4)
+                memory::add_4(__cvta_generic_to_global(to), v);
+            else
+                memory::add_2(__cvta_generic_to_global(to), v);
+#endif
         }
     }
 
