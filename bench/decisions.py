@@ -11,8 +11,8 @@
     bench/decisions.py run --train --judge direction --program ... --output train.json -- -i 1500
 
 With --train, the decisions are those with which a training ends, which may have revised them. Options after -- go to `train`.
---judge trains with mixtures twice more, with and without an effect, and compares the PSNR of held-out photos: an effect can
-help although the scene was made without it.
+--judge trains each mixture with held-out photos, by the decision, with an effect, and without it, and compares the PSNR: an
+effect can help although the scene was made without it.
 Pure scenes have one effect or noise; mixtures have each effect or not, by the seed, and each mixture comes with each noise.
 """
 import argparse
@@ -208,6 +208,8 @@ def tables(result):
                          str(only_said), str(only_true)])
     head = ["effect", "noise", "precision", "recall", "true positives", "false positives", "false negatives"]
     options = result.get("train")
+    if result.get("judged"):
+        options = [*options, "--eval"]
     by_whom = "`inspect`" if options is None else f"`train {' '.join(options)}`"
     text = [f"{len(mixed)} scenes, random mixtures of effects by seed {result['seed']}, each with each noise; decisions of "
             f"{by_whom}; undecided counts as not called for:\n", markdown(head, rows)]
