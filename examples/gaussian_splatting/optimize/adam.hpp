@@ -29,10 +29,10 @@ using warpagg::math::select;
 /// gradient would prevent all later updates of the value.) Missed steps are also forgotten for SH
 /// coefficients that this step does not update. With compact moments, one such channel of an SH
 /// coefficient keeps all three channels as they are.
-template <class Real>
+template <class Real, moment_precision Precision = moment_precision::full>
 struct adam {
     parameter_arrays<Real> values;
-    moment_arrays moments;
+    moment_arrays moments;           ///< with this precision
     std::uint32_t* last_step;        ///< last step that updated each Gaussian
     std::uint32_t step;              ///< number t of this step, counted from 1
     Real rates[parameter_count];     ///< alpha / (1 - beta1^t)
@@ -64,7 +64,7 @@ struct adam {
         WARPAGG_HD void operator()(parameter p, std::size_t k, std::size_t width,
                                    const glm::vec<N, real>& value, const glm::vec<N, real>& gradient) const {
             change<N> by(*this, p, value, gradient);
-            if (!of.moments.are_compact())
+            if constexpr (Precision == moment_precision::full)
                 step_with_floats(by, p, k, width);
             else if (p < parameter::sh0)
                 step_with_pairs(by, p, k, width);

@@ -158,20 +158,14 @@ struct trained_parameters {
         return fits;
     }
     moment_arrays moments() { return {first.write(), second.write(), packed.write()}; }
-    /// Returns Adam's step number t, counted from 1, with learning rates by `parameter`.
-    adam<float> descent(std::uint32_t t, const std::array<float, parameter_count>& rates,
-                        const raster::list_capacity& capacity, const finite_check& check) {
-        const double by_first = 1 / (1 - std::pow(adam<float>::beta1, t));
-        const double by_second = 1 / std::sqrt(1 - std::pow(adam<float>::beta2, t));
-        adam<float> step{values.write(), moments(), last_step.data(), t, {}, static_cast<float>(by_second),
-                         capacity,       check};
-        // A shared second moment exceeds that of most coefficients, so that their steps are shorter.
-        constexpr double of_shared = 1.5;
-        for (std::size_t p = 0; p < parameter_count; ++p)
-            step.rates[p] = static_cast<float>(
-                rates[p] * by_first *
-                (precision == moment_precision::compact && is_view_dependent(p) ? of_shared : 1));
-        return step;
+    /// Calls `use` with Adam's step number t, counted from 1, with learning rates by `parameter`.
+    template <class F>
+    void descend(std::uint32_t t, const std::array<float, parameter_count>& rates,
+                 const raster::list_capacity& capacity, const finite_check& check, const F& use) {
+        if (precision == moment_precision::compact)
+            use(descent<moment_precision::compact>(t, rates, capacity, check));
+        else
+            use(descent<moment_precision::full>(t, rates, capacity, check));
     }
     /// Saves or loads all parameters. Loading takes over the precision. All ranks must call this. Waits for
     /// the device.
@@ -197,6 +191,20 @@ struct trained_parameters {
     }
 
   private:
+    template <moment_precision Precision>
+    adam<float, Precision> descent(std::uint32_t t, const std::array<float, parameter_count>& rates,
+                                   const raster::list_capacity& capacity, const finite_check& check) {
+        using step_type = adam<float, Precision>;
+        const double by_first = 1 / (1 - std::pow(step_type::beta1, t));
+        const double by_second = 1 / std::sqrt(1 - std::pow(step_type::beta2, t));
+        step_type step{values.write(), moments(), last_step.data(), t, {}, static_cast<float>(by_second),
+                       capacity,       check};
+        // A shared second moment exceeds that of most coefficients, so that their steps are shorter.
+        constexpr double of_shared = Precision == moment_precision::compact ? 1.5 : 1;
+        for (std::size_t p = 0; p < parameter_count; ++p)
+            step.rates[p] = static_cast<float>(rates[p] * by_first * (is_view_dependent(p) ? of_shared : 1));
+        return step;
+    }
     void gather_values(Device& device, bool divided) {
         std::vector<ranks::shared_array> arrays;
         values.share(divided, arrays);

@@ -47,11 +47,11 @@ struct add_gradients {
 };
 
 /// Takes a step of Adam with the sums of `add_gradients`, and sets them to zero. One Gaussian per lane.
-template <class W>
+template <class W, class Adam>
 struct step_with_sums {
     using number = value_t<W, std::uint32_t>;
 
-    adam<float> step;
+    Adam step;
     add_gradients from;
     std::size_t count;
     int learned_sh_degree;  ///< largest SH degree with gradients
@@ -118,11 +118,12 @@ class view_gradients {
         return {sums_.write(), took_part_.data() - own.first, capacity};
     }
     /// Takes a step of Adam with the sums of this sink.
-    void step(const adam<float>& descent, const add_gradients& sums, int learned_sh_degree) {
+    template <class Adam>
+    void step(const Adam& descent, const add_gradients& sums, int learned_sh_degree) {
         if (own_.count() == 0) return;
         device_.template for_each_warp<narrow>(
             ranks::share{own_.first / narrow::size, (own_.last + narrow::size - 1) / narrow::size},
-            step_with_sums<narrow>{descent, sums, count_, learned_sh_degree});
+            step_with_sums<narrow, Adam>{descent, sums, count_, learned_sh_degree});
     }
     /// The size of the memory for a Gaussian.
     static constexpr std::size_t bytes_per_gaussian(int sh_degree) {

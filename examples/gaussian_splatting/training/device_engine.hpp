@@ -408,18 +408,18 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
             if (steps.size() > 1) features_.seen_by(s.plan.view, views_.train(level_)[s.plan.view].camera);
             features_.learn_pose(s, sums);
         }
-        const adam<float> descent =
-            trained_.descent(++steps_, plan.rates, renderer_.capacity(), monitor_.check_of(plan.iteration));
-        descend(steps, sums, descent, strategy_->wants(plan.iteration) ? seen_.data() : nullptr);
+        trained_.descend(++steps_, plan.rates, renderer_.capacity(), monitor_.check_of(plan.iteration),
+                         [&](const auto& step) { descend(steps, sums, step); });
         strategy_->after_step(plan.iteration, {in_training(), plan.rates, renderer_.capacity()});
         monitor_.close(renderer_, loss_->sums(), lists_.length(plan.view), plan.iteration);
         if (steps.size() > 1)
             for (const step_type& s : steps) lists_.note_mean(renderer_, s.plan.view);
     }
     /// Changes the Gaussians by the sum of the gradients of all views.
-    void descend(const std::vector<step_type>& steps, const float* sums, const adam<float>& descent,
-                 raster::visibility* seen) {
+    template <class Adam>
+    void descend(const std::vector<step_type>& steps, const float* sums, const Adam& descent) {
         const step_plan& plan = steps[0].plan;
+        raster::visibility* seen = strategy_->wants(plan.iteration) ? seen_.data() : nullptr;
         const int learned_sh_degree = plan.updates_sh ? plan.sh_degree : 0;
         if (steps.size() == 1) return renderer_.backward_from_splats(sums, learned_sh_degree, descent, seen);
         const add_gradients all = gradients_.begin(trained_, count_, sh_degree_, renderer_.capacity());
