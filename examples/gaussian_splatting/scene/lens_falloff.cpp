@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/vec3.hpp>
 
+#include "../core/parallel.hpp"
 #include "image_radius.hpp"
 
 namespace gs {
@@ -106,12 +108,19 @@ lens_falloff estimate_falloff(const scene& of, observed_points points) {
     const auto fitted = [&](std::size_t channel) {
         return fit<1>(samples.groups, samples.y[channel], alone);
     };
-    const regression<1> all = fitted(3);
-    found.strength = all.strengths[0];
-    found.profile = profile_of(samples, all);
-    for (std::size_t c = 0; c < 3; ++c) found.channels[c] = fitted(c).strengths[0].value;
-    found.sides = fit<1>(samples.groups, samples.y[3], samples.by_side).strengths;
-    found.for_direction = fit<4>(samples.groups, samples.y[3], alone).strengths[0];
+    const auto fit_all = [&] {
+        const regression<1> all = fitted(3);
+        found.strength = all.strengths[0];
+        found.profile = profile_of(samples, all);
+    };
+    const std::array<std::function<void()>, 6> fits{
+        [&] { found.for_direction = fit<4>(samples.groups, samples.y[3], alone).strengths[0]; },
+        [&] { found.sides = fit<1>(samples.groups, samples.y[3], samples.by_side).strengths; },
+        fit_all,
+        [&] { found.channels[0] = fitted(0).strengths[0].value; },
+        [&] { found.channels[1] = fitted(1).strengths[0].value; },
+        [&] { found.channels[2] = fitted(2).strengths[0].value; }};
+    for_each_in_parallel(fits.size(), [&](std::size_t i) { fits[i](); });
     return found;
 }
 

@@ -41,9 +41,9 @@ class photo_equations {
     }
 
     /// Solves the equations by conjugate gradients with a Jacobi preconditioner, starting from x.
-    /// Stops if the residual is 1e-12 relative to the right-hand side, or after ten steps per
+    /// Stops if the residual relative to the right-hand side is at most `tolerance`, or after ten steps per
     /// photo.
-    std::vector<double> solve(std::vector<double> x) const {
+    std::vector<double> solve(std::vector<double> x, double tolerance) const {
         const std::size_t n = x.size();
         const auto dot = [&](const std::vector<double>& a, const std::vector<double>& b) {
             return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
@@ -51,7 +51,7 @@ class photo_equations {
         std::vector<double> left = right_, along(n, 0.0), scaled(n);
         const std::vector<double> first = times(x);
         for (std::size_t v = 0; v < n; ++v) left[v] -= first[v];
-        const double enough = 1e-24 * dot(right_, right_);
+        const double enough = tolerance * tolerance * dot(right_, right_);
         double before = 0;
         for (std::size_t step = 0; step < 10 * n && dot(left, left) > enough; ++step) {
             for (std::size_t v = 0; v < n; ++v) scaled[v] = left[v] / diagonal_[v];
@@ -105,6 +105,7 @@ double brightness(const observation& o) { return (o.color.r + o.color.g + o.colo
 photo_brightness estimate_brightness(const observed_points& points, std::size_t photos) {
     constexpr int rounds = 10;
     constexpr double huber = 2;  // standard deviations; larger residuals have a smaller weight
+    constexpr double tolerance = 1e-6, last_tolerance = 1e-12;  // earlier rounds only change weights
     std::vector<double> found_log2(photos, 0.0), information(photos, 0.0), off;
     double deviation = 0;
     for (int round = 0; round < rounds; ++round) {
@@ -126,7 +127,7 @@ photo_brightness estimate_brightness(const observed_points& points, std::size_t 
             equations.add(seen, logs, weights);
         }
         deviation = 1.4826 * median(off);
-        found_log2 = equations.solve(std::move(found_log2));
+        found_log2 = equations.solve(std::move(found_log2), round + 1 < rounds ? tolerance : last_tolerance);
         information = equations.information();
     }
     std::vector<std::size_t> seen_by(photos);

@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
-#include <map>
 #include <span>
+#include <utility>
 
 #include "../../core/median.hpp"
 #include "../../core/parallel.hpp"
@@ -178,6 +178,9 @@ std::vector<sample> all_samples(train::engine& engine, const scene& of, const sh
 
 using cell_index = std::array<int, 3>;
 
+/// A sample and its cell. Their order is that of cells, and then of samples.
+using sample_in_cell = std::pair<cell_index, const sample*>;
+
 cell_index cell_at(const glm::vec3& position, double side) {
     cell_index found;
     for (int k = 0; k < 3; ++k)
@@ -187,21 +190,23 @@ cell_index cell_at(const glm::vec3& position, double side) {
 }
 
 /// Returns the observations of a cell, one for each photo that shows it.
-std::vector<observation> observations_of(std::span<const sample* const> samples) {
+std::vector<observation> observations_of(std::span<const sample_in_cell> samples) {
+    const auto sample_at = [&](std::size_t i) -> const sample& { return *samples[i].second; };
     glm::vec3 typical(0);
-    for (const sample* s : samples) typical += s->log_render / static_cast<float>(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        typical += sample_at(i).log_render / static_cast<float>(samples.size());
     std::vector<observation> seen;
     for (std::size_t first = 0, end = 0; first < samples.size(); first = end) {
-        while (end < samples.size() && samples[end]->view == samples[first]->view) ++end;
+        while (end < samples.size() && sample_at(end).view == sample_at(first).view) ++end;
         const float weight = 1.0f / static_cast<float>(end - first);
         observation o;
-        o.view = samples[first]->view;
+        o.view = sample_at(first).view;
         o.footprint = 1;
         glm::vec3 log = typical;
         for (std::size_t i = first; i < end; ++i) {
-            log += weight * samples[i]->log_ratio;
-            o.place += static_cast<double>(weight) * glm::dvec2(samples[i]->place);
-            o.direction += weight * samples[i]->direction;
+            log += weight * sample_at(i).log_ratio;
+            o.place += static_cast<double>(weight) * glm::dvec2(sample_at(i).place);
+            o.direction += weight * sample_at(i).direction;
         }
         for (int k = 0; k < 3; ++k) o.color[k] = std::exp(log[k]);
         seen.push_back(o);
@@ -211,12 +216,13 @@ std::vector<observation> observations_of(std::span<const sample* const> samples)
 
 /// Returns observations of the cells that enough photos show, or of a part of these cells if there would be
 /// more than `most` observations.
-observed_points observe_cells(const std::map<cell_index, std::vector<const sample*>>& cells,
-                              std::size_t most) {
+observed_points observe_cells(std::vector<sample_in_cell> samples, std::size_t most) {
+    sort_in_parallel(samples);
     observed_points all, some;
     std::size_t count = 0;
-    for (const auto& [index, samples] : cells) {
-        auto seen = observations_of(samples);
+    for (std::size_t first = 0, end = 0; first < samples.size(); first = end) {
+        while (end < samples.size() && samples[end].first == samples[first].first) ++end;
+        auto seen = observations_of(std::span(samples).subspan(first, end - first));
         if (seen.size() < scene_statistics::least_photos_of_point) continue;
         count += seen.size();
         all.push_back(std::move(seen));
@@ -243,18 +249,19 @@ compared_surfaces compare_with_photos(train::engine& engine, const scene& scene,
     const double limit = roughness.empty() ? largest_roughness
                                            : std::min(largest_roughness, quantile(roughness, smooth_share));
     const double footprint = sizes.empty() ? 1 : median(sizes);
-    std::map<cell_index, std::vector<const sample*>> smooth, all, sky;
+    std::vector<sample_in_cell> smooth, all, sky;
     for (const sample& s : samples) {
         const bool is_smooth = static_cast<double>(s.roughness) <= limit;
         if (s.footprint == 0) {
-            if (is_smooth) sky[cell_at(s.direction, sky_cell)].push_back(&s);
+            if (is_smooth) sky.emplace_back(cell_at(s.direction, sky_cell), &s);
             continue;
         }
-        all[cell_at(s.position, footprints_of_all * footprint)].push_back(&s);
-        if (is_smooth) smooth[cell_at(s.position, footprints * footprint)].push_back(&s);
+        all.emplace_back(cell_at(s.position, footprints_of_all * footprint), &s);
+        if (is_smooth) smooth.emplace_back(cell_at(s.position, footprints * footprint), &s);
     }
-    return {observe_cells(smooth, most_observations), observe_cells(all, most_observations_of_all),
-            observe_cells(sky, most_observations)};
+    return {observe_cells(std::move(smooth), most_observations),
+            observe_cells(std::move(all), most_observations_of_all),
+            observe_cells(std::move(sky), most_observations)};
 }
 
 }  // namespace gs::features
