@@ -7,8 +7,8 @@ namespace gs::train {
 /// How `engine::render` draws the model.
 struct render_options {
     int sh_degree = 3;  ///< draws SH coefficients up to this degree
-    /// Draws inverse depths instead of colors: the first plane is the sum of w_i / z_i with the
-    /// weights of the colors, in internal units, on a background of zero. The other planes are zero.
+    /// Draws inverse depths instead of colors, as one plane: the sum of w_i / z_i with the weights of the
+    /// colors, in internal units, on a background of zero.
     bool inverse_depth = false;
     /// Uses memory that training does not use, so that the render cannot change later steps, such as
     /// the number of steps whose tile lists do not fit. Costs the memory of a second renderer.

@@ -86,10 +86,7 @@ picture frame_artist::draw(const view_request& request) {
     std::vector<float> render =
         engine_.render(camera, background_, {.inverse_depth = shows_depth, .separate_memory = true});
     if (request.overlay == overlay::none) return {camera.width, camera.height, interleaved(render)};
-    if (shows_depth) {
-        render.resize(render.size() / 3);
-        return in_heat(camera.width, camera.height, render, nearly_largest(render));
-    }
+    if (shows_depth) return in_heat(camera.width, camera.height, render, nearly_largest(render));
     constexpr float brightest_error = 0.25f;
     return in_heat(camera.width, camera.height, error_of(*request.view, camera, std::move(render)),
                    brightest_error);

@@ -177,17 +177,18 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
 
     std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
                               const render_options& options) override {
+        const std::size_t planes = options.inverse_depth ? 1 : 3;
         renderer_.set_strip({});
         if (!options.separate_memory) {
             draw(renderer_, camera, background, options);
-            return downloaded(renderer_.render(), camera);
+            return downloaded(renderer_.render(), camera, planes);
         }
         const std::size_t before = device_.used_bytes();
         if (!apart_) apart_.emplace(device_);
         apart_->set_effects(effects_);
         draw(*apart_, camera, background, options);
         bytes_apart_ += device_.used_bytes() - before;
-        return downloaded(apart_->render(), camera);
+        return downloaded(apart_->render(), camera, planes);
     }
 
     image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
@@ -200,7 +201,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         device_.for_each_index(shown_.size(), clamp_render{exposed, shown_.data()});
         comparison_.set_target(views_.load_in_order(views_.held_out(), test_view).target(background));
         comparison_.compare(shown_.data());
-        if (render != nullptr) *render = downloaded(exposed, shot.camera);
+        if (render != nullptr) *render = downloaded(exposed, shot.camera, 3);
         return comparison_.take();
     }
 
@@ -455,8 +456,8 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         pairs_.leave_out_since(before);
     }
 
-    std::vector<float> downloaded(const float* from, const camera& camera) {
-        std::vector<float> render(3 * static_cast<std::size_t>(camera.width) *
+    std::vector<float> downloaded(const float* from, const camera& camera, std::size_t planes) {
+        std::vector<float> render(planes * static_cast<std::size_t>(camera.width) *
                                   static_cast<std::size_t>(camera.height));
         device_.download(render.data(), from, render.size());
         return render;
