@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "../core/median.hpp"
+#include "../core/parallel.hpp"
 
 namespace gs {
 namespace {
@@ -98,7 +100,29 @@ class photo_equations {
     std::vector<double> right_, information_, diagonal_;
 };
 
-double brightness(const observation& o) { return (o.color.r + o.color.g + o.color.b) / 3.0; }
+/// The observations of a point in a round.
+struct weighted_point {
+    std::vector<double> logs;            ///< log2 of brightness
+    std::vector<double> apart, weights;  ///< distances from the point's median, and weights by them
+
+    explicit weighted_point(const std::vector<observation>& seen)
+        : apart(seen.size()), weights(seen.size(), 1.0) {
+        for (const observation& o : seen)
+            logs.push_back(std::log2((o.color.r + o.color.g + o.color.b) / 3.0));
+    }
+    /// Sets the weights for the brightness of photos that an earlier round has found. Residuals beyond `most`
+    /// have a smaller weight.
+    void weigh(const std::vector<observation>& seen, const std::vector<double>& photos, double most) {
+        std::vector<double> own, sorted;
+        for (std::size_t i = 0; i < seen.size(); ++i) own.push_back(logs[i] - photos[seen[i].view]);
+        sorted = own;
+        const double of_point = median(sorted);
+        for (std::size_t i = 0; i < seen.size(); ++i) {
+            apart[i] = std::abs(own[i] - of_point);
+            weights[i] = apart[i] > most ? most / apart[i] : 1;
+        }
+    }
+};
 
 }  // namespace
 
@@ -106,25 +130,20 @@ photo_brightness estimate_brightness(const observed_points& points, std::size_t 
     constexpr int rounds = 10;
     constexpr double huber = 2;  // standard deviations; larger residuals have a smaller weight
     constexpr double tolerance = 1e-6, last_tolerance = 1e-12;  // earlier rounds only change weights
+    constexpr double all = std::numeric_limits<double>::infinity();
+    std::vector<weighted_point> weighted;
+    for (const auto& seen : points) weighted.emplace_back(seen);
     std::vector<double> found_log2(photos, 0.0), information(photos, 0.0), off;
     double deviation = 0;
     for (int round = 0; round < rounds; ++round) {
+        const double most = deviation > 0 ? huber * deviation : all;
+        for_each_in_parallel(points.size(),
+                             [&](std::size_t p) { weighted[p].weigh(points[p], found_log2, most); });
         photo_equations equations(photos);
         off.clear();
-        for (const auto& seen : points) {
-            std::vector<double> logs, own, weights(seen.size(), 1.0);
-            for (const observation& o : seen) {
-                logs.push_back(std::log2(brightness(o)));
-                own.push_back(logs.back() - found_log2[o.view]);
-            }
-            const std::vector<double> all = own;
-            const double of_point = median(own);
-            for (std::size_t i = 0; i < seen.size(); ++i) {
-                const double apart = std::abs(all[i] - of_point);
-                off.push_back(apart);
-                if (deviation > 0 && apart > huber * deviation) weights[i] = huber * deviation / apart;
-            }
-            equations.add(seen, logs, weights);
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            off.insert(off.end(), weighted[p].apart.begin(), weighted[p].apart.end());
+            equations.add(points[p], weighted[p].logs, weighted[p].weights);
         }
         deviation = 1.4826 * median(off);
         found_log2 = equations.solve(std::move(found_log2), round + 1 < rounds ? tolerance : last_tolerance);
