@@ -12,6 +12,7 @@ What is after -- is for every run. Synthetic scenes are of known truth (see `ins
 are also compared with the world itself, from the distance of most scenes, half and four times that; of the photos of folders nobody knows what they call for.
 """
 import argparse
+import concurrent.futures
 import json
 import pathlib
 import statistics
@@ -50,9 +51,10 @@ def selections(effect):
 
 
 def evaluated(program, ply, world, distance, device, background, folder):
+    folder = pathlib.Path(folder) / str(distance)
     subprocess.run([program, "evaluate", ply, "-d", f"synthetic:{world},distance={distance}", "-r", SIDE, "-q", "-o", folder,
                     "--device", device, *background], check=True)
-    return json.loads((pathlib.Path(folder) / "metrics.json").read_text())["psnr"]
+    return json.loads((folder / "metrics.json").read_text())["psnr"]
 
 
 def train(arguments, scene, effects, seed):
@@ -74,7 +76,9 @@ def train(arguments, scene, effects, seed):
             world = ",".join(word for word in scene.split(",") if word.split("=")[0] not in TAKEN)
             has_sky = any(effect["on"] for effect in metrics["effects"] if effect["name"] == "sky")
             behind = [] if has_sky else ["--background", "black"]
-            one["from_distance"] = {str(d): evaluated(arguments.program, ply, world, d, device, behind, folder) for d in DISTANCES}
+            at = lambda d: (str(d), evaluated(arguments.program, ply, world, d, device, behind, folder))
+            with concurrent.futures.ThreadPoolExecutor() as pool:
+                one["from_distance"] = dict(pool.map(at, DISTANCES))
     print(scene, effects, seed, f"{one['psnr']:.2f} dB, fitted {one['fitted_psnr']:.2f}",
           f"{one['iterations_per_second']:.0f} it/s", flush=True)
     return one
