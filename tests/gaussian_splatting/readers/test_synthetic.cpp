@@ -247,6 +247,19 @@ TEST_CASE("synthetic scenes: the same bits for any number of threads, other poin
     CHECK(same_points(one, make("spheres", 8)));
 }
 
+TEST_CASE("synthetic scenes: with fewer views, photos are the same ones of the whole scene") {
+    const std::string world = "spheres,exposure=0.4,noise=0.02,passers=0.2";
+    const gs::scene all = make(world, 24), few = make(world + ",views=5", 24);
+    CHECK(few.train.size() == 5);
+    CHECK(same_views(few.test, all.test));
+    for (const gs::view& v : few.train) {
+        CAPTURE(v.name);
+        const auto same = std::ranges::find(all.train, v.name, &gs::view::name);
+        REQUIRE(same != all.train.end());
+        CHECK(same_views({v}, {*same}));
+    }
+}
+
 TEST_CASE("synthetic scenes: what was made is said") {
     std::string said;
     gs::load_options options;

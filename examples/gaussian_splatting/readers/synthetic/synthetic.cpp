@@ -12,6 +12,7 @@
 #include <glm/matrix.hpp>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <utility>
@@ -199,16 +200,19 @@ double sun_past(const ball& b, const vec& position, const vec& sun) {
     const vec to_center = b.center - position;
     const double along = glm::dot(to_center, sun);
     if (along <= 0) return 1;
-    const double miss = glm::length(to_center - along * sun);
-    return glm::smoothstep(b.radius - sun_softness * along, b.radius + sun_softness * along, miss);
+    const double softness = sun_softness * along, all = b.radius + softness;
+    const vec miss = to_center - along * sun;
+    if (glm::dot(miss, miss) > 1.001 * all * all) return 1;  // most often, and without a root
+    return glm::smoothstep(b.radius - softness, all, glm::length(miss));
 }
 
 /// Returns the visible share of the sky: one minus the ball's solid angle, weighted by the cosine.
 double sky_past(const ball& b, const surface_point& s) {
     const vec to_center = b.center - s.position;
+    const double above = glm::dot(s.normal, to_center);
+    if (above <= 0) return 1;
     const double distance = glm::length(to_center);
-    const double cosine = glm::dot(s.normal, to_center) / distance;
-    return 1 - std::max(cosine, 0.0) * b.radius * b.radius / (distance * distance);
+    return 1 - above / distance * b.radius * b.radius / (distance * distance);
 }
 
 /// Returns the brightness of the light, which fades inside the rim of the ground to hide the rim.
@@ -339,36 +343,43 @@ depth_map estimated_depths(const world& w, const camera& c, std::size_t photo) {
     return map;
 }
 
-void take_photos(const world& w, std::vector<view>& views, bool masks = true) {
+/// Takes some photos. The index of a photo determines its exposure, its noise and who passes by.
+void take_photos(const world& w, std::vector<view>& views, const std::vector<std::size_t>& which,
+                 bool masks = true) {
     struct place {
-        view* photo;
-        std::size_t number;
+        std::size_t photo;
         int row;
     };
     std::vector<place> rows;
-    for (view& v : views) {
-        const int width = v.camera.width, height = v.camera.height;
-        v.pixels = {width, height, {}, w.transparent, false};
-        v.pixels.rgba.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-        for (int row = 0; row < height; ++row)
-            rows.push_back({&v, static_cast<std::size_t>(&v - views.data()), row});
+    for (const std::size_t i : which) {
+        const int width = views[i].camera.width, height = views[i].camera.height;
+        views[i].pixels = {width, height, {}, w.transparent, false};
+        views[i].pixels.rgba.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+        for (int row = 0; row < height; ++row) rows.push_back({i, row});
     }
 #pragma omp parallel for schedule(dynamic, 8)
-    for (const auto& [v, number, row] : rows) {
-        const std::size_t bytes_per_row = 4 * static_cast<std::size_t>(v->camera.width);
-        render_row(w, v->camera, number, row,
-                   v->pixels.rgba.data() + bytes_per_row * static_cast<std::size_t>(row));
+    for (const auto& [photo, row] : rows) {
+        view& v = views[photo];
+        const std::size_t bytes_per_row = 4 * static_cast<std::size_t>(v.camera.width);
+        render_row(w, v.camera, photo, row,
+                   v.pixels.rgba.data() + bytes_per_row * static_cast<std::size_t>(row));
     }
     if (w.how.passers > 0)
-        for (std::size_t i = 0; i < views.size(); ++i) paint_passer(w.how, i, masks, views[i].pixels);
+        for (const std::size_t i : which) paint_passer(w.how, i, masks, views[i].pixels);
 }
 
-/// Returns `count` of the views, evenly spread.
-std::vector<view> spread(std::vector<view> all, std::size_t count) {
-    std::vector<view> some;
+/// Returns `count` of the values, evenly spread.
+std::vector<std::size_t> spread(const std::vector<std::size_t>& all, std::size_t count) {
+    std::vector<std::size_t> some;
     for (std::size_t i = 0; i < all.size(); ++i)
-        if ((i + 1) * count / all.size() > i * count / all.size()) some.push_back(std::move(all[i]));
+        if ((i + 1) * count / all.size() > i * count / all.size()) some.push_back(all[i]);
     return some;
+}
+
+std::vector<view> moved_out(std::vector<view>& views, const std::vector<std::size_t>& which) {
+    std::vector<view> moved;
+    for (const std::size_t i : which) moved.push_back(std::move(views[i]));
+    return moved;
 }
 
 /// Returns points at which rays through random pixels of random views hit a surface. As in points
@@ -422,24 +433,25 @@ scene_description describe(const load_options& options, const log_function& log)
         // The middle of each group, because the first and the last camera have fewer neighbors.
         return options.eval && i % views_per_test_view == views_per_test_view / 2;
     };
+    std::vector<std::size_t> training, held_out;
+    for (std::size_t i = 0; i < views.size(); ++i) (is_held_out(i) ? held_out : training).push_back(i);
+    training = spread(training, std::min(training.size(), static_cast<std::size_t>(w.how.views)));
+    std::vector<std::size_t> used = training;
+    used.insert(used.end(), held_out.begin(), held_out.end());
+
     shake_cameras(views, w.how);
-    for (std::size_t i = 0; i < views.size(); ++i)
-        if (is_held_out(i)) views[i].camera.motion.reset();
-    take_photos(w, views, options.masks);
+    for (const std::size_t i : held_out) views[i].camera.motion.reset();
+    take_photos(w, views, used, options.masks);
     for (view& v : views) v.camera.motion.reset();
     if (w.how.depths >= 0 && options.depths)
-        for_each_in_parallel(views.size(), [&](std::size_t i) {
+        for_each_in_parallel(used.size(), [&](std::size_t k) {
+            const std::size_t i = used[k];
             views[i].depths = estimated_depths(w, views[i].camera, i);
             clear_masked_depths(views[i].pixels, views[i].depths);
         });
 
     const camera first = views.front().camera;
-    std::vector<view> train, test;
-    for (std::size_t i = 0; i < views.size(); ++i) {
-        (is_held_out(i) ? test : train).push_back(std::move(views[i]));
-    }
-    const std::size_t most = std::min(train.size(), static_cast<std::size_t>(w.how.views));
-    train = spread(std::move(train), most);
+    std::vector<view> train = moved_out(views, training), test = moved_out(views, held_out);
 
     for (std::size_t i = 0; i < train.size(); ++i) paint_moving_thing(w.how, i, train[i].pixels);
 
@@ -469,7 +481,9 @@ std::vector<std::string> synthetic_scene_names() {
 }
 
 void photograph_synthetic(const std::string& name, std::vector<view>& views) {
-    take_photos(world_of(name), views);
+    std::vector<std::size_t> all(views.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    take_photos(world_of(name), views, all);
 }
 
 std::vector<colored_point> synthetic_points(const std::string& name, const std::vector<view>& views,
