@@ -52,7 +52,7 @@ def selections(effect):
 
 def evaluated(program, ply, world, distance, device, background, folder):
     folder = pathlib.Path(folder) / str(distance)
-    subprocess.run([program, "evaluate", ply, "-d", f"synthetic:{world},distance={distance}", "-r", SIDE, "-q", "-o", folder,
+    subprocess.run([program, "evaluate", ply, "-d", f"synthetic:{world},distance={distance},views=16", "-r", SIDE, "-q", "-o", folder,
                     "--device", device, *background], check=True)
     return json.loads((folder / "metrics.json").read_text())["psnr"]
 
