@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
@@ -143,13 +142,6 @@ std::vector<sample> samples_of(const blocks& of, std::size_t view, const camera&
     return made;
 }
 
-/// Renders of some training views, with the poses that training has learned.
-struct rendered_views {
-    std::vector<std::size_t> views;
-    std::vector<camera> cameras;
-    std::vector<std::vector<float>> colors, inverse_depths;
-};
-
 /// Returns the samples of all examined photos, in the order of these.
 std::vector<sample> all_samples(train::engine& engine, const scene& of, const show_function& show,
                                 const std::array<float, 3>& background) {
@@ -159,32 +151,26 @@ std::vector<sample> all_samples(train::engine& engine, const scene& of, const sh
         if (!of.train[v].camera.is_panorama) views.push_back(v);
     const std::size_t photos = std::min(views.size(), most_photos);
     const auto at_once = static_cast<std::size_t>(std::min(omp_get_max_threads(), most_at_once));
+    std::vector<std::vector<float>> renders(at_once), inverses(at_once);
     std::vector<std::vector<sample>> by_photo(photos);
-    const auto compare_all = [&](std::size_t first, rendered_views with) {
-        for_each_in_parallel(with.views.size(), [&](std::size_t i) {
-            const std::size_t v = with.views[i];
-            show(v, with.cameras[i].width, with.colors[i]);
-            const view_photo photo(of.train[v]);
-            by_photo[first + i] =
-                samples_of(blocks(with.cameras[i], photo.pixels(), with.colors[i], with.inverse_depths[i]), v,
-                           with.cameras[i], of.extent());
-        });
-    };
-    std::future<void> comparison;  // runs while the device draws the next views
+    std::vector<camera> cameras(at_once);  // with the poses that training has learned
+    const auto view_of = [&](std::size_t photo) { return views[photo * views.size() / photos]; };
     for (std::size_t first = 0; first < photos; first += at_once) {
-        rendered_views drawn;
-        for (std::size_t photo = first; photo < std::min(first + at_once, photos); ++photo) {
-            const std::size_t v = views[photo * views.size() / photos];
-            const camera seen = engine.cameras().training_camera(v, of.train[v].camera);
-            drawn.views.push_back(v);
-            drawn.cameras.push_back(seen);
-            drawn.colors.push_back(engine.render(seen, background));
-            drawn.inverse_depths.push_back(engine.render(seen, {}, {.inverse_depth = true}));
+        const std::size_t count = std::min(at_once, photos - first);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t v = view_of(first + i);
+            cameras[i] = engine.cameras().training_camera(v, of.train[v].camera);
+            renders[i] = engine.render(cameras[i], background);
+            inverses[i] = engine.render(cameras[i], {}, {.inverse_depth = true});
         }
-        if (comparison.valid()) comparison.get();
-        comparison = std::async(std::launch::async, compare_all, first, std::move(drawn));
+        for_each_in_parallel(count, [&](std::size_t i) {
+            const std::size_t v = view_of(first + i);
+            show(v, cameras[i].width, renders[i]);
+            const view_photo photo(of.train[v]);
+            by_photo[first + i] = samples_of(blocks(cameras[i], photo.pixels(), renders[i], inverses[i]), v,
+                                             cameras[i], of.extent());
+        });
     }
-    if (comparison.valid()) comparison.get();
     std::vector<sample> all;
     for (const auto& samples : by_photo) all.insert(all.end(), samples.begin(), samples.end());
     return all;
