@@ -39,6 +39,7 @@ LITTLE = ["spheres,noise=0.03", "alpha,noise=0.03"]
 MUCH = ["spheres,gloss=0.7,exposure=0.3,scales=4,sky=0.7", "alpha,gloss=0.7,exposure=0.3,scales=4"]
 SELECTIONS = ["none", "auto", "all"]
 DISTANCES = [1, 0.5, 4]
+PHOTOS = 16  # of the world, from each distance
 TAKEN = {"vignetting", "exposure", "response", "scales", "passers", "moving", "blur", "shutter", "depths", "points",
          "views", "noise"}  # parameters of the photos, not of the world
 SIDE = "256"
@@ -52,7 +53,7 @@ def selections(effect):
 
 def evaluated(program, ply, world, distance, device, background, folder):
     folder = pathlib.Path(folder) / str(distance)
-    subprocess.run([program, "evaluate", ply, "-d", f"synthetic:{world},distance={distance},views=16", "-r", SIDE, "-q", "-o", folder,
+    subprocess.run([program, "evaluate", ply, "-d", f"synthetic:{world},distance={distance},views={PHOTOS}", "-r", SIDE, "-q", "-o", folder,
                     "--device", device, *background], check=True)
     return json.loads((folder / "metrics.json").read_text())["psnr"]
 

@@ -200,10 +200,10 @@ double sun_past(const ball& b, const vec& position, const vec& sun) {
     const vec to_center = b.center - position;
     const double along = glm::dot(to_center, sun);
     if (along <= 0) return 1;
-    const double softness = sun_softness * along, all = b.radius + softness;
+    const double softness = sun_softness * along, outer = b.radius + softness;
     const vec miss = to_center - along * sun;
-    if (glm::dot(miss, miss) > 1.001 * all * all) return 1;  // most often, and without a root
-    return glm::smoothstep(b.radius - softness, all, glm::length(miss));
+    if (glm::dot(miss, miss) > 1.001 * outer * outer) return 1;  // most often, and without a root
+    return glm::smoothstep(b.radius - softness, outer, glm::length(miss));
 }
 
 /// Returns the visible share of the sky: one minus the ball's solid angle, weighted by the cosine.
