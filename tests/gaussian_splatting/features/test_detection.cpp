@@ -285,6 +285,13 @@ TEST_CASE("exposures are found to 0.7 %, on average") {
     CHECK(std::sqrt(square / double(off.size())) < 0.01);
 }
 
+TEST_CASE("small differences of exposures count if cameras are at similar distances") {
+    CHECK(analyzed("exposure", made("spheres,exposure=0.08,noise=0.01")).recommended == true);
+    CHECK(analyzed("exposure", made("spheres,exposure=0.04,noise=0.01")).recommended == false);
+    CHECK(analyzed("exposure", made("spheres,exposure=0.08,scales=4,noise=0.01")).recommended == false);
+    CHECK(analyzed("exposure", made("spheres,exposure=0.12,scales=4,noise=0.01")).recommended == true);
+}
+
 TEST_CASE(
     "exposures are found at rough points if few points are smooth, and things in few photos do not count") {
     // Photos from very different distances show few points smoothly.

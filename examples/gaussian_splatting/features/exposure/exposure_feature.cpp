@@ -10,6 +10,7 @@
 #include "../../core/atomic_file_write.hpp"
 #include "../../core/median.hpp"
 #include "../../training/training.hpp"
+#include "../antialiasing/antialiasing_feature.hpp"
 #include "../moving/moving_evidence.hpp"
 #include "../text.hpp"
 #include "held_out_exposures.hpp"
@@ -17,8 +18,15 @@
 namespace gs::features {
 namespace {
 
-constexpr double least_spread = 0.1;  ///< standard deviation of log2 of the brightness
-constexpr double least_errors = 3;    ///< smallest spread, in standard errors
+/// Smallest standard deviations of log2 of the brightness. In photos from very different distances, points
+/// are mixed with different surroundings, and have different colors.
+constexpr double least_spread = 0.065, least_from_distances = 0.1;
+constexpr double least_errors = 3;  ///< smallest spread, in standard errors
+
+double least_spread_in(const scene_statistics& statistics) {
+    const bool differ = antialiasing_feature().analyze(statistics).recommended.value_or(true);
+    return differ ? least_from_distances : least_spread;
+}
 
 double root_mean_square(const std::vector<double>& values) {
     double sum = 0;
@@ -72,7 +80,7 @@ finding exposure_feature::analyze(const scene_statistics& statistics) const {
     const bool is_doubtful = moving.is_clear() || brightness.is_rough;
     const double spread = is_doubtful ? typical_spread(apart) : root_mean_square(apart);
     const double error = median(errors);
-    const bool varies = spread >= least_spread && spread >= least_errors * error;
+    const bool varies = spread >= least_spread_in(statistics) && spread >= least_errors * error;
     return {
         varies,
         text("the brightness of the same points differs by %.1f %% between photos (standard error %.1f %%)",
@@ -81,9 +89,10 @@ finding exposure_feature::analyze(const scene_statistics& statistics) const {
 }
 
 explanation exposure_feature::explain(const scene_statistics& statistics, const finding&) const {
+    const double least = least_spread_in(statistics);
     explanation made{.condition = text("the brightness differs by at least %.1f %%, and by at least %.0f "
                                        "standard errors",
-                                       percent(least_spread), least_errors)};
+                                       percent(least), least_errors)};
     const photo_brightness& brightness = statistics.brightness();
     std::vector<double> shown(brightness.log2.size(), std::nan(""));
     std::vector<std::size_t> order;
@@ -94,12 +103,11 @@ explanation exposure_feature::explain(const scene_statistics& statistics, const 
     }
     if (order.empty()) return made;
     const auto last = static_cast<double>(shown.size());
-    made.charts.push_back(
-        {"Brightness of photos relative to their mean (%)",
-         "photo",
-         {curve_of_photos("photo", shown),
-          level_line("typical difference that calls for exposure", last, percent(least_spread)),
-          level_line("the same below the mean", last, percent(-least_spread))}});
+    made.charts.push_back({"Brightness of photos relative to their mean (%)",
+                           "photo",
+                           {curve_of_photos("photo", shown),
+                            level_line("typical difference that calls for exposure", last, percent(least)),
+                            level_line("the same below the mean", last, percent(-least))}});
     std::ranges::sort(order, {}, [&](std::size_t v) { return shown[v]; });
     const auto add = [&](std::size_t v, const char* label) {
         made.photos.push_back(shown_photo(statistics.scene().train[v], label,
