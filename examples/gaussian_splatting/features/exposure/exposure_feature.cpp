@@ -20,7 +20,7 @@ namespace {
 
 /// Smallest standard deviations of log2 of the brightness. In photos from very different distances, points
 /// are mixed with different surroundings, and have different colors.
-constexpr double least_spread = 0.065, least_from_distances = 0.1;
+constexpr double least_spread = 0.055, least_from_distances = 0.1;
 constexpr double least_errors = 3;  ///< smallest spread, in standard errors
 
 double least_spread_in(const scene_statistics& statistics) {
