@@ -18,14 +18,14 @@
 namespace gs::features {
 namespace {
 
-/// Smallest standard deviations of log2 of the brightness. In photos from very different distances, points
-/// are mixed with different surroundings, and have different colors.
-constexpr double least_spread = 0.055, least_from_distances = 0.1;
+/// Smallest standard deviations of log2 of the brightness. In photos from very different distances, pixels
+/// mix a point with different surroundings, so that its color differs without exposures.
+constexpr double least_spread = 0.055, least_spread_of_distances = 0.1;
 constexpr double least_errors = 3;  ///< smallest spread, in standard errors
 
 double least_spread_in(const scene_statistics& statistics) {
-    const bool differ = antialiasing_feature().analyze(statistics).recommended.value_or(true);
-    return differ ? least_from_distances : least_spread;
+    const bool distances_differ = antialiasing_feature().analyze(statistics).recommended.value_or(true);
+    return distances_differ ? least_spread_of_distances : least_spread;
 }
 
 double root_mean_square(const std::vector<double>& values) {
