@@ -145,6 +145,11 @@ void train_in_ranks(const settings& s) {
 }
 
 void train_with_mpi(const settings& s) {
+    if (ranks::is_slurm_without_pmix()) {  // MPI would end the processes with a page of text
+        leave_error_to_first_process();
+        throw error(
+            "--mpi: srun has not started these processes with PMIx: add --mpi=pmix to srun's options");
+    }
     const int gpus = s.device == device_kind::cpu ? 0 : gpus_of_this_machine();
     ranks::run_with_mpi(
         [&](ranks::communicator& all) { return code_of_rank(all, [&] { train_as_mpi_rank(s, all, gpus); }); },

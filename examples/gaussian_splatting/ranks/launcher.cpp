@@ -35,6 +35,12 @@ launch launch_in_environment() {
     return {};
 }
 
+bool is_slurm_without_pmix() {
+    const bool has_pmix =
+        std::getenv("PMIX_RANK") != nullptr || std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
+    return number_in_environment("SLURM_STEP_NUM_TASKS") > 1 && !has_pmix;
+}
+
 bool is_started_by_launcher() {
     std::string parent;
     std::getline(std::ifstream("/proc/" + std::to_string(getppid()) + "/comm"), parent);

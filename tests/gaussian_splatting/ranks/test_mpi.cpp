@@ -197,6 +197,23 @@ TEST_CASE("mpi: processes that a script starts alone may train alone") {
     unsetenv("SLURM_PROCID");
 }
 
+TEST_CASE("mpi: srun must start processes with PMIx") {
+    const temporary_folder folder;
+    const words train = spheres + words{"-i", "5", "-o", (folder / "out").string(), "--mpi"};
+    setenv("SLURM_STEP_NUM_TASKS", "2", 1);
+    setenv("SLURM_PROCID", "0", 1);
+    const outcome first = run_with({}, train);
+    setenv("SLURM_PROCID", "1", 1);
+    const outcome second = run_with({}, train);
+    unsetenv("SLURM_PROCID");
+    unsetenv("SLURM_STEP_NUM_TASKS");
+    CHECK(first.code == 2);
+    CHECK(says(first.err, {"error: ", "srun", "add --mpi=pmix"}));
+    CHECK(std::ranges::count(first.err, '\n') == 1);
+    CHECK(second.code == 2);
+    CHECK(second.err == "");
+}
+
 TEST_CASE("mpi: contradictory options are refused") {
     const words train{"train", "-d", "synthetic:spheres", "--mpi"};
     check_refusal_without_trace(train + words{"--ranks", "2"}, {"--mpi", "leave out --ranks"});
