@@ -62,8 +62,8 @@ class engine {
     /// device.
     virtual feature_state& feature(std::string_view name) = 0;
 
-    /// Renders the model. Returns three planes, red, green and blue, of the camera's size. The values
-    /// are not clamped.
+    /// Renders the model. Returns three planes, red, green and blue, of the camera's size, unless the
+    /// options ask for a part. The values are not clamped.
     virtual std::vector<float> render(const camera& camera, const std::array<float, 3>& background,
                                       const render_options& options = {}) = 0;
     /// Compares the render of a held-out view with its target, both clamped to [0, 1]. If `render`

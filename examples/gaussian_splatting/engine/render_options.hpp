@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 namespace gs::train {
 
-/// How `engine::render` draws the model.
+/// How `engine::render` draws the model, and which part of the render it returns.
 struct render_options {
     int sh_degree = 3;  ///< draws SH coefficients up to this degree
     /// Draws inverse depths instead of colors, as one plane: the sum of w_i / z_i with the weights of the
@@ -13,6 +16,10 @@ struct render_options {
     /// Uses memory that training does not use, so that the render cannot change later steps, such as
     /// the number of steps whose tile lists do not fit. Costs the memory of a second renderer.
     bool separate_memory = false;
+    /// Returns the means of square blocks of this side, row by row, without the pixels that fill no block.
+    int block = 1;
+    /// Returns only these pixels, unless it is empty: see `rendered_pixels::some`. Then `block` must be 1.
+    std::span<const std::uint32_t> pixels{};
 };
 
 }  // namespace gs::train

@@ -21,7 +21,7 @@ training_view_images training_view(train::engine& engine, const scene& scene,
     const gs::view& shown = scene.train[view];
     training_view_images images{
         engine.render(engine.cameras().training_camera(view, shown.camera), background), {}, 0};
-    if (show) show(view, shown.camera.width, images.render);
+    if (show) show(view, {shown.camera.width, shown.camera.height}, images.render);
     const view_photo photo(shown);
     images.target = over_background(photo.pixels(), background.data());
     const std::size_t pixels = images.target.size() / 3;

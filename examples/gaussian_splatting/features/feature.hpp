@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../engine/rendered_pixels.hpp"
 #include "../model/gaussians.hpp"
 #include "../scene/scene_statistics.hpp"
 #include "explanation.hpp"
@@ -24,7 +25,8 @@ namespace gs::features {
 class half_way_statistics;
 
 /// A function that changes the render of a training view: see `feature::show_on_host`.
-using show_function = std::function<void(std::size_t view, int width, std::vector<float>& render)>;
+using show_function =
+    std::function<void(std::size_t view, const train::rendered_pixels&, std::vector<float>& render)>;
 
 /// An effect that training can simulate. This class is the host part of a feature: its detection,
 /// initial values, schedule and output files. `device_feature` is the part that runs in each step.
@@ -66,9 +68,9 @@ class feature {
     /// Adds its actions to the training loop. Called whether the effect is on or off.
     virtual void schedule(const selected_feature&, train::training&) const {}
     /// Returns a function that applies the effect to the render of a training view, or an empty
-    /// function if it changes no renders. The function takes the view's index and three planes of
-    /// its size or of a smaller size, with their width; several threads may call it. Called during training
-    /// if the effect is on.
+    /// function if it changes no renders. The function takes the view's index and three planes with all
+    /// or some pixels of the view, of its size or of a smaller size; several threads may call it. Called
+    /// during training if the effect is on.
     virtual show_function show_on_host(train::engine&, const scene&) const { return {}; }
     /// Sets the effect's values for held-out views. Called before they are measured, if the effect
     /// is on.

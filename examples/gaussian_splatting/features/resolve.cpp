@@ -153,8 +153,9 @@ show_function feature_set::show_on_host(train::engine& engine, const scene& scen
         if (is_simulated(f->name(), engine))
             if (show_function step = f->show_on_host(engine, scene)) steps.push_back(std::move(step));
     }
-    return [steps = std::move(steps)](std::size_t view, int width, std::vector<float>& render) {
-        for (const show_function& step : steps) step(view, width, render);
+    return [steps = std::move(steps)](std::size_t view, const train::rendered_pixels& pixels,
+                                      std::vector<float>& render) {
+        for (const show_function& step : steps) step(view, pixels, render);
     };
 }
 

@@ -66,7 +66,7 @@ const image& frame_artist::photo_of(std::size_t view, int width, int height) {
 }
 
 std::vector<float> frame_artist::error_of(std::size_t view, const camera& camera, std::vector<float> render) {
-    if (const show_function show = show_(); show) show(view, camera.width, render);
+    if (const show_function show = show_(); show) show(view, {camera.width, camera.height}, render);
     const image& photo = photo_of(view, camera.width, camera.height);
     const std::vector<float> target = over_background(photo, background_.data());
     const std::size_t pixels = target.size() / 3;

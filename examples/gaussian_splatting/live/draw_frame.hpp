@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../engine/engine.hpp"
+#include "../engine/rendered_pixels.hpp"
 #include "../scene/scene.hpp"
 #include "mailbox.hpp"
 
@@ -18,7 +19,8 @@ namespace gs::live {
 class frame_artist {
   public:
     /// Changes the render of a training view so that it matches its photo, as the exposure does.
-    using show_function = std::function<void(std::size_t view, int width, std::vector<float>& render)>;
+    using show_function =
+        std::function<void(std::size_t view, const train::rendered_pixels&, std::vector<float>& render)>;
 
     /// `views`: the training views, or none. `show` returns the function for the present model.
     /// `engine` and `views` must outlive the object.

@@ -68,12 +68,12 @@ class nearest_depths {
     std::vector<double> depth_;
 };
 
-std::optional<observation> look(const image& photo, const place_in_photo& p) {
+/// Observes what the 3×3 pixels around this one show.
+std::optional<observation> look(const image& photo, int column, int row) {
     const auto pixel = [&](int x, int y) {
         return &photo.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(photo.width) +
                                 static_cast<std::size_t>(x))];
     };
-    const int column = static_cast<int>(p.x), row = static_cast<int>(p.y);
     float least = 1, most = 0;
     observation o;
     for (int dy = -1; dy <= 1; ++dy)
@@ -119,17 +119,30 @@ point_observer::point_observer(const scene& of)
     : scene_(of), step_(of.points.size() / most_points + 1), by_view_(of.train.size()) {}
 
 void point_observer::observe(std::size_t v, const image& photo, const camera& taken_with) {
-    for (const place_in_photo& p : points_in_sight(taken_with, scene_.points)) {
-        if (p.point % step_ != 0) continue;
-        std::optional<observation> o = look(photo, p);
-        if (!o) continue;
-        o->view = static_cast<std::uint32_t>(v);
-        o->point = p.point;
-        o->place = {p.x, p.y};
-        o->direction = glm::vec3(glm::normalize(scene_.points[p.point].position - taken_with.center()));
-        o->footprint = static_cast<float>(p.depth / std::sqrt(taken_with.fx * taken_with.fy));
-        by_view_[v].emplace_back(p.point / static_cast<std::uint32_t>(step_), *o);
-    }
+    for (const place_in_photo& p : in_sight(taken_with))
+        if (const auto o = look(photo, static_cast<int>(p.x), static_cast<int>(p.y)))
+            keep(v, p, *o, taken_with);
+}
+
+void point_observer::observe_patches(std::size_t v, std::span<const place_in_photo> points,
+                                     const image& patches, const camera& taken_with) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (const auto o = look(patches, 1, static_cast<int>(3 * i + 1))) keep(v, points[i], *o, taken_with);
+}
+
+std::vector<place_in_photo> point_observer::in_sight(const camera& camera) const {
+    std::vector<place_in_photo> points = points_in_sight(camera, scene_.points);
+    std::erase_if(points, [this](const place_in_photo& p) { return p.point % step_ != 0; });
+    return points;
+}
+
+void point_observer::keep(std::size_t v, const place_in_photo& p, observation o, const camera& taken_with) {
+    o.view = static_cast<std::uint32_t>(v);
+    o.point = p.point;
+    o.place = {p.x, p.y};
+    o.direction = glm::vec3(glm::normalize(scene_.points[p.point].position - taken_with.center()));
+    o.footprint = static_cast<float>(p.depth / std::sqrt(taken_with.fx * taken_with.fy));
+    by_view_[v].emplace_back(p.point / static_cast<std::uint32_t>(step_), o);
 }
 
 observed_points point_observer::observations() const {

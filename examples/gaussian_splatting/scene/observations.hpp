@@ -49,12 +49,20 @@ class point_observer {
   public:
     /// The scene must outlive the object.
     explicit point_observer(const scene& of);
-    /// Observes the points in the photo of a training view, or in an image that replaces it. `taken_with`:
-    /// the camera with its exact pose. Several threads may call it, for different views.
+    /// Observes the points in the photo of a training view. `taken_with`: the camera with its exact pose.
+    /// Several threads may call this and the next function, for different views.
     void observe(std::size_t view, const image& photo, const camera& taken_with);
+    /// Observes these points `in_sight` in patches that replace the photo around them. The image is three
+    /// pixels wide and has the 3×3 pixels of each point, one point below the other.
+    void observe_patches(std::size_t view, std::span<const place_in_photo> points, const image& patches,
+                         const camera& taken_with);
+    /// Returns the points of the sample that are `points_in_sight`.
+    std::vector<place_in_photo> in_sight(const camera& camera) const;
     observed_points observations() const;
 
   private:
+    void keep(std::size_t view, const place_in_photo& p, observation o, const camera& taken_with);
+
     const scene& scene_;
     std::size_t step_;  ///< distance of two points of the sample
     std::vector<std::vector<std::pair<std::uint32_t, observation>>> by_view_;

@@ -25,6 +25,7 @@
 #include "pair_counter.hpp"
 #include "rank_division.hpp"
 #include "refine_pose.hpp"
+#include "render_download.hpp"
 #include "row_work.hpp"
 #include "step_images.hpp"
 #include "step_monitor.hpp"
@@ -59,6 +60,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
           row_work_(device_),
           monitor_(device_),
           division_(device_, trained_, seen_),
+          download_(device_),
           gather_(device_, division_.shares()) {
         profiler_ = this;
         state_ = this;
@@ -181,14 +183,14 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         renderer_.set_strip({});
         if (!options.separate_memory) {
             draw(renderer_, camera, background, options);
-            return downloaded(renderer_.render(), camera, planes);
+            return download_(renderer_.render(), planes, camera, options);
         }
         const std::size_t before = device_.used_bytes();
         if (!apart_) apart_.emplace(device_);
         apart_->set_effects(effects_);
         draw(*apart_, camera, background, options);
         bytes_apart_ += device_.used_bytes() - before;
-        return downloaded(apart_->render(), camera, planes);
+        return download_(apart_->render(), planes, camera, options);
     }
 
     image_quality measure(std::size_t test_view, const std::array<float, 3>& background,
@@ -201,7 +203,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         device_.for_each_index(shown_.size(), clamp_render{exposed, shown_.data()});
         comparison_.set_target(views_.load_in_order(views_.held_out(), test_view).target(background));
         comparison_.compare(shown_.data());
-        if (render != nullptr) *render = downloaded(exposed, shot.camera, 3);
+        if (render != nullptr) *render = download_(exposed, 3, shot.camera);
         return comparison_.take();
     }
 
@@ -456,13 +458,6 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         pairs_.leave_out_since(before);
     }
 
-    std::vector<float> downloaded(const float* from, const camera& camera, std::size_t planes) {
-        std::vector<float> render(planes * static_cast<std::size_t>(camera.width) *
-                                  static_cast<std::size_t>(camera.height));
-        device_.download(render.data(), from, render.size());
-        return render;
-    }
-
     engine_parts<Device> parts_;
     Device device_;
     renderer_type renderer_;
@@ -478,6 +473,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
     row_work<Device> row_work_;
     step_monitor<Device> monitor_;
     rank_division<Device> division_;
+    render_download<Device> download_;
     parameter_gather<Device> gather_;
     std::unique_ptr<loss<float>> loss_;
     std::unique_ptr<strategy<Device>> strategy_;

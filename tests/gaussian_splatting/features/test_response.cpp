@@ -331,7 +331,7 @@ TEST_CASE("response: held-out and training views are shown with the curve of the
             .set_held_out_values(flattened(std::vector<exposure>(scene.test.size(), brighter[0])));
         feature.before_evaluation(*e, scene);
         e->measure(1, {}, &curved);
-        o.features.show_on_host(*e, scene)(0, 48, plain);
+        o.features.show_on_host(*e, scene)(0, {48, 48}, plain);
         double largest = 0;
         for (std::size_t i = 0; i < plain.size(); ++i)
             largest = std::max(largest, static_cast<double>(std::abs(plain[i] - curved[i])));

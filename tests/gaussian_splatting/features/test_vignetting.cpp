@@ -262,16 +262,21 @@ TEST_CASE("vignetting: held-out and training views are shown with the falloff of
         feature.before_evaluation(*e, scene);
         e->measure(1, {}, &darker);
         // The camera of a training view is not that of a held-out one, but its lens is.
-        feature.show_on_host(*e, scene)(0, 48, plain);
+        feature.show_on_host(*e, scene)(0, {48, 48}, plain);
         double largest = 0;
         for (std::size_t i = 0; i < plain.size(); ++i)
             largest = std::max(largest, static_cast<double>(std::abs(plain[i] - darker[i])));
         CHECK(largest < 1e-6);
         std::vector<float> small(3 * 24 * 24, 1.0f), large(3 * 48 * 48, 1.0f);
-        feature.show_on_host(*e, scene)(0, 24, small);
-        feature.show_on_host(*e, scene)(0, 48, large);
+        feature.show_on_host(*e, scene)(0, {24, 24}, small);
+        feature.show_on_host(*e, scene)(0, {48, 48}, large);
         CHECK(small[0] == doctest::Approx(large[0]).epsilon(0.02));  // a corner
         CHECK(small[12 * 24 + 12] > 0.99f);
+        const std::vector<std::uint32_t> places{0, 47, 1000};
+        std::vector<float> some(3 * places.size(), 1.0f);
+        feature.show_on_host(*e, scene)(0, {48, 48, places}, some);
+        for (std::size_t i = 0; i < some.size(); ++i)
+            CHECK(some[i] == large[i / 3 * 48 * 48 + places[i % 3]]);
         e->feature("vignetting").set_held_out_values({});
         e->measure(1, {}, &plain);
         CHECK(plain[0] >= darker[0]);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "engines.hpp"
@@ -53,6 +55,39 @@ TEST_CASE("a render of inverse depths has the weights of the colors") {
             REQUIRE(depths.size() == pixels);
             for (std::size_t i = 0; i < pixels; ++i)
                 CHECK(depths[i] == doctest::Approx(colors[i] / distance).epsilon(1e-5));
+        }
+    }
+}
+
+TEST_CASE("a part of a render has the means of its blocks, or the chosen pixels") {
+    const gs::scene scene = small_scene();
+    const gs::camera camera = scene.train[0].camera.resized(45, 31);
+    constexpr std::size_t width = 45, pixels = 45 * 31, side = 7, across = 6, down = 4;
+    const std::vector<std::uint32_t> chosen{0, 44, 45, 700, 701, pixels - 1};
+    for (const auto make : engines()) {
+        const auto e = make();
+        e->set_model(sphere_points(scene));
+        for (const bool depths : {false, true}) {
+            const std::size_t planes = depths ? 1 : 3;
+            const auto all = e->render(camera, {1, 0, 0}, {.inverse_depth = depths});
+            const auto blocks = e->render(camera, {1, 0, 0}, {.inverse_depth = depths, .block = side});
+            const auto some = e->render(camera, {1, 0, 0}, {.inverse_depth = depths, .pixels = chosen});
+            REQUIRE(all.size() == planes * pixels);
+            REQUIRE(blocks.size() == planes * across * down);
+            REQUIRE(some.size() == planes * chosen.size());
+            for (std::size_t p = 0; p < planes; ++p) {
+                for (std::size_t i = 0; i < chosen.size(); ++i)
+                    CHECK(some[p * chosen.size() + i] == all[p * pixels + chosen[i]]);
+                for (std::size_t row = 0; row < down; ++row)
+                    for (std::size_t column = 0; column < across; ++column) {
+                        double sum = 0;
+                        for (std::size_t i = 0; i < side * side; ++i)
+                            sum += static_cast<double>(
+                                all[p * pixels + (row * side + i / side) * width + column * side + i % side]);
+                        CHECK(static_cast<double>(blocks[(p * down + row) * across + column]) ==
+                              doctest::Approx(sum / (side * side)).epsilon(1e-5));
+                    }
+            }
         }
     }
 }

@@ -133,8 +133,8 @@ void exposure_feature::schedule(const selected_feature& selected, train::trainin
 }
 
 show_function exposure_feature::show_on_host(train::engine& engine, const scene&) const {
-    return [exposures = exposures_from(engine.feature(name()).values())](std::size_t view, int,
-                                                                         std::vector<float>& render) {
+    return [exposures = exposures_from(engine.feature(name()).values())](
+               std::size_t view, const train::rendered_pixels&, std::vector<float>& render) {
         const exposure& e = exposures[view];
         const std::size_t pixels = render.size() / 3;
         for (std::size_t i = 0; i < pixels; ++i) {

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "compared_surfaces.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -41,32 +39,46 @@ struct block {
     bool is_known = true;
 };
 
+/// Returns the side of the blocks of a view.
+int side_of_blocks(const camera& c) {
+    return std::max(1, static_cast<int>(std::sqrt(double(c.width) * c.height) / blocks_across));
+}
+
 /// A photo and its render in blocks of pixels.
 struct blocks {
     int side, width, height;
     std::vector<block> all;
 
+    /// `render` and `inverse` have the means of the blocks.
     blocks(const camera& c, const image& photo, std::span<const float> render, std::span<const float> inverse)
-        : side(std::max(1, static_cast<int>(std::sqrt(double(c.width) * c.height) / blocks_across))),
+        : side(side_of_blocks(c)),
           width(c.width / side),
           height(c.height / side),
           all(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
-        const std::size_t pixels = render.size() / 3;
-        const float weight = 1.0f / static_cast<float>(side * side);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            block& b = all[i];
+            b.inverse_depth = inverse[i];
+            for (int k = 0; k < 3; ++k) b.render[k] = render[static_cast<std::size_t>(k) * all.size() + i];
+        }
         for (int y = 0; y < height * side; ++y)
-            for (int x = 0; x < width * side; ++x) {
-                const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(c.width) +
-                               static_cast<std::size_t>(x);
-                const std::uint8_t* rgba = &photo.rgba[4 * i];
-                block& b = all[index(x / side, y / side)];
-                b.inverse_depth += weight * inverse[i];
-                b.is_known = b.is_known && rgba[3] == 255;
-                for (int k = 0; k < 3; ++k) {
-                    b.photo[k] += weight * static_cast<float>(rgba[k]) / 255;
-                    b.render[k] += weight * render[static_cast<std::size_t>(k) * pixels + i];
-                    b.is_known = b.is_known && rgba[k] >= least_value && rgba[k] <= most_value;
-                }
+            for (int x = 0; x < width; ++x)
+                add_row(all[index(x, y / side)],
+                        &photo.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(c.width) +
+                                         static_cast<std::size_t>(x * side))]);
+    }
+    /// Adds a row of pixels of a photo to a block.
+    void add_row(block& b, const std::uint8_t* rgba) const {
+        glm::ivec3 sum(0);
+        bool is_known = true;
+        for (const std::uint8_t* const end = rgba + 4 * side; rgba < end; rgba += 4) {
+            is_known = is_known && rgba[3] == 255;
+            for (int k = 0; k < 3; ++k) {
+                sum[k] += rgba[k];
+                is_known = is_known && rgba[k] >= least_value && rgba[k] <= most_value;
             }
+        }
+        b.photo += glm::vec3(sum) / static_cast<float>(255 * side * side);
+        b.is_known = b.is_known && is_known;
     }
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -145,32 +157,29 @@ std::vector<sample> samples_of(const blocks& of, std::size_t view, const camera&
 /// Returns the samples of all examined photos, in the order of these.
 std::vector<sample> all_samples(train::engine& engine, const scene& of, const show_function& show,
                                 const std::array<float, 3>& background) {
-    constexpr int most_at_once = 4;  // limits the memory for renders
     std::vector<std::size_t> views;  // panoramas have no corners
     for (std::size_t v = 0; v < of.train.size(); ++v)
         if (!of.train[v].camera.is_panorama) views.push_back(v);
     const std::size_t photos = std::min(views.size(), most_photos);
-    const auto at_once = static_cast<std::size_t>(std::min(omp_get_max_threads(), most_at_once));
-    std::vector<std::vector<float>> renders(at_once), inverses(at_once);
-    std::vector<std::vector<sample>> by_photo(photos);
-    std::vector<camera> cameras(at_once);  // with the poses that training has learned
+    std::vector<std::vector<float>> renders(photos), inverses(photos);
+    std::vector<camera> cameras(photos);  // with the poses that training has learned
     const auto view_of = [&](std::size_t photo) { return views[photo * views.size() / photos]; };
-    for (std::size_t first = 0; first < photos; first += at_once) {
-        const std::size_t count = std::min(at_once, photos - first);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t v = view_of(first + i);
-            cameras[i] = engine.cameras().training_camera(v, of.train[v].camera);
-            renders[i] = engine.render(cameras[i], background);
-            inverses[i] = engine.render(cameras[i], {}, {.inverse_depth = true});
-        }
-        for_each_in_parallel(count, [&](std::size_t i) {
-            const std::size_t v = view_of(first + i);
-            show(v, cameras[i].width, renders[i]);
-            const view_photo photo(of.train[v]);
-            by_photo[first + i] = samples_of(blocks(cameras[i], photo.pixels(), renders[i], inverses[i]), v,
-                                             cameras[i], of.extent());
-        });
+    for (std::size_t i = 0; i < photos; ++i) {
+        const std::size_t v = view_of(i);
+        cameras[i] = engine.cameras().training_camera(v, of.train[v].camera);
+        const int side = side_of_blocks(cameras[i]);
+        renders[i] = engine.render(cameras[i], background, {.block = side});
+        inverses[i] = engine.render(cameras[i], {}, {.inverse_depth = true, .block = side});
     }
+    std::vector<std::vector<sample>> by_photo(photos);
+    for_each_in_parallel(photos, [&](std::size_t i) {
+        const std::size_t v = view_of(i);
+        const camera& c = cameras[i];
+        const int side = side_of_blocks(c);
+        show(v, {c.width / side, c.height / side}, renders[i]);
+        const view_photo photo(of.train[v]);
+        by_photo[i] = samples_of(blocks(c, photo.pixels(), renders[i], inverses[i]), v, c, of.extent());
+    });
     std::vector<sample> all;
     for (const auto& samples : by_photo) all.insert(all.end(), samples.begin(), samples.end());
     return all;

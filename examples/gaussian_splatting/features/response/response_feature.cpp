@@ -136,7 +136,7 @@ std::string response_feature::obstacle(const scene& scene, const std::vector<flo
 
 show_function response_feature::show_on_host(train::engine& engine, const scene& scene) const {
     return [values = response_values(engine.feature(name()).values(), scene.train.size())](
-               std::size_t view, int, std::vector<float>& render) {
+               std::size_t view, const train::rendered_pixels&, std::vector<float>& render) {
         const int lens = values.lens_of_view[view];
         if (lens < 0) return;
         const std::size_t pixels = render.size() / 3;

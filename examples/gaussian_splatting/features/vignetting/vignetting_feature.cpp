@@ -159,14 +159,14 @@ std::string vignetting_feature::obstacle(const scene& scene, const std::vector<f
 show_function vignetting_feature::show_on_host(train::engine& engine, const scene& scene) const {
     return
         [&views = scene.train, values = falloff_values(engine.feature(name()).values(), scene.train.size())](
-            std::size_t view, int width, std::vector<float>& render) {
+            std::size_t view, const train::rendered_pixels& shown, std::vector<float>& render) {
             const int lens = values.lens_of_view[view];
             if (lens < 0) return;
             const std::size_t pixels = render.size() / 3;
-            const camera c = views[view].camera.resized(width, static_cast<int>(pixels) / width);
+            const camera c = views[view].camera.resized(shown.width, shown.height);
             for (std::size_t i = 0; i < pixels; ++i) {
-                const auto x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
-                const double u = square_radius(c, x + 0.5, y + 0.5);
+                const glm::dvec2 place = shown.center(i);
+                const double u = square_radius(c, place.x, place.y);
                 for (unsigned channel = 0; channel < 3; ++channel)
                     render[channel * pixels + i] *= factor_at(u, values.of(lens) + falloff_at(channel, 0));
             }
