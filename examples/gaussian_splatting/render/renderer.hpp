@@ -59,13 +59,18 @@ class renderer {
     /// differ. `measure` uses `view_strip::gaussians` only. A rank projects its own share of the Gaussians,
     /// needs the parameters of these only, and passes only their gradients to the sink.
     void set_strip(const std::optional<view_strip>& strip) {
-        if (strip && !strip_) release_splats();  // whole views need more memory
+        if (strip && !strip_) {  // whole views need more memory
+            release_splats();
+            gaussian_of_ = {};
+            checkpoints_ = {};
+        }
         strip_ = strip;
     }
     /// Frees memory that only strips need, until the next draw of one.
     void release_strips() {
         exchange_.release();
         strip_lists_.release();
+        strip_places_ = 0;
     }
 
     /// Counts the instances (Gaussian, tile) of a whole view: see `instances`.
@@ -84,15 +89,15 @@ class renderer {
         return n;
     }
 
-    /// Reserves memory for this number of instances per view, and for `spare` more within the limit
-    /// of 31 bits. `forward` drops instances that do not fit: see `capacity`.
+    /// Permits this number of instances per view, and `spare` more within the limit of 31 bits. `forward`
+    /// drops instances that do not fit: see `capacity`. Whole views get memory for all of them, and strips
+    /// for those that they list.
     void reserve_instances(std::uint64_t most, std::uint64_t spare = 0) {
         constexpr std::uint64_t limit = std::uint64_t{1} << 31;
         if (most >= limit)
             throw error("a view has " + std::to_string(most) +
                         " pairs of Gaussian and tile, more than 2^31: lower --max-cap or --resolution");
         capacity_ = std::min(most + spare, limit - 1);
-        gaussian_of_.resize(capacity_ + Cut::segment);
     }
     std::uint64_t reserved_instances() const { return capacity_; }
 
@@ -256,6 +261,8 @@ class renderer {
     std::size_t strip_bytes(accumulator how) const {
         return exchange_.bytes() + strip_lists_.bytes() + exchange_.received() * bytes::per_received(how);
     }
+    /// The number of instances for which strips have memory. Zero if it is not known yet.
+    std::uint64_t strip_places() const { return strip_places_; }
     /// The work of the last view's tile rows, on the device: see `measure_work`. Zero for those of others.
     std::span<const unsigned long long> row_work() const { return {work_.data(), views_.tiles_down()}; }
     /// Whether the last view's instances fit.
@@ -334,7 +341,7 @@ class renderer {
     }
 
     std::size_t segments() const {
-        return most_segments<Cut>(tiles(), capacity_ + (strip_ ? Cut::segment : 0));
+        return most_segments<Cut>(tiles(), strip_ ? strip_places_ + Cut::segment : capacity_);
     }
     tile_lists<Real> lists() const {
         return {own_.splats.data(),    gaussian_of_.data(), ranges_.data(),
@@ -373,20 +380,26 @@ class renderer {
         exchange_.send(own_.splats.data(), own_.boxes.data(), own_.depths.data(),
                        own_.splats.data() + own_.count());
     }
-    /// Makes the lists of a strip again if a rank has sent more splats than expected.
+    /// Makes the lists of a strip again if a rank has sent more splats than expected, or if the lists have
+    /// too little memory.
     void complete_lists() {
         if (strip_->windows && !exchange_.fits()) {
             exchange_splats({});
             bin();
         }
+        if (const std::uint64_t needed = strip_lists_.needed_places(capacity_); needed > strip_places_) {
+            strip_places_ = needed + needed / 4;  // views of later steps are often larger
+            bin(true);
+        }
         if (strip_->is_of_step) device_.ranks().traffic().count_step(exchange_.drawn(), exchange_.moved());
     }
 
     /// Makes the list of Gaussians of each tile, front to back. Equal depths keep the order of the
-    /// Gaussians.
-    void bin() {
+    /// Gaussians. `again`: this rank alone makes the lists of its strip again.
+    void bin(bool again = false) {
+        gaussian_of_.resize((strip_ ? strip_places_ : capacity_) + Cut::segment);
         if (strip_) {
-            list_strip();
+            list_strip(again);
         } else {
             device_.sort_pairs(own_.depths, own_.order, count_);
             with_items<Real>(
@@ -406,21 +419,25 @@ class renderer {
         device_.place_lists(count, items, tiles(), capacity, reserve(ranges_, tiles()).data(),
                             required_.data());
     }
-    void list_strip() {
-        strip_lists_.sort({own_.count(), exchange_.received(), exchange_.received_before(), own_.boxes.data(),
-                           own_.depths.data(), exchange_.received_reach()},
-                          listed_rows());
+    void list_strip(bool again) {
+        if (!again)
+            strip_lists_.sort({own_.count(), exchange_.received(), exchange_.received_before(),
+                               own_.boxes.data(), own_.depths.data(), exchange_.received_reach()},
+                              listed_rows());
         device_.zero(reserve(ranges_, tiles()).data(), tiles());  // of tiles without a list
-        with_items<Real>(views_[0],
-                         {strip_lists_.order(), own_.splats.data(), strip_lists_.boxes(),
-                          views_.tiles_across(), static_cast<std::uint32_t>(tiles_in(listed_rows()).first)},
-                         [&](const auto& items) {
-                             const auto scope = exchanging(ranks::purpose::lists);
-                             strip_lists_.make(
-                                 items, listed_count(),
-                                 {strip_->own, listed_rows(), views_.tiles_across(), views_.tiles_down(),
-                                  capacity_, gaussian_of_.data(), ranges_.data(), required_.data()});
-                         });
+        with_items<Real>(
+            views_[0],
+            {strip_lists_.order(), own_.splats.data(), strip_lists_.boxes(), views_.tiles_across(),
+             static_cast<std::uint32_t>(tiles_in(listed_rows()).first)},
+            [&](const auto& items) {
+                const auto scope = exchanging(ranks::purpose::lists);
+                const strip_place_in_view at{
+                    strip_->own,         listed_rows(),   views_.tiles_across(),
+                    views_.tiles_down(), capacity_,       {gaussian_of_.data(), gaussian_of_.size()},
+                    ranges_.data(),      required_.data()};
+                again ? strip_lists_.make_again(items, listed_count(), at)
+                      : strip_lists_.make(items, listed_count(), at);
+            });
     }
 
     static vec3<Real> color(const std::array<float, 3>& c) { return {Real(c[0]), Real(c[1]), Real(c[2])}; }
@@ -439,7 +456,7 @@ class renderer {
     tile_schedule<Device> schedule_;
     buffer<unsigned long long> work_;
     buffer<unsigned long long> pairs_;  ///< one counter for colors, and an unused one for depths
-    std::uint64_t capacity_ = 0;
+    std::uint64_t capacity_ = 0, strip_places_ = 0;
 
     std::optional<view_strip> strip_;  ///< if unset, views are drawn whole
 

@@ -55,9 +55,15 @@ device::memory_forecast forecast_of_gaussians(const Renderer& renderer, std::siz
                               : gaussians * setup.batch_size *
                                     own(Renderer::bytes::per_sent_splat(setup.facts.gradient));
     }
-    return {.gaussians = gaussians * beside +
-                         std::max(gaussians * in_training + of_strips, gaussians * in_measurement),
-            .others = grown(renderer.reserved_instances()) * Renderer::bytes::per_instance(),
+    const std::size_t reserved = renderer.reserved_instances(),
+                      listed = renderer.strip_places() > 0 ? renderer.strip_places() : own(reserved);
+    const std::uint64_t of_lists = grown(is_divided ? listed : reserved) * Renderer::bytes::per_instance(),
+                        of_whole_lists = grown(reserved) * Renderer::bytes::per_instance();
+    const std::uint64_t in_steps = gaussians * in_training + of_strips;
+    const bool needs_more_in_steps =
+        !is_divided || in_steps + of_lists > gaussians * in_measurement + of_whole_lists;
+    return {.gaussians = gaussians * beside + (needs_more_in_steps ? in_steps : gaussians * in_measurement),
+            .others = needs_more_in_steps ? of_lists : of_whole_lists,
             .on_host = gaussians * of_parameters.on_host};
 }
 

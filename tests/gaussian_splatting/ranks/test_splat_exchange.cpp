@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -41,6 +42,7 @@ class strip_drawing {
         view_.cx = view_.cy = size / 2.0;
         view_.translation = {0, 0, 3};
     }
+    auto& renderer() { return on_.renderer; }
     strip_result draw(const std::optional<windows>& expected, accumulator how) {
         strip_of_rank(expected);
         on_.renderer.list(on_.gaussians.read(), model<float>::count, view_, model<float>::sh_degree);
@@ -120,6 +122,28 @@ TEST_CASE("splat exchange: expected windows of any size yield the pixels and sum
             CHECK(end.reason == "");
             CHECK(end.code == 0);
         }
+}
+
+TEST_CASE("strips: ranks have memory for the tile lists of their strips, and not for those of the view") {
+    constexpr int count = 3;
+    const auto end = gs::ranks::run(count, [&](communicator& all) {
+        omp_set_num_threads(1);
+        strip_drawing on(all);
+        if (on.renderer().strip_places() != 0) return 2;
+        const strip_result first = on.draw({}, accumulator::fixed);
+        const std::uint64_t places = on.renderer().strip_places(), of_view = on.renderer().instances();
+        if (places == 0 || on.renderer().reserved_instances() < of_view) return 3;
+        std::uint64_t of_all = places;
+        all.sum(&of_all, 1);
+        if (of_all > 2 * of_view || places > 3 * of_view / 4) return 4;
+        const strip_result second = on.draw({}, accumulator::fixed);
+        if (on.renderer().strip_places() != places) return 5;
+        on.renderer().release_strips();
+        const strip_result third = on.draw({}, accumulator::fixed);
+        return first.looks_like(second) && first.looks_like(third) ? 0 : 6;
+    });
+    CHECK(end.reason == "");
+    CHECK(end.code == 0);
 }
 
 TEST_CASE("windows: those with a place for each item of others have places for them") {

@@ -215,12 +215,12 @@ class basic_cpu {
         });
     }
     template <class Range>
-    void write_lists(std::size_t, const items auto&, std::size_t buckets, std::uint64_t,
+    void write_lists(std::size_t, const items auto&, std::size_t buckets, std::uint64_t most,
                      std::uint32_t* listed, const Range* ranges) {
         for_each_slice(buckets, [&](const std::vector<instance>& found, std::uint64_t* places, std::size_t) {
             for (const auto& [bucket, value] : found) {
                 const std::uint64_t place = ranges[bucket].begin + places[bucket]++;
-                if (place < ranges[bucket].end) listed[place] = value;
+                if (place < ranges[bucket].end && place < most) listed[place] = value;
             }
         });
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "../../device/atomic.hpp"
 #include "../../device/device.hpp"
@@ -80,10 +81,10 @@ struct move_lists {
 struct strip_place_in_view {
     row_range own, listed;  ///< tile rows
     unsigned tiles_across, tiles_down;
-    std::uint64_t capacity;        ///< largest number of instances of the whole view
-    std::uint32_t* listed_splats;  ///< places for these, and for a segment more
-    tile_range* ranges;            ///< of all tiles of the view
-    std::uint64_t* required;       ///< receives the number of instances of the whole view
+    std::uint64_t capacity;                  ///< largest number of instances of the whole view
+    std::span<std::uint32_t> listed_splats;  ///< places for the lists, and for a segment more
+    tile_range* ranges;                      ///< of all tiles of the view
+    std::uint64_t* required;                 ///< receives the number of instances of the whole view
 
     std::size_t first_tile(const row_range& rows) const {
         return static_cast<std::size_t>(rows.first) * tiles_across;
@@ -130,12 +131,14 @@ class strip_lists {
     static constexpr std::size_t bytes_per_splat = sizeof(tile_box) + 2 * sizeof(std::uint32_t);
 
     /// Makes the lists of the splats, in their order. All ranks must call this. `items`: see
-    /// `device::place_lists`; their first bucket is the first tile with a list.
+    /// `device::place_lists`; their first bucket is the first tile with a list. Lists that
+    /// need more places than they have are incomplete: see `needed_places`.
     template <class Items>
     void make(const Items& items, std::size_t count, const strip_place_in_view& at) {
-        const std::size_t buckets = at.tiles(at.listed), first_listed = at.first_tile(at.listed);
-        tile_range* const ranges = at.ranges + first_listed;
-        device_.place_lists(count, items, buckets, at.capacity, ranges, at.required);
+        place(items, count, at);
+        needed_on_host_.resize(1);
+        device_.begin_download(counted_, needed_on_host_.data(), at.required, 1);
+        const std::size_t first_listed = at.first_tile(at.listed);
         const list_capacity capacity{at.required, at.capacity};
         lengths_.resize(at.tiles_down + 1);
         device_.for_each_index(lengths_.size(), measure_rows{at.ranges, at.tiles_across, at.own,
@@ -146,17 +149,43 @@ class strip_lists {
             count, count_unlisted<Items>{items, first, last, capacity, lengths_.data() + at.tiles_down});
         // Ranks meet here, before the lists are written, because these take the ranks different times.
         device_.sum_over_ranks(lengths_.data(), lengths_.size());
-        device_.for_each_index(std::max<std::size_t>(buckets, 1),
-                               move_lists<Segment>{lengths_.data(), static_cast<std::size_t>(at.listed.first),
-                                                   at.tiles_down, ranges, buckets, at.required});
-        device_.write_lists(count, items, buckets, at.capacity + Segment, at.listed_splats, ranges);
+        write(items, count, at);
+    }
+    /// Makes the same lists again, after `make` and with memory for them. Other ranks need not call it.
+    template <class Items>
+    void make_again(const Items& items, std::size_t count, const strip_place_in_view& at) {
+        place(items, count, at);
+        write(items, count, at);
+    }
+    /// Returns the number of places that the lists need, of at most `capacity`, without the segment more.
+    /// Waits until the device has counted them, but not for later work, so that it stays busy.
+    std::uint64_t needed_places(std::uint64_t capacity) {
+        counted_.wait();
+        return std::min(*needed_on_host_.data(), capacity);
     }
 
   private:
+    template <class Items>
+    void place(const Items& items, std::size_t count, const strip_place_in_view& at) {
+        device_.place_lists(count, items, at.tiles(at.listed), at.capacity,
+                            at.ranges + at.first_tile(at.listed), at.required);
+    }
+    template <class Items>
+    void write(const Items& items, std::size_t count, const strip_place_in_view& at) {
+        const std::size_t buckets = at.tiles(at.listed);
+        tile_range* const ranges = at.ranges + at.first_tile(at.listed);
+        device_.for_each_index(std::max<std::size_t>(buckets, 1),
+                               move_lists<Segment>{lengths_.data(), static_cast<std::size_t>(at.listed.first),
+                                                   at.tiles_down, ranges, buckets, at.required});
+        device_.write_lists(count, items, buckets, at.listed_splats.size(), at.listed_splats.data(), ranges);
+    }
+
     Device& device_;
     buffer<tile_box> boxes_;
     buffer<std::uint32_t> depths_, order_;
     buffer<std::uint64_t> lengths_;
+    typename Device::template host_buffer<std::uint64_t> needed_on_host_;
+    typename Device::transfer counted_;
 };
 
 }  // namespace gs::raster
