@@ -388,7 +388,7 @@ class renderer {
             bin();
         }
         if (const std::uint64_t needed = strip_lists_.needed_places(capacity_); needed > strip_places_) {
-            strip_places_ = needed + needed / 4;  // views of later steps are often larger
+            strip_places_ = std::min(needed + needed / 4, capacity_);  // later lists are often longer
             bin(true);
         }
         if (strip_->is_of_step) device_.ranks().traffic().count_step(exchange_.drawn(), exchange_.moved());
