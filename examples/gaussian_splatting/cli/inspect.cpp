@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../core/atomic_file_write.hpp"
+#include "../core/write_json.hpp"
 #include "../features/feature.hpp"
 #include "../pages/inspect_page.hpp"
 #include "command_context.hpp"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../core/atomic_file_write.hpp"
+#include "../core/write_json.hpp"
 
 namespace gs::cli {
 
@@ -113,12 +114,6 @@ std::string optional_measures(const evaluate::held_out_report& report) {
     if (const auto refined = report.mean_of("refined_psnr"))
         text += ", " + number("%.2f", *refined) + " dB after refining cameras";
     return text;
-}
-
-void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
-    atomic_file_write(file, [&](std::ostream& out) {
-        out << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
-    });
 }
 
 std::string number(const char* format, double value) {

@@ -29,9 +29,6 @@ void write_metrics(const std::filesystem::path& folder, const nlohmann::ordered_
 /// measures that were computed.
 std::string optional_measures(const evaluate::held_out_report& report);
 
-/// Writes a file: see `atomic_file_write`.
-void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
-
 /// Formats a value as printf does.
 std::string number(const char* format, double value);
 

@@ -8,6 +8,7 @@
 #include "../core/atomic_file_write.hpp"
 #include "../core/error.hpp"
 #include "../core/parse_json.hpp"
+#include "../core/write_json.hpp"
 #include "../features/sh_degree/sh_degree_feature.hpp"
 #include "../pages/report_page.hpp"
 #include "../readers/colmap/write_colmap_model.hpp"

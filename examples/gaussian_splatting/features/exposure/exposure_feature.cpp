@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "../../core/atomic_file_write.hpp"
 #include "../../core/median.hpp"
+#include "../../core/write_json.hpp"
 #include "../../training/training.hpp"
 #include "../antialiasing/antialiasing_feature.hpp"
 #include "../moving/moving_evidence.hpp"
@@ -163,9 +162,7 @@ void exposure_feature::write_results(const selected_feature& selected, train::en
     const auto of_training = exposures_from(engine.feature(name()).values());
     const nlohmann::ordered_json all{{"train", to_json(scene.train, of_training)},
                                      {"test", to_json(scene.test, held_out_exposures(scene, of_training))}};
-    atomic_file_write(file, [&](std::ostream& out) {
-        out << all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
-    });
+    write_json(file, all);
 }
 
 }  // namespace gs::features

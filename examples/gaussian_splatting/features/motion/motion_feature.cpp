@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../core/atomic_file_write.hpp"
+#include "../../core/write_json.hpp"
 #include "../../training/training.hpp"
 #include "../text.hpp"
 #include "motion_evidence.hpp"
@@ -155,9 +155,7 @@ void motion_feature::write_results(const selected_feature& selected, train::engi
                                     {"shift", {shift.x, shift.y, shift.z}},
                                     {"readout", motion.readout}};
     }
-    atomic_file_write(file, [&](std::ostream& out) {
-        out << all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
-    });
+    write_json(file, all);
 }
 
 }  // namespace gs::features

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../core/atomic_file_write.hpp"
+#include "../../core/write_json.hpp"
 #include "../../training/training.hpp"
 #include "../text.hpp"
 
@@ -181,9 +181,7 @@ void poses_feature::write_results(const selected_feature& selected, train::engin
         all[scene.train[v].name] =
             to_json(given, engine.cameras().training_camera(v, given), scene.normalization);
     }
-    atomic_file_write(file, [&](std::ostream& out) {
-        out << all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
-    });
+    write_json(file, all);
 }
 
 }  // namespace gs::features

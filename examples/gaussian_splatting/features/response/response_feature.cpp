@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../core/atomic_file_write.hpp"
+#include "../../core/write_json.hpp"
 #include "../../engine/engine.hpp"
 #include "../exposure/exposure_feature.hpp"
 #include "../half_way/half_way_statistics.hpp"
@@ -184,9 +184,7 @@ void response_feature::write_results(const selected_feature& selected, train::en
         const auto photos = std::ranges::count(values.lens_of_view, index);
         all.push_back(to_json(lenses.first(lens), static_cast<std::size_t>(photos), values.of(index)));
     }
-    atomic_file_write(file, [&](std::ostream& out) {
-        out << nlohmann::ordered_json{{"lenses", all}}.dump(2) << '\n';
-    });
+    write_json(file, {{"lenses", all}});
 }
 
 }  // namespace gs::features
