@@ -51,8 +51,6 @@ MIXED = {"gloss": (0.3, 1), "vignetting": (0.2, 0.6), "exposure": (0.15, 0.5), "
 def synthetic(kind, world, parameters):
     """A scene and which effects it has by how it is made."""
     parameters = {name: value for name, value in parameters.items() if name not in LACKED or world != SKYLESS}
-    if "fisheye" in parameters:  # only pinhole cameras move
-        parameters.pop("blur", None)
     given = [f"{name}={value:g}" for name, value in parameters.items() if value]
     truth = {effect: bool(parameters.get(cause)) for effect, cause in CAUSES.items()}
     truth["response"] = truth["response"] and truth["exposure"]  # otherwise, colors of the scene can have any curve

@@ -67,7 +67,7 @@ struct camera {
     glm::dvec3 translation{0};
     std::optional<gs::fisheye> fisheye{};  ///< the lens of a fisheye camera
     bool is_panorama = false;              ///< if true, `fisheye` is empty
-    /// The motion that renders simulate. Only renders of pinhole cameras do.
+    /// The motion that renders simulate, except those of panoramas.
     std::optional<camera_motion> motion{};
 
     /// Returns the camera of a panorama of this size at the origin.

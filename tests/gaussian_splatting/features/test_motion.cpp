@@ -124,9 +124,9 @@ TEST_CASE("motion: detection finds direction and length of blurs, with which tra
         CHECK(std::min(glm::length(motion - truth[v]), glm::length(motion + truth[v])) < 2.5);
         CHECK(std::abs(glm::dot(motion, truth[v])) > 0.8 * glm::length(motion) * glm::length(truth[v]));
     }
-    scene.train[7].camera.fisheye = gs::fisheye({0, 0, 0, 0});
+    scene.train[7].camera.is_panorama = true;
     CHECK(motion_feature().analyze(gs::scene_statistics(scene)).recommended == false);
-    CHECK(motion_feature().obstacle(scene, {}).find("pinhole") != std::string::npos);
+    CHECK(motion_feature().obstacle(scene, {}).find("panoramas") != std::string::npos);
 }
 
 TEST_CASE("motion: detection finds nothing in sharp photos, and is undecided without photos") {

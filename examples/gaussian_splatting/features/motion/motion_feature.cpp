@@ -117,10 +117,8 @@ std::vector<float> motion_feature::neutral_values(const scene& scene) const {
 }
 
 std::string motion_feature::obstacle(const scene& scene, const std::vector<float>&) const {
-    if (std::ranges::all_of(scene.train,
-                            [](const view& v) { return v.camera.lens() == lens_model::pinhole; }))
-        return {};
-    return "the motion of cameras is simulated for pinhole cameras only";
+    if (std::ranges::none_of(scene.train, [](const view& v) { return v.camera.is_panorama; })) return {};
+    return "the motion of cameras is not simulated in panoramas, which are put together from several photos";
 }
 
 void motion_feature::schedule(const selected_feature& selected, train::training& training) const {

@@ -79,8 +79,8 @@ synthetic_parameters parse_synthetic(const std::string& text) {
         throw error("a synthetic scene has either 'vignetting' or a 'panorama', not both: " + text);
     if (result.response > 0 && result.panorama > 0)
         throw error("a synthetic scene has either a 'response' or a 'panorama', not both: " + text);
-    if ((result.blur > 0 || result.shutter != 0) && (result.fisheye > 0 || result.panorama > 0))
-        throw error("a synthetic scene has 'blur' and 'shutter' only with pinhole cameras: " + text);
+    if ((result.blur > 0 || result.shutter != 0) && result.panorama > 0)
+        throw error("a synthetic scene has no 'blur' and 'shutter' with 'panorama': " + text);
     if (result.sky > 0 && result.walls > 0)
         throw error("a synthetic scene has either a 'sky' or 'walls', not both: " + text);
     return result;

@@ -36,13 +36,13 @@ decltype(auto) with_lens(lens_model lens, const F& f) {
             return f.template operator()<lens_model::pinhole>();
     }
 }
-/// Calls `f.template operator()<motion>()`. Only pinhole cameras have motion.
+/// Calls `f.template operator()<motion>()`. Panoramas have no motion.
 template <lens_model Lens, class F>
 decltype(auto) with_motion(bool motion, const F& f) {
-    if constexpr (Lens == lens_model::pinhole)
-        return with_flag(motion, f);
-    else
+    if constexpr (Lens == lens_model::panorama)
         return f.template operator()<false>();
+    else
+        return with_flag(motion, f);
 }
 /// Calls `f.template operator()<set>()`: turns a run-time set into a template argument.
 template <class F>
