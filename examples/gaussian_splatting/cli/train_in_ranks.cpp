@@ -145,7 +145,7 @@ void train_in_ranks(const settings& s) {
 }
 
 void train_with_mpi(const settings& s) {
-    if (ranks::is_slurm_without_pmix()) {  // MPI would end the processes with a page of text
+    if (ranks::is_slurm_without_pmi()) {  // MPI would end the processes with a page of text
         leave_error_to_first_process();
         throw error(
             "--mpi: srun has not started these processes with PMIx: add --mpi=pmix to srun's options");

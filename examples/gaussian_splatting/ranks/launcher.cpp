@@ -35,10 +35,10 @@ launch launch_in_environment() {
     return {};
 }
 
-bool is_slurm_without_pmix() {
-    const bool has_pmix =
-        std::getenv("PMIX_RANK") != nullptr || std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
-    return number_in_environment("SLURM_STEP_NUM_TASKS") > 1 && !has_pmix;
+bool is_slurm_without_pmi() {
+    constexpr std::array connected{"PMIX_RANK", "PMI_RANK", "OMPI_COMM_WORLD_RANK"};
+    return number_in_environment("SLURM_STEP_NUM_TASKS") > 1 &&
+           std::ranges::none_of(connected, [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
 bool is_started_by_launcher() {

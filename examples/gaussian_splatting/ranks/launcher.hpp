@@ -14,8 +14,9 @@ struct launch {
 /// even if they run alone.
 launch launch_in_environment();
 
-/// Returns whether Slurm has started several processes without PMIx, which MPI needs to connect them.
-bool is_slurm_without_pmix();
+/// Returns whether Slurm has started several processes without PMIx or PMI, of which MPI needs one to connect
+/// them.
+bool is_slurm_without_pmi();
 
 /// Returns whether the launcher itself has started this process, and not a script in between.
 bool is_started_by_launcher();

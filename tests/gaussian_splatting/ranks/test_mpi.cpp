@@ -200,6 +200,7 @@ TEST_CASE("mpi: processes that a script starts alone may train alone") {
 TEST_CASE("mpi: srun must start processes with PMIx") {
     const temporary_folder folder;
     const words train = spheres + words{"-i", "5", "-o", (folder / "out").string(), "--mpi"};
+    for (const char* name : {"PMIX_RANK", "PMI_RANK", "OMPI_COMM_WORLD_RANK"}) unsetenv(name);
     setenv("SLURM_STEP_NUM_TASKS", "2", 1);
     setenv("SLURM_PROCID", "0", 1);
     const outcome first = run_with({}, train);
