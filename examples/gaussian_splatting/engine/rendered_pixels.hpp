@@ -9,16 +9,17 @@
 
 namespace gs::train {
 
-/// The pixels that planes of a render have: all pixels of an image of this size, row by row, or only some of
-/// them.
+/// The pixels that planes of a render have: all pixels of an image, row by row, or only some of them, or the
+/// means of its blocks. See `render_options`.
 struct rendered_pixels {
-    int width, height;
+    int width, height;                      ///< of the image
     std::span<const std::uint32_t> some{};  ///< their places among all pixels; empty: all
+    int block = 1;                          ///< side of the blocks
 
-    /// Returns the coordinates of the center of pixel `i` of a plane: see `camera::image_point`.
+    /// Returns the coordinates of the center of pixel or block `i` of a plane: see `camera::image_point`.
     glm::dvec2 center(std::size_t i) const {
-        const auto place = static_cast<int>(some.empty() ? i : some[i]);
-        return {place % width + 0.5, place / width + 0.5};
+        const auto place = static_cast<int>(some.empty() ? i : some[i]), across = width / block;
+        return static_cast<double>(block) * glm::dvec2(place % across + 0.5, place / across + 0.5);
     }
 };
 

@@ -68,9 +68,9 @@ class feature {
     /// Adds its actions to the training loop. Called whether the effect is on or off.
     virtual void schedule(const selected_feature&, train::training&) const {}
     /// Returns a function that applies the effect to the render of a training view, or an empty
-    /// function if it changes no renders. The function takes the view's index and three planes with all
-    /// or some pixels of the view, of its size or of a smaller size; several threads may call it. Called
-    /// during training if the effect is on.
+    /// function if it changes no renders. The function takes the view's index and three planes of its
+    /// size or of a smaller size, with the pixels that `rendered_pixels` describe; several threads may call
+    /// it. Called during training if the effect is on.
     virtual show_function show_on_host(train::engine&, const scene&) const { return {}; }
     /// Sets the effect's values for held-out views. Called before they are measured, if the effect
     /// is on.

@@ -133,6 +133,7 @@ void point_observer::observe_patches(std::size_t v, std::span<const place_in_pho
 std::vector<place_in_photo> point_observer::in_sight(const camera& camera) const {
     std::vector<place_in_photo> points = points_in_sight(camera, scene_.points);
     std::erase_if(points, [this](const place_in_photo& p) { return p.point % step_ != 0; });
+    points.shrink_to_fit();
     return points;
 }
 

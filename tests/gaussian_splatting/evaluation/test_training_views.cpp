@@ -46,7 +46,7 @@ TEST_CASE("learned effects change the renders of training views") {
     const auto engine = gs::train::make_cpu_engine();
     engine->set_views(scene.train, scene.test);
     engine->set_model(gs::from_points(scene.points, 0, 1000, 1));
-    const auto show = [](std::size_t view, int, std::vector<float>& render) {
+    const auto show = [](std::size_t view, const gs::train::rendered_pixels&, std::vector<float>& render) {
         for (float& value : render) value = view == 1 ? 0.5F : value;
     };
     const auto images = gs::evaluate::training_view(*engine, scene, show, {0, 0, 0}, 1);

@@ -175,8 +175,7 @@ std::vector<sample> all_samples(train::engine& engine, const scene& of, const sh
     for_each_in_parallel(photos, [&](std::size_t i) {
         const std::size_t v = view_of(i);
         const camera& c = cameras[i];
-        const int side = side_of_blocks(c);
-        show(v, {c.width / side, c.height / side}, renders[i]);
+        show(v, {c.width, c.height, {}, side_of_blocks(c)}, renders[i]);
         const view_photo photo(of.train[v]);
         by_photo[i] = samples_of(blocks(c, photo.pixels(), renders[i], inverses[i]), v, c, of.extent());
     });

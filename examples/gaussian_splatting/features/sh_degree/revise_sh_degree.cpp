@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -82,11 +83,13 @@ observed_points observe_residuals(const scene& of, train::engine& engine, const 
     return observer.observations();
 }
 
-/// Returns the places of at most 50,000 pixels of a view, at equal distances.
+/// Returns the places of at most 50,000 pixels of a view, at equal distances and in all columns.
 std::vector<std::uint32_t> spread_pixels(const camera& c) {
     constexpr std::size_t most = 50'000;
-    const std::size_t all = static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height),
-                      step = (all + most - 1) / most;
+    const auto width = static_cast<std::size_t>(c.width);
+    const std::size_t all = width * static_cast<std::size_t>(c.height);
+    std::size_t step = (all + most - 1) / most;
+    while (std::gcd(step, width) > 1) ++step;
     std::vector<std::uint32_t> places;
     for (std::size_t i = 0; i < all; i += step) places.push_back(static_cast<std::uint32_t>(i));
     return places;
