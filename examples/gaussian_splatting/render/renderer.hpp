@@ -59,8 +59,8 @@ class renderer {
     /// differ. `measure` uses `view_strip::gaussians` only. A rank projects its own share of the Gaussians,
     /// needs the parameters of these only, and passes only their gradients to the sink.
     void set_strip(const std::optional<view_strip>& strip) {
-        if (strip && !strip_) {  // whole views need more memory
-            release_splats();
+        if (strip.has_value() != strip_.has_value()) {  // whole views and strips need different memory
+            strip ? release_splats() : release_exchange();
             gaussian_of_ = {};
             checkpoints_ = {};
         }
@@ -68,8 +68,7 @@ class renderer {
     }
     /// Frees memory that only strips need, until the next draw of one.
     void release_strips() {
-        exchange_.release();
-        strip_lists_.release();
+        release_exchange();
         strip_places_ = 0;
     }
 
@@ -90,8 +89,8 @@ class renderer {
     }
 
     /// Permits this number of instances per view, and `spare` more within the limit of 31 bits. `forward`
-    /// drops instances that do not fit: see `capacity`. Whole views get memory for all of them, and strips
-    /// for those that they list.
+    /// drops instances that do not fit: see `capacity`. One rank reserves memory for all of them. If there
+    /// are several, a view or a strip gets memory for those that it lists.
     void reserve_instances(std::uint64_t most, std::uint64_t spare = 0) {
         constexpr std::uint64_t limit = std::uint64_t{1} << 31;
         if (most >= limit)
@@ -280,6 +279,10 @@ class renderer {
     ranks::traffic_counter::scope exchanging(ranks::purpose of_step) const {
         return {device_.ranks().traffic(), strip_ && !strip_->is_of_step ? ranks::purpose::scores : of_step};
     }
+    void release_exchange() {
+        exchange_.release();
+        strip_lists_.release();
+    }
     void release_splats() {
         own_.release();
         near_ = {};
@@ -341,7 +344,7 @@ class renderer {
     }
 
     std::size_t segments() const {
-        return most_segments<Cut>(tiles(), strip_ ? strip_places_ + Cut::segment : capacity_);
+        return most_segments<Cut>(tiles(), strip_ ? strip_places_ + Cut::segment : whole_places_);
     }
     tile_lists<Real> lists() const {
         return {own_.splats.data(),    gaussian_of_.data(), ranges_.data(),
@@ -397,8 +400,8 @@ class renderer {
     /// Makes the list of Gaussians of each tile, front to back. Equal depths keep the order of the
     /// Gaussians. `again`: this rank alone makes the lists of its strip again.
     void bin(bool again = false) {
-        gaussian_of_.resize((strip_ ? strip_places_ : capacity_) + Cut::segment);
         if (strip_) {
+            gaussian_of_.resize(strip_places_ + Cut::segment);
             list_strip(again);
         } else {
             device_.sort_pairs(own_.depths, own_.order, count_);
@@ -406,7 +409,10 @@ class renderer {
                 views_[0], {own_.order.data(), own_.splats.data(), own_.boxes.data(), views_.tiles_across()},
                 [&](const auto& items) {
                     place_lists(items, count_, capacity_);
-                    device_.write_lists(count_, items, tiles(), capacity_, gaussian_of_.data(),
+                    whole_places_ =
+                        device_.ranks().count() == 1 ? capacity_ : std::min(instances(), capacity_);
+                    gaussian_of_.resize(whole_places_ + Cut::segment);
+                    device_.write_lists(count_, items, tiles(), whole_places_, gaussian_of_.data(),
                                         ranges_.data());
                 });
         }
@@ -456,7 +462,7 @@ class renderer {
     tile_schedule<Device> schedule_;
     buffer<unsigned long long> work_;
     buffer<unsigned long long> pairs_;  ///< one counter for colors, and an unused one for depths
-    std::uint64_t capacity_ = 0, strip_places_ = 0;
+    std::uint64_t capacity_ = 0, whole_places_ = 0, strip_places_ = 0;
 
     std::optional<view_strip> strip_;  ///< if unset, views are drawn whole
 

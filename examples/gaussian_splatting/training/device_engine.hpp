@@ -242,6 +242,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
     void join(ranks::communicator& ranks) override { device_.join(ranks); }
     void prepare_renders() override {
         division_.update();
+        if (trained_.shares) gather_.release();
         trained_.undivide_values(device_);
     }
 

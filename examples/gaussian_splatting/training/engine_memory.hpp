@@ -44,10 +44,10 @@ device::memory_forecast forecast_of_gaussians(const Renderer& renderer, std::siz
                                      ? 0
                                      : view_gradients<Device>::bytes_per_gaussian(sh_degree) +
                                            (setup.batch_size - 1) * of_render,
-                      in_training = undivided +
-                                    own(of_parameters.on_device - undivided + of_render + of_batch) +
-                                    parameter_gather<Device>::bytes_per_gaussian(sh_degree, part),
-                      in_measurement = is_divided ? value_bytes_per_gaussian(sh_degree) + of_render : 0;
+                      in_training =
+                          undivided + own(of_parameters.on_device - undivided + of_render + of_batch),
+                      of_gather = parameter_gather<Device>::bytes_per_gaussian(sh_degree, part),
+                      of_view = value_bytes_per_gaussian(sh_degree) - undivided + of_render;
     std::uint64_t of_strips = 0;
     if (is_divided || setup.batch_size > 1) {
         const std::uint64_t known = renderer.strip_bytes(setup.facts.gradient);
@@ -57,13 +57,12 @@ device::memory_forecast forecast_of_gaussians(const Renderer& renderer, std::siz
     }
     const std::size_t reserved = renderer.reserved_instances(),
                       listed = renderer.strip_places() > 0 ? renderer.strip_places() : own(reserved);
-    const std::uint64_t of_lists = grown(is_divided ? listed : reserved) * Renderer::bytes::per_instance(),
-                        of_whole_lists = grown(reserved) * Renderer::bytes::per_instance();
-    const std::uint64_t in_steps = gaussians * in_training + of_strips;
-    const bool needs_more_in_steps =
-        !is_divided || in_steps + of_lists > gaussians * in_measurement + of_whole_lists;
-    return {.gaussians = gaussians * beside + (needs_more_in_steps ? in_steps : gaussians * in_measurement),
-            .others = needs_more_in_steps ? of_lists : of_whole_lists,
+    const auto of_lists = [&](std::size_t places) { return grown(places) * Renderer::bytes::per_instance(); };
+    std::uint64_t others = of_strips + gaussians * of_gather + of_lists(is_divided ? listed : reserved);
+    // Between steps, a rank renders whole views. Half of the reserve is for growth.
+    if (is_divided) others = std::max(others, gaussians * (of_view - own(of_view)) + of_lists(reserved / 2));
+    return {.gaussians = gaussians * (beside + in_training),
+            .others = others,
             .on_host = gaussians * of_parameters.on_host};
 }
 

@@ -152,9 +152,9 @@ TEST_CASE("lists of buckets are those made one item at a time, however long the 
     };
     // Among them more buckets than a block of a GPU has shared memory for, and so many items that a GPU cuts
     // them into more slices.
-    for (const shape& s :
-         {shape{0, 3, 1, 1}, shape{1, 1, 1, 1}, shape{33, 7, 3, 7}, shape{40, 13000, 9, 13000},
-          shape{5000, 625, 6, 625}, shape{5000, 1, 1, 1}, shape{140000, 50, 2, 20}}) {
+    for (const shape& s : {shape{0, 0, 1, 1}, shape{0, 3, 1, 1}, shape{1, 1, 1, 1}, shape{33, 7, 3, 7},
+                           shape{40, 13000, 9, 13000}, shape{5000, 625, 6, 625}, shape{5000, 1, 1, 1},
+                           shape{140000, 50, 2, 20}}) {
         CAPTURE(s.items);
         CAPTURE(s.buckets);
         std::vector<std::vector<std::uint32_t>> items(s.items), lists(s.buckets);

@@ -46,6 +46,9 @@ memory train_in(communicator& all, const gs::scene& scene) {
         return false;
     };
     gs::train::train(*engine, scene, o, events);
+    engine->ranks().prepare_renders();
+    engine->render(scene.train[0].camera, {});
+    events.is_interrupted();
     found.forecast = static_cast<double>(engine->profile().forecast(most, 3).total());
     return found;
 }

@@ -138,7 +138,7 @@ TEST_CASE("strips: ranks have memory for the tile lists of their strips, and not
         if (of_all > 2 * of_view || places > 3 * of_view / 4) return 4;
         const strip_result second = on.draw({}, accumulator::fixed);
         if (on.renderer().strip_places() != places) return 5;
-        on.renderer().release_strips();
+        if (all.rank() == 1) on.renderer().release_strips();  // makes its lists again, without the others
         const strip_result third = on.draw({}, accumulator::fixed);
         return first.looks_like(second) && first.looks_like(third) ? 0 : 6;
     });

@@ -178,6 +178,7 @@ class cuda {
     void place_lists(std::size_t n, const Items& all, std::size_t buckets, std::uint64_t capacity,
                      Range* ranges, std::uint64_t* required) {
         using namespace detail;
+        if (buckets == 0) return zero(required, 1);
         first_candidate_.resize(n + 1);
         prefix_sum_of(sizes_of<Items>{all}, first_candidate_, n);
         with_slices(n, buckets, [&]<unsigned Slices, bool Shared>(unsigned b, std::size_t row) {

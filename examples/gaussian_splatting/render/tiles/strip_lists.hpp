@@ -16,8 +16,8 @@
 
 namespace gs::raster {
 
-/// Writes the length of the tile lists in each own tile row, and zero for other rows. If the lists do
-/// not fit into their memory, all lengths are zero. Writes zero after them. One index per tile row,
+/// Writes the length of the tile lists in each own tile row, and zero for other rows. If the capacity is
+/// exceeded, all lengths are zero. Writes zero after them. One index per tile row,
 /// and one more.
 struct measure_rows {
     const tile_range* ranges;
@@ -35,7 +35,7 @@ struct measure_rows {
     }
 };
 
-/// Counts the instances in own tile rows if the lists do not fit into their memory. One index per
+/// Counts the instances in own tile rows if the capacity is exceeded. One index per
 /// item: see `device::items`.
 template <class Items>
 struct count_unlisted {
@@ -157,8 +157,8 @@ class strip_lists {
         place(items, count, at);
         write(items, count, at);
     }
-    /// Returns the number of places that the lists need, of at most `capacity`, without the segment more.
-    /// Waits until the device has counted them, but not for later work, so that it stays busy.
+    /// Returns the number of instances in the lists, or `capacity` if there are more. Waits until the device
+    /// has counted them, but not for later work, so that it stays busy.
     std::uint64_t needed_places(std::uint64_t capacity) {
         counted_.wait();
         return std::min(*needed_on_host_.data(), capacity);
