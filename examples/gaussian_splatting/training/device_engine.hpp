@@ -437,7 +437,7 @@ class device_engine final : public engine, device::profiler, learned_cameras, ra
         return {setup_.dropout, static_cast<std::uint32_t>(random.below(std::uint64_t{1} << 32))};
     }
 
-    /// Renders the model. Reserves more memory if the tile lists do not fit. Waits for the device.
+    /// Renders the model. Raises the capacity if the view has more instances. Waits for the device.
     /// The render is not timed or counted as a step.
     void draw(renderer_type& renderer, const camera& camera, const std::array<float, 3>& background,
               const render_options& options = {}) {

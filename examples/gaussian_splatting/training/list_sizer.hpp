@@ -23,7 +23,7 @@ struct note_length {
     WARPAGG_HD void operator()(std::size_t) const { *length = (*capacity.required + views - 1) / views; }
 };
 
-/// Records the length of each training view's tile lists, and sizes the renderer's memory for the
+/// Records the length of each training view's tile lists, and sets the capacity of the renderer for the
 /// longest ones. A length is the number of instances (Gaussian, tile) of a view.
 template <device::device Device>
 class list_sizer {
@@ -55,7 +55,7 @@ class list_sizer {
     /// Sets the number of views whose lists must fit together.
     void set_views_at_once(std::size_t views) { at_once_ = views; }
 
-    /// Reserves memory for the longest lists, with a reserve for growth. Measures views whose
+    /// Sets the capacity for the longest lists, with a reserve for growth. Measures views whose
     /// length is unknown. Waits for the device.
     template <class Renderer, class Views>
     void reserve(Renderer& renderer, const typename Renderer::model& model, std::size_t gaussians,
