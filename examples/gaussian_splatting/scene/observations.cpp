@@ -68,7 +68,7 @@ class nearest_depths {
     std::vector<double> depth_;
 };
 
-/// Observes what the 3×3 pixels around this one show.
+/// Observes the 3×3 pixels around this one.
 std::optional<observation> look(const image& photo, int column, int row) {
     const auto pixel = [&](int x, int y) {
         return &photo.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(photo.width) +
