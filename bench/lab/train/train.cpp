@@ -15,8 +15,8 @@
 
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
-#include "cli/report.hpp"
 #include "core/error.hpp"
+#include "core/write_json.hpp"
 #include "engines.hpp"
 #include "lab.hpp"
 #include "lab/accumulator_set.hpp"
@@ -63,7 +63,7 @@ void add_to_json(const std::filesystem::path& file, const nlohmann::ordered_json
     nlohmann::ordered_json json;
     std::ifstream(file) >> json;
     json.update(more);
-    cli::write_json(file, json);
+    write_json(file, json);
 }
 
 }  // namespace
