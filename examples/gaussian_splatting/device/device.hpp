@@ -118,8 +118,8 @@ concept placed_buffer = requires(B b) {
 ///   another. Writes the length of all lists together to `*required`. Cuts them off at `capacity`.
 /// - `write_lists(n, items, buckets, places, listed, ranges)`: writes the values of the same items to their
 ///   lists, which are parts of `listed`, in the order of the items. The ranges may all have moved by the
-///   same number. Writes nothing at or behind `places`, and before it perhaps other values behind lists that
-///   have been cut off.
+///   same number. Writes nothing at or behind `places`. Lists that have been cut off may be followed by other
+///   values.
 ///
 /// Ranks: processes that train one model together, with a device each
 /// - `join(ranks)`: makes the device one of these. At first it is the only one.

@@ -16,7 +16,8 @@ struct render_options {
     /// Uses memory that training does not use, so that the render cannot change later steps, such as
     /// the number of steps whose tile lists do not fit. Costs the memory of a second renderer.
     bool separate_memory = false;
-    /// Returns the means of square blocks of this side, row by row, without the pixels that fill no block.
+    /// Returns the means of square blocks of this side, row by row. Leaves out incomplete blocks at the right
+    /// and the lower border.
     int block = 1;
     /// Returns only these pixels, unless it is empty: see `rendered_pixels::some`. Then `block` must be 1.
     std::span<const std::uint32_t> pixels{};

@@ -9,8 +9,8 @@
 
 namespace gs::train {
 
-/// The pixels that planes of a render have: all pixels of an image, row by row, or only some of them, or the
-/// means of its blocks. See `render_options`.
+/// Describes the values of a render: all pixels of an image, row by row, some of its pixels, or the means of
+/// its blocks. See `render_options`.
 struct rendered_pixels {
     int width, height;                      ///< of the image
     std::span<const std::uint32_t> some{};  ///< their places among all pixels; empty: all

@@ -80,7 +80,7 @@ synthetic_parameters parse_synthetic(const std::string& text) {
     if (result.response > 0 && result.panorama > 0)
         throw error("a synthetic scene has either a 'response' or a 'panorama', not both: " + text);
     if ((result.blur > 0 || result.shutter != 0) && result.panorama > 0)
-        throw error("a synthetic scene has no 'blur' and 'shutter' with 'panorama': " + text);
+        throw error("a synthetic scene has either 'blur' and 'shutter' or a 'panorama', not both: " + text);
     if (result.sky > 0 && result.walls > 0)
         throw error("a synthetic scene has either a 'sky' or 'walls', not both: " + text);
     return result;
