@@ -174,6 +174,19 @@ TEST_CASE("motion: without the effect, cameras keep still") {
     CHECK(e->feature("motion").values().empty());
 }
 
+TEST_CASE("motion: refinement finds motions of held-out photos, and keeps their poses") {
+    const gs::scene scene = small_scene("synthetic:spheres,blur=8", 32);
+    for (const auto make : engines()) {
+        const auto e = trained_with(make, scene, neutral_motion(scene), gs::accumulator::native, 60);
+        const gs::camera& given = scene.test[0].camera;
+        const gs::camera refined = e->cameras().refined_camera(0, {});
+        CHECK(refined.rotation == given.rotation);
+        CHECK(refined.translation == given.translation);
+        REQUIRE(refined.motion.has_value());
+        CHECK(glm::length(refined.motion->turn) > 0);
+    }
+}
+
 TEST_CASE("motion: the results are motions in world units, and a run without the effect removes them") {
     gs::scene scene = small_scene("synthetic:spheres,blur=20", 32);
     scene.normalization = {{10, 20, 30}, 2};

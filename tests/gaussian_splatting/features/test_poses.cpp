@@ -385,6 +385,8 @@ TEST_CASE("long: poses: training and refinement correct poses that are wrong") {
         };
         const auto without = trained(make, scene, false, gs::accumulator::native, 400),
                    with = trained(make, scene, true, gs::accumulator::native, 400);
+        CHECK(without->cameras().refined_camera(0, {}).rotation == scene.test[0].camera.rotation);
+        without->feature("poses").set_values(poses_feature().neutral_values(scene));
         const double given = psnr_of(*without, false), refined = psnr_of(*without, true),
                      learned = psnr_of(*with, true);
         CAPTURE(given);

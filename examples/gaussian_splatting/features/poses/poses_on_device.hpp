@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -78,19 +77,22 @@ class poses_on_device final : public device_feature<Renderer> {
     }
 
     void begin_refinement() override {
+        if (!learns()) return;
         of_held_out_.set(std::vector<float>(pose_width));
         std::vector<double> depths;
         for (std::size_t at = 0; at < given_numbers_.size(); at += given_width)
             depths.push_back(static_cast<double>(given_numbers_[at]));
         given_ = {};
-        given_.depth = depths.empty() ? std::numeric_limits<double>::infinity() : median(depths);
+        given_.depth = median(depths);
     }
     camera refined(const camera& given) override {
+        if (!learns()) return given;
         change_ = of_held_out_.of(0);
         given_.camera = given;
         return moved(given_, change_);
     }
     void refine_pose(const step& s, const float* sums, double progress) override {
+        if (!learns()) return;
         of_held_out_.learn(0, s, sums, step_from_given * static_cast<float>(std::pow(0.05, progress)),
                            sink());
     }
