@@ -12,7 +12,7 @@ namespace gs {
 
 /// The parameters of a Gaussian. Each has its own array in device memory. Each SH degree is a
 /// separate parameter, so that unused degrees are not stored, read or updated.
-enum class parameter { mean, log_scale, quaternion, opacity, sh0, sh1, sh2, sh3, count };
+enum class parameter : unsigned { mean, log_scale, quaternion, opacity, sh0, sh1, sh2, sh3, count };
 inline constexpr std::size_t parameter_count = static_cast<std::size_t>(parameter::count);
 
 /// Number of values per Gaussian, by parameter.

@@ -61,8 +61,9 @@ struct adam {
         mutable real color_before, color_after;
 
         template <int N>
-        WARPAGG_HD void operator()(parameter p, std::size_t k, std::size_t width,
-                                   const glm::vec<N, real>& value, const glm::vec<N, real>& gradient) const {
+        WARPAGG_HD_CALLED void operator()(parameter p, std::size_t k, std::size_t width,
+                                          const glm::vec<N, real>& value,
+                                          const glm::vec<N, real>& gradient) const {
             change<N> by(*this, p, value, gradient);
             if constexpr (Precision == moment_precision::full)
                 step_with_floats(by, p, k, width);

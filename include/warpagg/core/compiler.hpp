@@ -31,6 +31,14 @@
 #define WARPAGG_EXEC_CHECK_DISABLE
 #endif
 
+/// Declares a large function with many callers, for host and device. Only GPUs inline it, so that code for
+/// CPUs compiles sooner.
+#if defined(__CUDACC__) || defined(__HIPCC__)
+#define WARPAGG_HD_CALLED WARPAGG_HD
+#else
+#define WARPAGG_HD_CALLED inline __attribute__((noinline))
+#endif
+
 /// Unrolls a short loop, so that the arrays it indexes can stay in registers.
 #if defined(__CUDA_ARCH__) || defined(__clang__)
 #define WARPAGG_UNROLL _Pragma("unroll")
